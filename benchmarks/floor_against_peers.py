@@ -48,12 +48,11 @@ import rockit
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.models import ArmOnFlexibleLink, JointMotion
 from quietarm.ocp import CycloidPolynomial, PointToPoint, energy_floor
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.floor.program import FloorProgram, first_grid
 from quietarm.ocp.floor.transcription import _COLD
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.collocation import NODES
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulated
 from rich.table import Table
 from rockit.sampling_method import FunctionGrid
 
@@ -220,7 +219,7 @@ class Row:
 
 def resimulated_energy(free: FreeMotion) -> float:
     """F2 of a free motion by CVODES [J]."""
-    return resimulated(TASK, PiecewiseMotion.of_free_motion(TASK, free)).motion.energy
+    return Candidate.of_free_motion(TASK, free).energy
 
 
 def measure(

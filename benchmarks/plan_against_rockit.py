@@ -42,14 +42,14 @@ from dataclasses import dataclass
 from statistics import median
 from time import process_time
 
-import casadi as ca
 import numpy as np
 import rockit
 from parts.conditions import conditions
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
-from quietarm.ocp.simulation.collocation import NODES, mesh
-from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.simulation.collocation import NODES
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.solvers.nlp import OPTIONS
 from quietarm.ocp.solvers.problem import Problem, Scalarization
 from quietarm.ocp.solvers.solution import Solution
@@ -84,7 +84,7 @@ class Move:
 
     def above(self, coefficients: np.ndarray) -> float:
         """How far the true energy of a motion is from the best, relative."""
-        return resimulate(self.task, PROFILE, coefficients).energy / self.best - 1
+        return Candidate.of_profile(self.task, PROFILE, coefficients).energy / self.best - 1
 
     def plan(self) -> Plan:
         """Plan by quietarm, as a user would, with the verification."""
@@ -146,7 +146,7 @@ class RockitMove:
 
 
 def _boundaries(steps: int) -> list[float]:
-    return mesh(ca.DM(np.arange(steps + 1)), steps)[0].full().ravel().tolist()
+    return Grid(steps).boundaries.tolist()
 
 
 def fewest(above: Callable[[int], float], within: float) -> int:

@@ -1,3 +1,4 @@
+from .candidate import Candidate as Candidate
 from .energy import AbsolutePower as AbsolutePower
 from .energy import CopperLoss as CopperLoss
 from .energy import Energy as Energy
@@ -49,14 +50,10 @@ from .robustness.measures import evaluate_robustness as evaluate_robustness
 from .robustness.population import Figures as Figures
 from .robustness.sensitivity import Sensitivity as Sensitivity
 from .robustness.worst import Worst as Worst
-from .simulation.cvodes import Trajectory as Trajectory
+from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
-from .simulation.residual import residual_matrix as residual_matrix
-from .simulation.resimulation import resimulate as resimulate
-from .simulation.resimulation import sample_trajectory as sample_trajectory
-from .simulation.rollout import Rollout as Rollout
-from .simulation.rollout import rollout as rollout
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
+from .simulation.trajectory import Trajectory as Trajectory
 from .task import PointToPoint as PointToPoint
 from .uncertainty import Uncertainty as Uncertainty
 from .uncertainty import perturb_plant as perturb_plant

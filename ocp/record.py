@@ -12,8 +12,8 @@ import casadi as ca
 import numpy as np
 from quietarm.models import __version__
 from quietarm.ocp.checks import CountFromOne, NotNegative, finite, not_negative, positive, whole
+from quietarm.ocp.simulation.grid import MOST_STEPS
 from quietarm.ocp.simulation.objective import Motion
-from quietarm.ocp.simulation.rollout import MOST_STEPS
 
 Setting = str | bool | int | float | None
 S = TypeVar("S")

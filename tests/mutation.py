@@ -47,9 +47,9 @@ TESTS = {
     "ocp/simulation/objective.py": ["ocp/simulation", "ocp/solvers/test_batch.py"],
     "ocp/profiles/joint_profile.py": ["ocp/profiles", "ocp/simulation"],
     "ocp/profiles/polynomial.py": ["ocp/profiles/test_polynomial.py"],
-    "ocp/simulation/residual.py": ["ocp/simulation", "ocp/planning/test_shaping.py"],
+    "ocp/simulation/free_vibration.py": ["ocp/simulation", "ocp/planning/test_shaping.py"],
     "ocp/simulation/rollout.py": ["ocp/simulation", "metaheuristics/objective/test_population.py"],
-    "ocp/simulation/resimulation.py": ["ocp/simulation", "ocp/robustness/test_uncertain.py"],
+    "ocp/candidate.py": ["ocp/simulation", "ocp/robustness/test_uncertain.py"],
 }
 """The modules to change, and the tests that should notice."""
 

@@ -14,9 +14,8 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
-from quietarm.ocp.robustness.worst import worst_at, worst_of
-from quietarm.ocp.simulation.resimulation import resimulate
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.robustness.worst import worst_of
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.task import QUANTITIES
 
 _SAMPLE = 100
@@ -80,7 +79,7 @@ def _check_points(front: Front, table: NDArray[np.float64]) -> None:
 def check_plan(plan: Plan, name: str) -> None:
     """Evaluate the motion of a plan again, and refuse the plan where the figures differ."""
     try:
-        found = resimulate(plan.task, plan.profile, plan.coefficients)
+        found = plan.candidate.motion
         _check_worst(plan, name)
     except SolverFailedError as error:
         raise SolverFailedError(f"{name}: {error}") from None
@@ -108,7 +107,7 @@ def _check_worst(plan: Plan, name: str) -> None:
             f"{name} states a worst with errors of {what}, which its plant does not have; find the "
             "plan again"
         )
-    there = worst_at(*where, list(plan.worst.errors.values()))
+    there = plan.candidate.perturbed(plan.worst.errors)
     for gives, words in (found.residual, "leave"), (there.residual, "leave there"):
         if not agrees(stated, gives, REST):
             raise ValueError(

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.checks import whole
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
-from quietarm.ocp.simulation.residual import residual_rows, residual_samples
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.free_vibration import after_arrival
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Batch, batch
 
 CANDIDATE_STEPS = 24
@@ -77,8 +77,8 @@ class PopulationObjective:
         self.task, self.profile, self.threads = task, profile, whole("threads", threads, 1)
         default = default_steps(task, least=CANDIDATE_STEPS)
         self.steps = default if steps is None else whole("steps", steps, 1)
-        self._scenarios, samples = np.array(task.scenarios), residual_samples(task)
-        self._tip_rows = [residual_rows(task, plant, samples) for plant in task.perturbed_plants]
+        self._scenarios = np.array(task.scenarios)
+        self._tip_rows = [vibration.rows for vibration in after_arrival(task)]
 
     @property
     def _batch(self) -> Batch:

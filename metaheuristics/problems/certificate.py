@@ -14,9 +14,8 @@ import numpy as np
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
 from quietarm.ocp import Front, PointToPoint, QuietarmError
-from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.planning.best_of_starts import first_steps
-from quietarm.ocp.planning.certify import Checked
+from quietarm.ocp.planning.certify import judge
 from quietarm.ocp.planning.plan_move import plan_at_samples
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
@@ -32,11 +31,13 @@ CERTIFICATES = Path(__file__).parent / "certificates.json"
 _TRIED, _STARTS, _SEED = 20, 5, 2000
 """Points that are also tried from so many random starts, others than found the front."""
 _TELLING = 1e-5
+SAME = 1e-7
+"""[m]: residuals were sampled when the fronts were found, and missed 1.2e-6 of a peak."""
 FIXED_STEPS = 384
 """Of the other integrator, which finds no front: a population's."""
 BEATEN, DIFFERENT, SAMPLED = 1e-4, 1e-6, 1e-4
 """A certificate holds where nothing is cheaper by more than the first share of the energy, where
-CVODES gives the stated energies within the second, and residuals within `STILL`, and fixed steps
+CVODES gives the stated energies within the second, and residuals within `SAME`, and fixed steps
 give the energies of CVODES within the second share and residuals within the third of the front's
 largest: a population's are sampled, and miss up to 5e-5 of a peak."""
 
@@ -69,7 +70,7 @@ class Certificate:
     @property
     def holds(self) -> bool:
         """Whether what was found now is within the tolerances."""
-        same = self.energy_difference <= DIFFERENT and self.residual_difference <= STILL
+        same = self.energy_difference <= DIFFERENT and self.residual_difference <= SAME
         close = self.energy_by_steps <= DIFFERENT and self.residual_by_steps <= SAMPLED
         return same and close and self.gained <= BEATEN
 
@@ -130,7 +131,7 @@ def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProble
     cold = Sqp().solve([problems[i] for i in tried], [random.uniform(*box) for _ in tried])
     found = [*enumerate(warm), *zip(tried, cold, strict=True)]
     solved = [(i, one) for i, one in found if one.status.solved]
-    judged = [Checked(steps, _as_given(one)) for one in motions]
+    judged = [judge(steps, one) for one in motions]
     energies, residuals = (np.array([getattr(one, name) for one in judged])
                            for name in ("energy", "residual"))  # fmt: skip
     by_steps = PopulationObjective(task, front.profile, steps=FIXED_STEPS)(np.array(motions))
@@ -173,12 +174,7 @@ def _gained(front: Front, found: Sequence[tuple[int, Problem, Solution]]) -> flo
 
 def _priced(problem: Problem, found: Solution, energy: float) -> float:
     """The share by which a solution is cheaper at the price of what it passes its limits by."""
-    checked, limits = Checked(problem.transcription, found), problem.scalarization.limits
+    checked, limits = judge(problem.transcription, found.coefficients), problem.scalarization.limits
     over = {name: max(0.0, checked.peak(name) - limit) for name, limit in limits.items()}
     priced = sum(found.shadow_prices.get(name, 0.0) * most for name, most in over.items())
     return 1 - (checked.energy + priced) / energy
-
-
-def _as_given(coefficients: np.ndarray) -> Solution:
-    """Coefficients that no solver gave."""
-    return Solution(coefficients, 0.0, {}, SolveStatus.NOT_OPTIMISED, 0, coefficients)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from quietarm.ocp import (
+    Candidate,
     Front,
     FrontPoint,
     JointProfile,
@@ -13,7 +14,6 @@ from quietarm.ocp import (
     QuietarmError,
     epsilon_front,
     non_dominated,
-    resimulate,
 )
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.planning.plan_move import plan_at_samples
@@ -77,8 +77,8 @@ def _keeps_limits(front: Front, point: FrontPoint) -> bool:
     """Whether a point keeps the task's limits by CVODES, without the room that a plan has."""
     if not front.task.limits:
         return True
-    motion = resimulate(front.task.certain, front.profile, point.coefficients)
-    return not motion.passed(front.task.limits, _BETTER)
+    candidate = Candidate.of_profile(front.task.certain, front.profile, point.coefficients)
+    return not candidate.exceeded(front.task.limits, _BETTER)
 
 
 def _better(

@@ -12,7 +12,7 @@ from quietarm.metaheuristics.objective.population import PopulationObjective, re
 from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.record import coefficient_bound
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]

@@ -20,7 +20,7 @@ from quietarm.ocp import (
     non_dominated,
     reference_corner,
 )
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.grid import default_steps
 
 WITHIN = 1e-6
 """Share by which a peak of the finer rollout may exceed its limit: the search kept it exactly."""

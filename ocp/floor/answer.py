@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, positive, whole
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.record import Provenance, Verification, number_of_starts
 from quietarm.ocp.saved import MotionAnswer
-from quietarm.ocp.simulation.cvodes import Trajectory
 from quietarm.ocp.simulation.objective import Motion
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.task import PointToPoint
 
 _FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
@@ -155,7 +154,11 @@ class Floor(MotionAnswer):
         return sum(energy <= min(self.starts) * (1 + share) for energy in self.starts)
 
     @cached_property
+    def candidate(self) -> Candidate:
+        """The motion on the nominal plant, judged by CVODES."""
+        return Candidate.of_free_motion(self.task.certain, self.free)
+
+    @property
     def trajectory(self) -> Trajectory:
         """The move and the residual window by CVODES; where the torque jumps, two at a time."""
-        joint = PiecewiseMotion.of_free_motion(self.task, self.free)
-        return resimulated(self.task, joint).trajectory
+        return self.candidate.trajectory

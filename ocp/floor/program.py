@@ -25,9 +25,9 @@ from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
     NODES,
-    mesh,
     step,
 )
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import march
 from quietarm.ocp.solvers.nlp import run_ipopt
 from quietarm.ocp.solvers.transcription import ENERGY
@@ -45,8 +45,7 @@ _SHORTEST = 4e-5
 def first_grid(steps: int) -> NDArray[np.float64]:
     """Boundaries of about `steps` intervals, as fractions of the move, finer at the ends."""
     even = max(2, steps - 2 * _AT_AN_END)
-    boundaries = mesh(ca.DM(np.arange(even + 1)), even)[0].full().ravel()
-    boundaries[-1] = 1.0
+    boundaries = Grid(even).boundaries
     cuts = boundaries[1] * _SHRINK ** -np.arange(_AT_AN_END, 0.0, -1)
     return np.concatenate([[0.0], cuts, boundaries[1:-1], 1 - cuts[::-1], [1.0]])
 

@@ -8,6 +8,7 @@ from contextlib import suppress
 from operator import attrgetter
 
 import numpy as np
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.floor.answer import Floor, FloorSettings, Level
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
@@ -18,10 +19,8 @@ from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Provenance, Verification
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.residual import residual_samples
-from quietarm.ocp.simulation.resimulation import Resimulation, resimulated
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.free_vibration import after_arrival
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.task import PointToPoint
 
 FIRST_INTERVALS = 80
@@ -118,7 +117,7 @@ def energy_floor(
 
 
 def _first_steps(task: PointToPoint) -> int:
-    residual_samples(task)  # a window that is too long is refused before the solves, not after
+    after_arrival(task)  # a window that is too long is refused before the solves, not after
     steps = default_steps(task, least=FIRST_INTERVALS)
     if steps > MOST_FIRST_INTERVALS:
         raise ValueError(
@@ -164,7 +163,7 @@ def _solved(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSoluti
         tried = [*tried, *(program.solve(one.free, limits) for one in within)]
     solved = [found for found in tried if found.status.solved]
     if not solved:
-        peaks = true_peaks(least, lambda found: _resimulated(program, found))
+        peaks = true_peaks(least, lambda found: _judge(program, found))
         raise unmet(
             "motion at all", limits, tried, peaks, "a longer duration",
             otherwise="try another seed, more starts or a longer duration.",
@@ -204,7 +203,7 @@ def _refined_once(program: FloorProgram, solved: list[FreeSolution]) -> list[Fre
 
 def _least_verified(
     program: FloorProgram, grids: list[FreeSolution]
-) -> tuple[FreeSolution, Resimulation]:
+) -> tuple[FreeSolution, Candidate]:
     """The last grid's motion, or that of a coarser grid where it is verified to need less."""
     least = _within_limits(program, grids[-1])
     for found in grids[:-1]:
@@ -214,22 +213,22 @@ def _least_verified(
     return least
 
 
-def _within_limits(program: FloorProgram, best: FreeSolution) -> tuple[FreeSolution, Resimulation]:
+def _within_limits(program: FloorProgram, best: FreeSolution) -> tuple[FreeSolution, Candidate]:
     """Verify; tighten limits that are passed between the solver's nodes."""
     limits = program.task.limits
-    used, simulated = dict(limits), _resimulated(program, best)
+    used, simulated = dict(limits), _judge(program, best)
     for _ in range(_ROUNDS):
-        if not simulated.motion.passed(limits, _KEPT):
+        if not simulated.exceeded(limits, _KEPT):
             break
-        used = tighten(used, simulated.motion, limits)
+        used = tighten(used, simulated, limits)
         again = program.solve(best.free, used, warm=True)
         if not again.status.solved:
             break
-        best, simulated = again, _resimulated(program, again)
+        best, simulated = again, _judge(program, again)
     remedy = "the grid is too coarse for this motion; give a smaller tolerance"
-    refuse_exceeded(simulated.motion, limits, remedy)
+    refuse_exceeded(simulated, limits, remedy)
     return best, simulated
 
 
-def _resimulated(program: FloorProgram, found: FreeSolution) -> Resimulation:
-    return resimulated(program.task, PiecewiseMotion.of_free_motion(program.task, found.free))
+def _judge(program: FloorProgram, found: FreeSolution) -> Candidate:
+    return Candidate.of_free_motion(program.task.certain, found.free)

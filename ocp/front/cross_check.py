@@ -9,9 +9,8 @@ from quietarm.ocp.front.curve import Curve, Report, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.certify import OVERRUN, judge
 from quietarm.ocp.record import number_of_points
-from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.solvers.choice import SolverName
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.transcription import RESIDUAL
@@ -93,21 +92,20 @@ def cross_check(front: Front, points: int = 7, report: Report = no_report) -> Cr
 def _compare(curve: Curve, point: FrontPoint) -> Compared:
     """A point by both, within the same limits at the nodes of the same steps."""
     transcription, asked = curve.problem()
-    task, profile = curve.task, transcription.profile
     peaks = transcription.peaks(transcription.evaluate(np.array(point.coefficients)))
-    motion = resimulate(task.certain, profile, point.coefficients)
+    own = judge(transcription, np.array(point.coefficients))
     # a limit that the point is at was tightened until it held between the nodes as well
     limits = {
-        name: peaks[name] if motion.peak(name) > limit * (1 - OVERRUN) else limit
-        for name, limit in task.limits.items()
+        name: peaks[name] if own.peak(name) > limit * (1 - OVERRUN) else limit
+        for name, limit in curve.task.limits.items()
     }
     limits[RESIDUAL] = peaks[RESIDUAL]
     problem, best = Problem(transcription, asked._replace(limits=limits)), np.nan
     for start in curve.starts:
         (found,) = curve.solver.solve([problem], [start])
         if found.status.solved:
-            energy = resimulate(task.certain, profile, found.coefficients).energy
+            energy = judge(transcription, found.coefficients).energy
             best = float(np.nanmin([best, energy]))
-        if best <= motion.energy * (1 + _SAME):
+        if best <= own.energy * (1 + _SAME):
             break
-    return Compared(point.residual, motion.energy, best)
+    return Compared(point.residual, own.energy, best)

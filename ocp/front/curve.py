@@ -21,11 +21,11 @@ from quietarm.ocp.planning.certify import (
     Tolerances,
     certify,
     finer_values,
+    judge,
 )
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, SolveSettings
-from quietarm.ocp.simulation.cvodes import residual_of
-from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Scalarization
 from quietarm.ocp.solvers.solution import Solution
@@ -149,13 +149,13 @@ class Curve:
             return {}
         table = np.array([one.coefficients for one in found])
         values = finer_values([self.transcription] * len(table), table)
-        points = dict[int, FrontPoint]()
+        points, vibration = dict[int, FrontPoint](), after_arrival(task)[0]
         for i, (one, energy) in enumerate(zip(found, values.energy.tolist(), strict=True)):
             if abs(one.energy - energy) <= self.tolerances.energy * energy:
-                residual = residual_of(task, values.arrival[i])
+                residual = float(vibration.peak(task.missed(values.arrival[i])))
                 points[i] = FrontPoint(profile.checked(one.coefficients), residual, energy)
         for point in list(points.values())[::CHECK_EVERY]:
-            exact = resimulate(task, profile, point.coefficients)
+            exact = judge(self.transcription, np.array(point.coefficients))
             energy, residual = exact.energy - point.energy, exact.residual - point.residual
             if (
                 abs(energy) > FINER_AGREEMENT * exact.energy

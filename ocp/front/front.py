@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import Count, NotNegative, Positive, not_negative, whole
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import (
@@ -25,7 +26,6 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Setting, settings_given, versions
 from quietarm.ocp.saved import Saved
-from quietarm.ocp.simulation.rollout import rollout
 from quietarm.ocp.task import PointToPoint
 
 if TYPE_CHECKING:
@@ -317,5 +317,5 @@ def reference_corner(task: PointToPoint) -> tuple[float, float]:
     tuple of float
         Residual [m] of the plain cycloid, 1 mm at least, and twice its energy [J].
     """
-    cycloid = rollout(task, CycloidPolynomial(0), []).motion
+    cycloid = Candidate.of_profile(task, CycloidPolynomial(0), [])
     return max(cycloid.residual, LEAST_REFERENCE), 2 * cycloid.energy

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import Count, NotNegative, Share, positive
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.task import PointToPoint
 
 LEVELS = (1e-4, 1e-3, 5e-3)
@@ -157,7 +157,7 @@ def evaluated(
     refuse_beyond_box(profile, table, bound)
     for coefficients in rows:
         try:
-            motion = resimulate(task, profile, coefficients)
+            motion = Candidate.of_profile(task, profile, coefficients).motion
         except SolverFailedError:
             failed += 1
             continue

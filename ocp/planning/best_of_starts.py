@@ -11,7 +11,7 @@ from quietarm.ocp.planning.certify import MOST_SOLVER_STEPS
 from quietarm.ocp.planning.feasibility import explain, least_peaks_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.problem import Problem, Scalarization

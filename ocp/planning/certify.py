@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.simulation.objective import Motion, WithPeaks
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import in_scenarios
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.objective import WithPeaks
 from quietarm.ocp.solvers.batch import Batch, Values, batch
 from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.solution import Solution
-from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, STILL_SHARE, Transcription
+from quietarm.ocp.solvers.transcription import STILL, STILL_SHARE, Transcription
 from quietarm.ocp.task import QUANTITIES
 
 MOST_SOLVER_STEPS = 3200
@@ -59,7 +57,7 @@ class Certified(NamedTuple):
     """A solution with the figures of CVODES, and the problem, tightened, that it solves."""
 
     solution: Solution
-    checked: Checked
+    checked: Candidate
     problem: Problem
 
     @property
@@ -105,8 +103,8 @@ def certify(
     tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * asked.residual_limit)
     tried: list[Certified] = []
 
-    def check(problem: Problem, found: Solution) -> Checked:
-        tried.append(Certified(found, Checked(transcription, found), problem))
+    def check(problem: Problem, found: Solution) -> Candidate:
+        tried.append(Certified(found, judge(transcription, found.coefficients), problem))
         return tried[-1].checked
 
     simulated = check(problem, best)
@@ -115,7 +113,7 @@ def certify(
         rough = abs(best.energy - simulated.energy) > tolerances.energy * simulated.energy
         missed = abs(best.residual - simulated.residual) > tolerated
         again = None
-        if not rough and (missed or simulated.passed(limits)):
+        if not rough and (missed or simulated.exceeded(limits)):
             offset = simulated.arrival - transcription.evaluate(best.coefficients).arrival
             problem = Problem(transcription, asked._replace(limits=tightened, offset=offset))
             again = _solve_again(problem, best, solver)
@@ -148,33 +146,18 @@ def _solve_again(problem: Problem, found: Solution, solver: Solver) -> Solution:
     return replace(again, iterations=found.iterations + again.iterations)
 
 
-class Checked(WithPeaks):
-    """What CVODES makes of a solution, in all scenarios."""
-
-    def __init__(self, of: Transcription, found: Solution) -> None:
-        joint = PiecewiseMotion.of_profile(of.task, of.profile, found.coefficients)
-        self._all = in_scenarios(of.task, joint)
-        self.energy = self._all[0].energy
-        self.residual = max(one.residual for one in self._all)
-        self.arrival = np.array([one.arrival for one in self._all])
-
-    @cached_property
-    def motion(self) -> Motion:
-        """The figures: residual and deflection of the worst scenario, all else of the nominal."""
-        return Motion.worst([one.motion for one in self._all])
-
-    def peak(self, name: str) -> float:
-        """As of `WithPeaks`."""
-        return self.residual if name == RESIDUAL else self.motion.peak(name)
+def judge(transcription: Transcription, coefficients: NDArray[np.float64]) -> Candidate:
+    """The motion of coefficients, for CVODES."""
+    return Candidate.of_profile(transcription.task, transcription.profile, coefficients)
 
 
 def tighten(
     limits: Mapping[str, float], motion: WithPeaks, kept: Mapping[str, float]
 ) -> dict[str, float]:
     """The limits to give the solver, each less by as much as the verified motion exceeds it."""
-    passed = motion.passed(kept)
+    exceeded = motion.exceeded(kept)
     return {
-        name: limit / (_BELOW * passed[name]) if name in passed else limit
+        name: limit / (_BELOW * exceeded[name]) if name in exceeded else limit
         for name, limit in limits.items()
     }
 

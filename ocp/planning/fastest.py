@@ -14,7 +14,7 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.simulation.residual import slowest_swing
+from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import LEAST_DURATION, LIMITS, PointToPoint
 
 TOLERANCE = 1e-3
@@ -145,9 +145,9 @@ class _Search:
         if least > 0:
             self.failed[least] = "within its limits of speed and acceleration a joint takes longer"
         low, high = max(least, LEAST_DURATION), max(self.task.duration, 1.01 * least)
-        longest = max(
-            self.task.duration, _LONGEST * slowest_swing(self.task.plant, self.task.target)
-        )
+        modes = FreeVibration(self.task.plant, self.task.target).modes
+        slowest = 2 * math.pi / modes[0][0] if modes else 1.0
+        longest = max(self.task.duration, _LONGEST * slowest)
         while not self.succeeds(high):
             low, high = high, _GROWTH * high
             if high > longest:

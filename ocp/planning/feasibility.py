@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
-from quietarm.ocp.planning.certify import Checked
+from quietarm.ocp.planning.certify import judge
 from quietarm.ocp.simulation.objective import WithPeaks
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.solution import Solution
@@ -91,7 +91,7 @@ def explain(
         f"motion of {transcription.profile.amount}",
         asked.limits,
         tried,
-        true_peaks(least, lambda found: Checked(transcription, found)),
+        true_peaks(least, lambda found: judge(transcription, found.coefficients)),
         f"more {transcription.profile.term}s or a longer duration",
         "" if asked.bound is None else f", coefficients within +-{asked.bound:g}",
     )

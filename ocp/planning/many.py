@@ -22,12 +22,12 @@ from quietarm.ocp.planning.certify import (
     certify,
     finer_peaks,
     finer_values,
+    judge,
 )
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.simulation.residual import residuals_at_rest, state_matrices
-from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_of_moves
 from quietarm.ocp.solvers.batch import Values
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
@@ -167,9 +167,8 @@ def _from_neighbours(
 
 def _steps(tasks: Sequence[PointToPoint], profile: JointProfile, settings: SolveSettings) -> int:
     """Steps that do for all: those of the move that takes the most periods."""
-    ends = np.array([angle for task in tasks for angle in (task.start, task.target)])
-    fastest = np.abs(np.linalg.eigvals(state_matrices(tasks[0].plant, ends))).max(axis=1)
-    radians = fastest.reshape(-1, 2).max(axis=1) * [task.duration for task in tasks]
+    starts, targets, durations = np.array([task.move for task in tasks]).T
+    radians = durations * fastest_of_moves(tasks[0].plant, starts, targets)
     return first_steps(tasks[int(np.argmax(radians))], profile, settings)
 
 
@@ -258,7 +257,7 @@ def _together(moves: Moves, rows: list[_Row], solver: Solver, doublings: int = 2
         moves.peaks[name][places] = largest
     doubtful |= {places[k] for k in np.flatnonzero(residual > STILL)}
     for k in range(0, len(rows), CHECK_EVERY):
-        exact = resimulate(transcriptions[k].task, transcriptions[k].profile, table[k])
+        exact = judge(transcriptions[k], table[k])
         differs = abs(exact.energy - values.energy[k]) > FINER_AGREEMENT * exact.energy
         if differs or exact.residual > STILL:
             return doubtful | set(places)
@@ -284,13 +283,13 @@ def _correct_arrivals(
 ) -> tuple[Array, Values, Array]:
     """Coefficients, figures and residuals, corrected by what the steps miss on arrival."""
     transcriptions = [row.problem.transcription for row in rows]
-    targets = np.array([one.task.target for one in transcriptions])
+    one, targets = transcriptions[0].task, [each.task.target for each in transcriptions]
+    vibrations = FreeVibration(one.plant, targets, one.residual_window)
     by_steps = np.array([row.solution.arrival[0] for row in rows])
     rounds = 0
     while True:
         values = finer_values(transcriptions, table)
-        missed = values.arrival - [one.wanted for one in transcriptions]
-        residual = residuals_at_rest(transcriptions[0].task, targets, missed)
+        residual = vibrations.peak(values.arrival - [each.wanted for each in transcriptions])
         again = np.flatnonzero(residual > _AT_REST * STILL)
         if not again.size or rounds == _ROUNDS:
             return table, values, residual

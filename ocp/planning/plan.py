@@ -13,6 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.files import write_whole
@@ -23,10 +24,11 @@ from quietarm.ocp.record import Provenance, Setting, SolveSettings, Verification
 from quietarm.ocp.robustness.sensitivity import Sensitivity, sensitivities
 from quietarm.ocp.robustness.worst import Worst, worst_of
 from quietarm.ocp.saved import MotionAnswer
-from quietarm.ocp.simulation.cvodes import Trajectory
+from quietarm.ocp.simulation.free_vibration import after_arrival
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion
-from quietarm.ocp.simulation.resimulation import resimulate, sample_trajectory
-from quietarm.ocp.simulation.rollout import rollout
+from quietarm.ocp.simulation.trajectory import Trajectory
+from quietarm.ocp.solvers.batch import batch
 from quietarm.ocp.task import PointToPoint
 
 _LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
@@ -87,6 +89,11 @@ class Plan(MotionAnswer):
             return None
         return self.worst.residual / settings.residual_limit - 1
 
+    @cached_property
+    def candidate(self) -> Candidate:
+        """The motion, judged by CVODES."""
+        return Candidate.of_profile(self.task, self.profile, self.coefficients)
+
     @property
     def path(self) -> JointPath:
         """The joint's motion as a callable of time and derivative order."""
@@ -111,8 +118,8 @@ class Plan(MotionAnswer):
         return self.sampled(np.union1d(np.linspace(0.0, arrival + window, _SAMPLES), [arrival]))
 
     def sampled(self, times: ArrayLike) -> Trajectory:
-        """The motion at given times by CVODES; see `quietarm.ocp.sample_trajectory`."""
-        return sample_trajectory(self.task, self.profile, self.coefficients, times)
+        """The motion at given times by CVODES; see `Candidate.sample`."""
+        return self.candidate.sample(times)
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
         """Write the move as a table to drive a joint with.
@@ -186,20 +193,31 @@ def evaluate_coefficients(
     if profile is None:
         profile = CycloidPolynomial.of_size(numbers_of(coefficients).size)
     checked = profile.checked(coefficients)
-    motion = resimulate(task, profile, checked)
-    fixed = rollout(task, profile, checked)
+    motion = Candidate.of_profile(task, profile, checked).motion
     return Plan(
         task=task,
         profile=profile,
         coefficients=checked,
         motion=motion,
         status=SolveStatus.NOT_OPTIMISED,
-        verification=Verification.between(
-            fixed.steps, fixed.motion.energy, fixed.motion.residual, motion
-        ),
+        verification=Verification.between(*_by_fixed_steps(task, profile, checked), motion),
         provenance=Provenance(method, None, settings, seconds=time.perf_counter() - began),
         worst=worst_of(task, profile, checked),
     )
+
+
+def _by_fixed_steps(
+    task: PointToPoint, profile: JointProfile, coefficients: tuple[float, ...]
+) -> tuple[int, float, float]:
+    """Default steps, F2 [J] and F1 [m] by them."""
+    steps, errors = default_steps(task), np.array(task.scenarios)
+    breaks = profile.breaks(task.duration)
+    fixed = batch(task.plant, profile, steps, (), task.error_names, task.energy, breaks)
+    motion, row = (np.tile(one, (len(errors), 1)) for one in (coefficients, task.row))
+    found = fixed.values(motion, row, errors)
+    each = zip(after_arrival(task), task.missed(found.arrival), strict=True)
+    residual = max(float(vibration.peak(state)) for vibration, state in each)
+    return steps, float(found.energy[0]), residual
 
 
 def ticks_of_move(duration: float, sample_rate: float) -> int:

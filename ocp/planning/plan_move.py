@@ -40,7 +40,7 @@ def only_motion(
     limits = {**residual, **task.limits}
     broken = [
         f"its {name} reaches {plan.motion.peak(name):.4g} {UNITS[name]}, above {limits[name]:g}"
-        for name in plan.motion.passed(limits, OVERRUN)
+        for name in plan.motion.exceeded(limits, OVERRUN)
     ]
     if broken:
         raise InfeasibleTaskError(

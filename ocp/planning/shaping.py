@@ -8,7 +8,7 @@ import numpy as np
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
-from quietarm.ocp.simulation.residual import vibrations
+from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import PointToPoint
 
 _SAMPLES = 200
@@ -46,7 +46,7 @@ def shaped_cycloid(
     if at not in ("target", "average"):
         raise ValueError(f"at is {at!r}; give 'target' or 'average'")
     angles = [task.target] if at == "target" else _along(task)
-    modes = [vibrations(task.plant, angle) for angle in angles]
+    modes = [FreeVibration(task.plant, angle).modes for angle in angles]
     if not modes[0] or len({len(each) for each in modes}) > 1:
         raise ValueError(
             f"plant {task.plant.name!r} has modes that do not vibrate: there is nothing that a "

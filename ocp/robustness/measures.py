@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import whole
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.robustness.population import ErrorPopulation, Figures
-from quietarm.ocp.simulation.objective import Motion
-from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import check_ranges
 
@@ -133,11 +132,11 @@ def quiet_residual(task: PointToPoint) -> float:
 
     Unlike what the cycloid leaves, this has no zeros: it falls steadily with the duration.
     """
-    return TOLERATED * _plain(task).peak_deflection
+    return TOLERATED * _plain(task).motion.peak_deflection
 
 
-def _plain(task: PointToPoint) -> Motion:
-    return resimulate(task.certain, CycloidPolynomial(0), [])
+def _plain(task: PointToPoint) -> Candidate:
+    return Candidate.of_profile(task.certain, CycloidPolynomial(0), [])
 
 
 @one_at_a_time
@@ -192,7 +191,7 @@ def evaluate_robustness(
     alone = [np.outer(shares, unit * largest) for unit in np.eye(len(largest))]
     random = np.random.default_rng(seed).uniform(-largest, largest, (samples, len(largest)))
     found = population(np.vstack([*alone, random]), report)
-    cycloid = resimulate(task, CycloidPolynomial(0), []).residual
+    cycloid = _plain(task).residual
     sweeps = tuple(
         _sweep(name, size * shares, found.part(i * len(shares), len(shares)), TOLERATED * cycloid)
         for i, (name, size) in enumerate(ranges.items())

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.residual import residual_rows
-from quietarm.ocp.simulation.resimulation import resimulated
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.free_vibration import after_arrival
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import batch
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import DAMPING, FREQUENCY
@@ -50,13 +49,14 @@ def sensitivities(
     By central differences of CVODES, which follows each motion with a parameter a little larger and
     a little smaller. The one that adds most vibration comes first.
     """
-    joint, rows = PiecewiseMotion.of_profile(task, profile, coefficients), residual_rows(task)
+    candidate = Candidate.of_profile(task.certain, profile, coefficients)
+    vibration = after_arrival(task)[0]
 
     def of(name: str) -> Sensitivity:
-        above, below = (resimulated(task, joint, ((name, s * _STEP),)) for s in (1, -1))
-        arrival = (above.arrival - below.arrival) / (2 * _STEP)
+        above, below = (candidate.perturbed({name: sign * _STEP}) for sign in (1, -1))
+        arrival = (above.arrival[0] - below.arrival[0]) / (2 * _STEP)
         energy = (above.energy - below.energy) / (2 * _STEP)
-        return Sensitivity(name, energy, float(np.abs(rows @ arrival).max()))
+        return Sensitivity(name, energy, float(vibration.peak(arrival)))
 
     known = [name for name, value in task.plant.measured.items() if value]
     names = dict.fromkeys([FREQUENCY, DAMPING, *known])
@@ -76,7 +76,8 @@ def sensitivities_of_moves(
     """
     steps, energy = max(map(default_steps, tasks)), tasks[0].energy
     wrong = batch(tasks[0].plant, profile, steps, errors=OF_MODES, energy=energy)
-    moves, rows = np.array([task.row for task in tasks]), [residual_rows(task) for task in tasks]
+    moves = np.array([task.row for task in tasks])
+    vibrations = [after_arrival(task)[0] for task in tasks]
 
     def slopes(errors: list[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         above, below = (
@@ -84,7 +85,7 @@ def sensitivities_of_moves(
             for step in (_STEP, -_STEP)
         )
         arrival = (above.arrival - below.arrival) / (2 * _STEP)
-        left = [np.abs(row @ one).max() for row, one in zip(rows, arrival, strict=True)]
+        left = [of.peak(one) for of, one in zip(vibrations, arrival, strict=True)]
         return (above.energy - below.energy) / (2 * _STEP), np.array(left)
 
     return {FREQUENCY: slopes([1.0, 0.0]), DAMPING: slopes([0.0, 1.0])}

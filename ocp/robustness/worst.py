@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import NotNegative
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness.population import ErrorPopulation
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.task import PointToPoint
 
 _ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
@@ -55,18 +54,11 @@ def peaks_between(
     tops = np.flatnonzero(_is_peak(residuals.reshape([along] * len(largest))))
     tops = tops[np.argsort(-residuals[tops])][:most]
     peaks = [_zoomed(population, largest, shares[i], 2 / (along - 1)).tolist() for i in tops]
-    found = [worst_at(task, profile, coefficients, errors) for errors in peaks]
+    candidate = Candidate.of_profile(task, profile, coefficients)
+    named = [dict(zip(task.error_names, errors, strict=True)) for errors in peaks]
+    found = [Worst(errors, candidate.perturbed(errors).residual) for errors in named]
     found.sort(key=lambda one: -one.residual)
     return found[0], np.array([[one.residual, *one.errors.values()] for one in found])
-
-
-def worst_at(
-    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, errors: Sequence[float]
-) -> Worst:
-    """What a motion leaves with errors in the order of the ranges; else as `peaks_between`."""
-    named = tuple(zip(task.error_names, map(float, errors), strict=True))
-    joint = PiecewiseMotion.of_profile(task, profile, coefficients)
-    return Worst(dict(named), resimulated(task, joint, named).residual)
 
 
 def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Worst | None:

@@ -10,7 +10,6 @@ Ordinary Differential Equations I, section II.7 (Gauss methods), used in Nystrom
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -37,31 +36,6 @@ def _gauss() -> tuple[list[float], list[float], list[list[float]], list[list[flo
 
 # Plain floats: a numpy number on the left of a casadi symbol would try to make an array of it.
 GAUSS_NODES, GAUSS_WEIGHTS, _ONCE, _TWICE = _gauss()
-
-
-def mesh(index: Expression, steps: int) -> tuple[Expression, Expression]:
-    """Where a step begins and how long it is, as fractions of the move.
-
-    Steps are finer at the ends of the move, by a blend of even and Chebyshev spacing: there the
-    powers of T in the profile change fastest. For random coefficients in the paper's boxes this
-    takes a tenth to a thirtieth of the error of even steps.
-    """
-
-    def boundary(k: Expression) -> Expression:
-        even = k / steps
-        return even / 2 + (1 - ca.cos(math.pi * even)) / 4
-
-    begin = boundary(index)
-    return begin, boundary(index + 1) - begin
-
-
-def end_to_end(fraction: Expression, steps: int) -> Expression:
-    """The nodes' times stretched, so that the first is the start of the move and the last its end.
-
-    The jerk is sampled there: unlike all else it may be largest at the very ends, where it jumps.
-    """
-    first = float(mesh(0, steps)[1]) * GAUSS_NODES[0]
-    return (fraction - first) / (1 - 2 * first)
 
 
 @dataclass(frozen=True)

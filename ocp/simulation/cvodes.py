@@ -1,26 +1,31 @@
-"""CVODES with its options, a plant's equations for it, and what happens after arrival.
+"""The independent integrator: CVODES along any joint motion.
 
-Nothing here knows how the joint moves: `resimulation` drives it along a profile or a free motion.
+A motion is smooth pieces one after another. CVODES starts anew at every piece, since the
+acceleration (or the jerk) jumps there, and gives the modes at the nodes of a fine quadrature, which
+finds the power's sign changes. It is built once for a plant and a kind of piece: what differs
+between moves is a parameter, and time is the fraction of the piece.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from quietarm.models import Expression, JointMotion, Plant
-from quietarm.models.joint_motion import Modes
-from quietarm.ocp.energy import power_of
+from numpy.typing import NDArray
+from quietarm.models import Plant
+from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.interrupts import keep_interrupts, silent_errors
-from quietarm.ocp.simulation.residual import fastest_mode
-from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time, silent_errors
+from quietarm.ocp.simulation.buffered import BufferedFunction
+from quietarm.ocp.simulation.collocation import NODES
+from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.objective import integrated, spent
+from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
+from quietarm.ocp.simulation.trajectory import outputs_of, rates_of
 from quietarm.ocp.uncertainty import perturb_plant
 
 CVODES = {
@@ -28,97 +33,71 @@ CVODES = {
     "reltol": 1e-11,
     "abstol": 1e-13,
 }
-"""Options of every run, but for its steps: see `options_for`."""
-Errors = tuple[tuple[str, float], ...]
-"""Relative errors of a plant by name, as `perturb_plant` takes them."""
+"""Options of every run, but for its steps: see `_options`."""
 _MOST_STEPS, _LEAST_A_SAMPLE = 3_000_000, 1_000
 """Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of 1000,
 five hundred times those of any plan, take 700 from one of 3500 samples to the next."""
-_RADIANS_A_SAMPLE = 0.003
-"""Phase of the fastest mode between samples of the residual: misses 1.2e-6 of a peak at most."""
+
+Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Trajectory:
-    """A motion sampled in time; rows are samples, arrays are read-only.
+class Run(NamedTuple):
+    """What CVODES gives.
 
     Attributes
     ----------
-    time : ndarray, shape (samples,)
-        Times [s]; arrival is at the task's duration.
-    joint : ndarray, shape (samples, 3)
-        Angle, speed and acceleration of the joint [rad, rad/s, rad/s^2].
-    modes : ndarray, shape (samples, modes)
-        Modal amplitudes W [m].
-    tips : ndarray, shape (samples, tips)
-        Tip displacements [m].
-    torque : ndarray, shape (samples,)
-        Joint torque [N m]; after arrival, what holds the joint against the vibration.
-    power : ndarray, shape (samples,)
-        torque * speed [W].
-    jerk : ndarray, shape (samples,)
-        Rate of change of the joint's acceleration [rad/s^3]; between jumps of the acceleration.
+    outputs : ndarray, shape (rows of `outputs_of`, pieces * samples)
+        Of every piece: at its ends, and at the nodes of the quadrature.
+    arrival : ndarray, shape (2 * modes,)
+        W (m) and then W' (m/s) on arrival.
+    energy, net_work : float
+        F2 and the integral of torque * speed [J].
     """
 
-    time: NDArray[np.float64]
-    joint: NDArray[np.float64]
-    modes: NDArray[np.float64]
-    tips: NDArray[np.float64]
-    torque: NDArray[np.float64]
-    power: NDArray[np.float64]
-    jerk: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for array in vars(self).values():
-            array.setflags(write=False)
-
-    @classmethod
-    def from_outputs(
-        cls, plant: Plant, time: NDArray[np.float64], outputs: NDArray[np.float64]
-    ) -> Trajectory:
-        """Name the rows of `outputs_of`, whose columns are samples at these times [s]."""
-        rows, m = outputs.T.copy(), 4 + plant.modes
-        return cls(
-            time=time.copy(),
-            joint=rows[:, :3],
-            modes=rows[:, 4:m],
-            tips=rows[:, m:-1],
-            torque=rows[:, -1],
-            power=power_of(rows[:, -1], rows[:, 1]),
-            jerk=rows[:, 3],
-        )
-
-    @property
-    def motion(self) -> JointMotion:
-        """Angle, speed, acceleration and jerk of the joint, each of shape (samples,)."""
-        angle, speed, acceleration = self.joint.T
-        return JointMotion(angle, speed, acceleration, self.jerk)
+    outputs: Array
+    arrival: Array
+    energy: float
+    net_work: float
 
 
-def outputs_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression:
-    """Rows angle, speed, acceleration, jerk, W, tips, torque of a trajectory; a column a sample.
+@one_at_a_time
+@keep_interrupts()  # casadi loses a Ctrl-C
+def integrate(
+    plant: Plant,
+    errors: Mapping[str, float],
+    path: PiecewiseMotion,
+    initial: Sequence[float],
+    steps: int,
+    energy: Energy,
+) -> Run:
+    """Follow a motion on a plant with errors, with so many steps of the quadrature on every piece.
 
-    The states, (2 * modes, samples), are W [m] and then W' [m/s].
+    Initial is W (m) and then W' (m/s) at the start. SolverFailedError where CVODES cannot follow.
     """
-    W, dW, ddW = _modes(plant, joint, states)
-    rows = (*joint, *W, *plant.tip_displacements(W), plant.torque(joint, W, dW, ddW))
-    return ca.vertcat(*(ca.DM.zeros(1, states.shape[1]) + row for row in rows))
+    with _refusing(path.remedy):
+        figures = _figures(plant, path.law, path.given.shape, steps, tuple(errors), energy)
+        given = path.given.T, [list(errors.values())], [initial]
+        outputs, arrival, spent, net_work = (value.T.copy() for value in figures(*given))
+    return Run(outputs, arrival[:, 0], spent.item(), net_work.item())
 
 
-def rates_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression:
-    """Time derivative of the states of `outputs_of`."""
-    _, dW, ddW = _modes(plant, joint, states)
-    return ca.vertcat(*dW, *ddW)
-
-
-def _modes(plant: Plant, joint: JointMotion, states: Expression) -> tuple[Modes, Modes, Modes]:
-    rows = ca.vertsplit(states)
-    W, dW = rows[: plant.modes], rows[plant.modes :]
-    return W, dW, plant.modal_accelerations(joint, W, dW)
+@one_at_a_time
+@keep_interrupts()
+def integrate_to(
+    plant: Plant,
+    errors: Mapping[str, float],
+    path: PiecewiseMotion,
+    initial: Sequence[float],
+    fractions: Array,
+) -> Array:
+    """`outputs_of` at these fractions of a motion in one piece, 0 the first of them."""
+    with _refusing(path.remedy):
+        along = _along(plant, path.law, path.given.shape, fractions, tuple(errors))
+        return along(path.given, ca.DM([*errors.values()]), initial)[1].full()
 
 
 @contextmanager
-def cvodes_for(motion: str) -> Iterator[None]:
+def _refusing(motion: str) -> Iterator[None]:
     """Let CVODES be called in this block; name the motion that it cannot follow."""
     try:
         with silent_errors():  # the error below is enough
@@ -127,96 +106,73 @@ def cvodes_for(motion: str) -> Iterator[None]:
         raise SolverFailedError(f"CVODES could not follow this motion{motion}") from error
 
 
-def options_for(times: ArrayLike) -> dict[str, str | float | int]:
+@lru_cache(maxsize=32)
+def _figures(
+    plant: Plant,
+    law: Law,
+    shape: tuple[int, int],
+    steps: int,
+    names: tuple[str, ...],
+    definition: Energy,
+) -> BufferedFunction:
+    """(given, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
+    given, grid = ca.MX.sym("p", *shape), Grid(steps)
+    errors, initial = ca.MX.sym("e", len(names)), ca.MX.sym("x", 2 * plant.modes)
+    states, outputs = _along(plant, law, shape, grid.samples, names)(given, errors, initial)
+    rows = ca.vertsplit(outputs)
+    torque, speed = (
+        [samples[1 + node : -1 : NODES, :].T for node in range(NODES)]
+        for samples in (ca.reshape(row, -1, shape[1]) for row in (rows[-1], rows[1]))
+    )
+    h = given[-1, :].T @ grid.columns()[1]
+    power = [power_of(*node) for node in zip(torque, speed, strict=True)]
+    energy, net_work = spent(definition, torque, speed, h), integrated(power, h)
+    figures = [outputs, states[:, -1], ca.sum1(energy), ca.sum1(net_work)]
+    dense = [ca.densify(figure) for figure in figures]  # a plant's output may be zero throughout
+    return BufferedFunction(ca.Function("figures", [given, errors, initial], dense))
+
+
+def _along(
+    plant: Plant, law: Law, shape: tuple[int, int], fractions: Array, names: tuple[str, ...]
+) -> ca.Function:
+    """(given, errors, state before) -> states and outputs at these fractions of every piece."""
+    (numbers, pieces), count = shape, len(fractions)
+    given, errors = ca.MX.sym("p", numbers, pieces), ca.MX.sym("e", len(names))
+    initial = ca.MX.sym("x", 2 * plant.modes)
+    piece = _over_a_piece(plant, law, numbers, fractions, names)
+    _, states = piece.mapaccum(pieces)(initial, ca.vertcat(given, ca.repmat(errors, 1, pieces)))
+    at_samples = [
+        row if pieces == 1 else ca.vec(ca.repmat(row, count, 1)).T for row in ca.vertsplit(given)
+    ]
+    joint = law(at_samples, ca.DM(np.tile(fractions, pieces)).T, jerk=True)
+    outputs = outputs_of(_perturbed(plant, names, errors), joint, states)
+    return ca.Function("along", [given, errors, initial], [states, outputs])
+
+
+def _over_a_piece(
+    plant: Plant, law: Law, numbers: int, fractions: Array, names: tuple[str, ...]
+) -> ca.Function:
+    """CVODES: (state before, given and errors) -> state after a piece, states along it."""
+    count, state, fraction = numbers + len(names), ca.SX.sym("x", 2 * plant.modes), ca.SX.sym("t")
+    both = ca.SX.sym("p", count)
+    given, perturbed = ca.vertsplit(both[:numbers]), _perturbed(plant, names, both[numbers:])
+    rates = given[-1] * rates_of(perturbed, law(given, fraction, jerk=False), state)
+    problem, times = {"t": fraction, "x": state, "p": both, "ode": rates}, fractions[1:]
+    run = ca.integrator("piece", "cvodes", problem, 0.0, times.tolist(), _options(times))
+    before, both = ca.MX.sym("x", state.numel()), ca.MX.sym("p", count)
+    states = ca.horzcat(before, run(x0=before, p=both)["xf"])
+    return ca.Function("over", [before, both], [states[:, -1], states])
+
+
+def _perturbed(plant: Plant, names: tuple[str, ...], errors: ca.SX | ca.MX) -> Plant:
+    return perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
+
+
+def _options(times: Array) -> dict[str, str | float | int]:
     """Options of a run that ends within some seconds, also where it cannot follow the motion.
 
     CVODES counts its steps from one sample to the next.
     """
-    gaps = np.diff(np.asarray(times, dtype=float), prepend=0.0)
+    gaps = np.diff(times, prepend=0.0)
     share = float(gaps.max() / gaps.sum())
     return {**CVODES, "max_num_steps": max(_LEAST_A_SAMPLE, round(_MOST_STEPS * share))}
-
-
-def after_arrival(
-    plant: Plant, target: float, times: NDArray[np.float64], names: Sequence[str] = ()
-) -> ca.Function:
-    """CVODES from `x0`, W [m] and then W' [m/s] at arrival, with errors `p` of these names.
-
-    Its `xf` has a column for each of the times since arrival [s], which increase from beyond 0.
-    """
-    state, errors = ca.SX.sym("x", 2 * plant.modes), ca.SX.sym("e", len(names))
-    wrong = perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
-    rates = rates_of(wrong, JointMotion(target, 0.0, 0.0), state)
-    problem, options = {"x": state, "p": errors, "ode": rates}, options_for(times)
-    return ca.integrator("rest", "cvodes", problem, 0.0, times.tolist(), options)
-
-
-@dataclass(frozen=True, eq=False)
-class _Rest:
-    """Constant matrices from the state at arrival to the states in the residual window.
-
-    The time of a sample is the sum of a long and a short time, so that s samples take about 2
-    sqrt(s) matrices: with many modes, one for every sample would fill the memory.
-    """
-
-    short: NDArray[np.float64]  # (short times, 2 * modes, 2 * modes)
-    long: NDArray[np.float64]  # (long times, 2 * modes, 2 * modes)
-    tips: NDArray[np.float64]  # (tips * short times, 2 * modes)
-
-
-def _rest(task: PointToPoint, errors: Errors = ()) -> _Rest:
-    faster = 1 + max((abs(error) for _, error in errors), default=0.0)
-    faster = math.ceil(10 * faster) / 10  # so that like errors share what is compiled
-    radians = task.residual_window * fastest_mode(task) * faster
-    samples = max(1, math.ceil(radians / _RADIANS_A_SAMPLE))
-    with cvodes_for("'s residual vibration"):
-        return _from_unit_states(task.plant, task.target, task.residual_window, samples, errors)
-
-
-@lru_cache(maxsize=256)
-@keep_interrupts()  # casadi loses a Ctrl-C, and what it left unfinished would be kept here
-def _from_unit_states(
-    plant: Plant, target: float, window: float, samples: int, errors: Errors
-) -> _Rest:
-    size, short = 2 * plant.modes, math.ceil(math.sqrt(samples))
-    long = math.ceil(samples / short)
-    run = _after_arrival(plant, target, window, (short, long), tuple(name for name, _ in errors))
-    values = ca.DM([error for _, error in errors])
-    later = run(x0=ca.DM.eye(size), p=values)["xf"].full().reshape(size, size, -1)
-    matrices = np.concatenate([np.eye(size)[None], later.transpose(2, 0, 1)])
-    into = matrices[: short + 1]
-    W = [ca.DM(into[:, mode].reshape(1, -1)) for mode in range(plant.modes)]
-    wrong = perturb_plant(plant, dict(errors))
-    tips = ca.horzcat(*wrong.tip_displacements(W)).full().reshape(-1, size)
-    return _Rest(into, matrices[[0, *range(short, short + long - 1)]], tips)
-
-
-@lru_cache(maxsize=32)
-def _after_arrival(
-    plant: Plant, target: float, window: float, counts: tuple[int, int], names: tuple[str, ...]
-) -> ca.Function:
-    short, long = counts
-    at = np.append(np.arange(1, short + 1), short * np.arange(2, long + 1))
-    return after_arrival(plant, target, window * at / (short * long), names)
-
-
-def residual_of(task: PointToPoint, arrival: NDArray[np.float64], errors: Errors = ()) -> float:
-    """Largest tip displacement [m] of what is missed on arrival, on a plant with errors."""
-    rest = _rest(task, errors)
-    return float(np.abs(rest.tips @ (rest.long @ task.missed(arrival)).T).max())
-
-
-@keep_interrupts()
-def rest_of(task: PointToPoint, arrival: ArrayLike) -> Trajectory:
-    """What happens in the residual window, from W (m) and then W' (m/s) at arrival, by CVODES."""
-    rest = _rest(task)
-    states = (rest.short @ (rest.long @ np.asarray(arrival)).T).transpose(1, 2, 0)
-    # The last short time is the first of the next long one, except in the end.
-    joined = np.hstack([states[:, :, :-1].reshape(len(states), -1), states[:, -1:, -1]])
-    times = task.duration + np.linspace(0.0, task.residual_window, joined.shape[1])
-    return Trajectory.from_outputs(task.plant, times, outputs_at_rest(task, ca.DM(joined)))
-
-
-def outputs_at_rest(task: PointToPoint, states: ca.DM) -> NDArray[np.float64]:
-    """`outputs_of` the joint at rest at the target."""
-    return outputs_of(task.plant, JointMotion(task.target, 0.0, 0.0, 0.0), states).full()

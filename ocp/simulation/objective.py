@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
-from quietarm.models import Expression, JointMotion
+from quietarm.models import Expression
 from quietarm.ocp.energy import Energy, power_of
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
-from quietarm.ocp.task import QUANTITIES, PointToPoint
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
+from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.task import QUANTITIES
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)
 ).tolist()
 _TINY = 1e-300
+_MOST_KEPT = 4000
+"""Steps up to which `beyond_quadratic` is kept, in 160 bytes a step: at most 20 MB in all."""
 
 
 def spent(
@@ -97,14 +99,19 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
 
     The quartic through five nodes in a row, the step's own three in the middle, is the quadratic
     through these plus (x - node 1)(x - node 2)(x - node 3) (cubic + quartic (x - 1/2)).
+    Both are kept for the next rollout of as many steps, but those of a long recording are not.
     """
+    return (_kept_beyond if steps <= _MOST_KEPT else _beyond)(steps)
+
+
+def _beyond(steps: int) -> tuple[ca.DM, ca.DM]:
     if steps == 1:
         return ca.DM(NODES, 1), ca.DM(NODES, 1)  # no neighbour
-    begin, length = (entry.full() for entry in mesh(ca.DM(np.arange(steps)), steps))
-    nodes = (begin + length * np.array(GAUSS_NODES)).ravel()
+    grid = Grid(steps)
+    nodes = grid.nodes.T.ravel()
     step = np.arange(steps)[:, None]
     five = np.clip(NODES * step - 1, 0, len(nodes) - 5) + np.arange(5)
-    x = (nodes[five] - begin) / length
+    x = (nodes[five] - grid.boundaries[:-1, None]) / grid.lengths[:, None]
     to_quartic = np.linalg.inv(x[:, :, None] ** np.arange(5))
     # lists: casadi takes twenty times as long over arrays here
     at = (five % NODES * steps + five // NODES).ravel().tolist(), np.repeat(step, 5).tolist()
@@ -115,6 +122,9 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
     )
 
 
+_kept_beyond = lru_cache(maxsize=32)(_beyond)
+
+
 class WithPeaks:
     """Something with a residual and peaks, which limits are held against."""
 
@@ -122,10 +132,10 @@ class WithPeaks:
         """The residual, or the peak of a quantity, by name: infinite where it is not known."""
         raise NotImplementedError
 
-    def passed(self, limits: Mapping[str, float], room: float = 0.0) -> dict[str, float]:
-        """What passes its limit by more than a share `room`: its peak over the limit, by name."""
+    def exceeded(self, limits: Mapping[str, float], tolerance: float = 0.0) -> dict[str, float]:
+        """What exceeds its limit by more than a share: its peak over the limit, by name."""
         of_limit = {name: self.peak(name) / limit for name, limit in limits.items() if limit > 0}
-        return {name: ratio for name, ratio in of_limit.items() if ratio > 1 + room}
+        return {name: ratio for name, ratio in of_limit.items() if ratio > 1 + tolerance}
 
 
 @dataclass(frozen=True)
@@ -165,41 +175,3 @@ class Motion(WithPeaks):
         """As of `WithPeaks`."""
         value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
         return math.inf if value is None else float(value)
-
-    @classmethod
-    def worst(cls, scenarios: Sequence[Motion]) -> Motion:
-        """The first, with the largest residual and deflection of all."""
-        largest = {
-            name: max(getattr(motion, name) for motion in scenarios)
-            for name in ("residual", "peak_deflection")
-        }
-        return replace(scenarios[0], **largest)
-
-    @classmethod
-    def from_samples(
-        cls,
-        task: PointToPoint,
-        joint: JointMotion,
-        tips: NDArray[np.float64],
-        torque: NDArray[np.float64],
-        *,
-        residual: float,
-        energy: float,
-        net_work: float,
-    ) -> Motion:
-        """Take the peaks from samples during the move.
-
-        Every entry of the joint, and the torque [N m], has shape (samples,), the tips [m] (samples,
-        tips). The joint's jerk is None where the acceleration jumps. The rest is as in the
-        attributes.
-        """
-        past_target = (joint.angle - task.target) * np.sign(task.span)
-        of = {q.peak: q.of(joint, list(tips.T), torque) for q in QUANTITIES.values()}
-        known = {name: rows for name, rows in of.items() if all(row is not None for row in rows)}
-        return cls(
-            residual=residual,
-            energy=energy,
-            net_work=net_work,
-            overshoot=max(0.0, float(past_target.max())),
-            **{name: float(np.abs(rows).max()) for name, rows in known.items()},
-        )

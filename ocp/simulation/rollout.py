@@ -2,39 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from itertools import pairwise
 
 import casadi as ca
-import numpy as np
-from numpy.typing import ArrayLike
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.ocp.checks import whole
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, power_of
-from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.collocation import (
-    GAUSS_NODES,
-    NodeState,
-    end_to_end,
-    is_zero,
-    mesh,
-    step,
-)
-from quietarm.ocp.simulation.objective import Motion, integrated, spent
-from quietarm.ocp.simulation.residual import fastest_of, residual_rows, residual_samples
-from quietarm.ocp.task import PointToPoint
-from quietarm.ocp.uncertainty import perturb_plant
-
-MOST_STEPS = 20_000
-"""Of any simulation by fixed steps: finer ones differ by rounding alone."""
-_LEAST_STEPS = 6
-"""Least steps between two breaks: no step crosses one."""
-ROLLOUT_STEPS = 140
-"""Steps that keep the energy of random coefficients in the paper's boxes within 1e-5 relative."""
+from quietarm.ocp.simulation.collocation import NodeState, is_zero, step
+from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.objective import spent
 
 
 @dataclass(frozen=True)
@@ -54,7 +32,7 @@ class SymbolicRollout:
     h : Expression
         Length of every step [s].
     unbroken : bool
-        Whether the steps are those of `mesh` from start to end, without breaks between them.
+        Whether the steps are those of a `Grid` from start to end, without breaks between them.
     definition : Energy
         What counts as the energy.
     """
@@ -110,7 +88,7 @@ def symbolic_rollout(
     candidates : int
         Number of rows.
     jerk : bool
-        Whether the joint's jerk is computed as well, at the times of `end_to_end`.
+        Whether the joint's jerk is computed as well, at the times of `Grid.stretch`.
     breaks : tuple of float
         Fractions of the duration at which the motion is not smooth: there a step ends.
     initial : sequence of Expression
@@ -124,10 +102,11 @@ def symbolic_rollout(
     SymbolicRollout
         Every joint, mode and torque at the Gauss nodes, and the state at arrival.
     """
-    times, length = node_times(steps, candidates, breaks)
+    grid = Grid(steps, breaks)
+    times, length = grid.columns(candidates)
     joints = [profile.motion(coefficients, at, *move) for at in times]
     if jerk:
-        ends = times if breaks else [end_to_end(at, steps) for at in times]
+        ends = map(grid.stretch, times)
         of_jerk = [profile.motion(coefficients, at, *move, jerk=True) for at in ends]
         joints = [
             joint._replace(jerk=there.jerk) for joint, there in zip(joints, of_jerk, strict=True)
@@ -142,24 +121,6 @@ def symbolic_rollout(
         for joint, node in zip(joints, states, strict=True)
     ]
     return SymbolicRollout(joints, states, torque, arrival, h, not breaks, energy)
-
-
-def node_times(
-    steps: int, candidates: int = 1, breaks: tuple[float, ...] = ()
-) -> tuple[list[ca.DM], ca.DM]:
-    """Times of each Gauss node and lengths of the steps, as fractions of the duration.
-
-    Between breaks there are as many steps as are due to that share of the move, or some more.
-    """
-    times: list[list[ca.DM]] = []
-    lengths: list[ca.DM] = []
-    for start, end in pairwise((0.0, *breaks, 1.0)):
-        share = end - start
-        own = max(_LEAST_STEPS, math.ceil(share * steps)) if breaks else steps
-        begin, length = mesh(ca.repmat(ca.DM(np.arange(own)).T, candidates, 1), own)
-        times.append([start + share * (begin + node * length) for node in GAUSS_NODES])
-        lengths.append(share * length)
-    return [ca.horzcat(*of_node) for of_node in zip(*times, strict=True)], ca.horzcat(*lengths)
 
 
 def march(
@@ -197,127 +158,3 @@ def _by_step(entry: Expression, steps: int) -> list[Expression]:
     """A column for each step; what does not depend on the step is a single one."""
     columns = ca.horzsplit(ca.DM.zeros(1, 1) + entry, 1)
     return columns if len(columns) == steps else columns * steps
-
-
-def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
-    """Steps that resolve the profile (`least`) and the plant's fastest mode (2 a radian)."""
-    plants = task.perturbed_plants
-    fastest = max(fastest_of(plant, task.start, task.target) for plant in plants)
-    radians = fastest * task.duration
-    if 2 * radians > MOST_STEPS:
-        raise ValueError(
-            f"duration {task.duration:g} s is {radians:.3g} radians of the plant's fastest mode; "
-            f"quietarm resolves up to {MOST_STEPS // 2}: give a shorter duration"
-        )
-    return max(least, math.ceil(2 * radians))
-
-
-@lru_cache(maxsize=32)
-def _compiled(
-    plant: Plant,
-    profile: JointProfile,
-    steps: int,
-    breaks: tuple[float, ...],
-    energy: Energy,
-    names: tuple[str, ...],
-) -> ca.Function:
-    """(coefficients, row, errors) -> samples at the nodes in time, arrival, energy, net work."""
-    errors = ca.MX.sym("e", len(names))
-    plant = perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
-    a, row = ca.MX.sym("a", profile.size), ca.MX.sym("row", 3 + 2 * plant.modes)
-    *move, initial = ca.vertsplit(row, [0, 1, 2, 3, row.numel()])
-    found = symbolic_rollout(
-        plant, profile, ca.vertsplit(a), move, steps, jerk=True, breaks=breaks,
-        initial=ca.vertsplit(initial), energy=energy,
-    )  # fmt: skip
-
-    def in_time(*rows: Sequence[Expression]) -> Expression:
-        """A column for each quantity, from its values at the nodes of every step."""
-        return ca.horzcat(*(ca.vec(ca.vertcat(*at_nodes)) for at_nodes in rows))
-
-    tips = [plant.tip_displacements(node.W) for node in found.states]
-    outputs = [
-        in_time(*zip(*found.joints, strict=True)),
-        in_time(*zip(*tips, strict=True)),
-        in_time(found.torque),
-        found.arrival,
-        found.energy,
-        integrated(found.power, found.h),
-    ]
-    return ca.Function("rollout", [a, row, errors], outputs)
-
-
-@dataclass(frozen=True)
-class Rollout:
-    """What one simulation with fixed steps gives.
-
-    Attributes
-    ----------
-    motion : Motion
-        Residual, energy and diagnostics; the peaks are over the nodes.
-    arrival : tuple of float
-        W (m) and then W' (m/s) at arrival.
-    steps : int
-        Number of steps.
-    """
-
-    motion: Motion
-    arrival: tuple[float, ...]
-    steps: int
-
-
-@one_at_a_time
-@keep_interrupts()  # casadi loses a Ctrl-C
-def rollout(
-    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, steps: int | None = None
-) -> Rollout:
-    """Simulate a task along one profile with fixed steps.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    coefficients : array_like, shape (profile.size,)
-        The profile's coefficients.
-    steps : int, optional
-        Number of steps; `default_steps` of the task by default.
-
-    Returns
-    -------
-    Rollout
-        Residual, energy, diagnostics and the state at arrival.
-
-    Raises
-    ------
-    ValueError
-        When the coefficients or the duration do not fit the profile.
-    """
-    steps = default_steps(task) if steps is None else whole("steps", steps, 1)
-    breaks = profile.breaks(task.duration)
-    names = task.error_names
-    function = _compiled(task.plant, profile, steps, breaks, task.energy, names)
-    given = ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.row)
-    each = [_of_scenario(task, function.call([*given, ca.DM(errors)]), k)
-            for k, errors in enumerate(task.scenarios)]  # fmt: skip
-    motion = Motion.worst([motion for motion, _ in each])
-    return Rollout(motion, each[0][1], steps)
-
-
-def _of_scenario(
-    task: PointToPoint, values: Sequence[ca.DM], scenario: int
-) -> tuple[Motion, tuple[float, ...]]:
-    """Figures and the state at arrival, of one scenario."""
-    joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)
-    rows = residual_rows(task, task.perturbed_plants[scenario], residual_samples(task))
-    motion = Motion.from_samples(
-        task,
-        JointMotion(*joint.T),
-        tips,
-        torque.ravel(),
-        residual=float(np.abs(rows @ task.missed(arrival.ravel())).max()),
-        energy=energy.item(),
-        net_work=net_work.item(),
-    )
-    return motion, tuple(arrival.ravel().tolist())

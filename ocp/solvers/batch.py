@@ -21,7 +21,7 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
-from quietarm.ocp.simulation.rollout import node_times
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.solvers.derivatives import Kind, compile_derivatives, compile_values
 from quietarm.ocp.solvers.node import Path
 from quietarm.ocp.task import QUANTITIES
@@ -160,7 +160,7 @@ class Batch:
         path = Path(self.kind.profile, steps, False, (1, steps))
         if not path.linear:
             return None
-        times, length = node_times(steps)
+        times, length = Grid(steps).columns()
         speeds = np.zeros((size, NODES, steps))
         for j, at in enumerate(times):
             for (value, n), entry in path.jacobian([], at, []).items():

@@ -15,7 +15,8 @@ from quietarm.models import Plant
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import NODES, Step, step
-from quietarm.ocp.simulation.rollout import march, node_times, symbolic_rollout
+from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.rollout import march, symbolic_rollout
 from quietarm.ocp.solvers.elementwise import product, repeat, repeat_table, transpose
 from quietarm.ocp.solvers.energy import energy_with_derivatives
 from quietarm.ocp.solvers.node import Node, Path
@@ -57,7 +58,7 @@ def compile_values(kind: Kind, rows: int) -> ca.Function:
     plant, profile, steps, quantities, names, energy, breaks = kind
     counts = profile.size, 3 + 2 * plant.modes, len(names)
     inputs = [ca.MX.sym("x", rows, count) for count in counts]
-    columns = node_times(steps, breaks=breaks)[1].shape[1]
+    columns = len(Grid(steps, breaks).lengths)
     a, row, errors = (_widen(one, columns) for one in inputs)
     perturbed = perturb_plant(plant, dict(zip(names, errors, strict=True)))
     rollout = symbolic_rollout(
@@ -104,7 +105,7 @@ class _Differentiated:
             _widen(one, steps) for one in self.inputs[:5]
         )
         self.move, self.initial = row[:3], ca.horzsplit(self.inputs[1], 1)[3:]
-        self.times, self.length = node_times(steps, rows)
+        self.times, self.length = Grid(steps).columns(rows)
         self.h = self.move[2] * self.length
         self.simulate(perturb_plant(plant, dict(zip(names, errors, strict=True))), errors)
         self.differentiate()

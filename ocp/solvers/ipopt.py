@@ -27,8 +27,8 @@ from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.objective import integrated
-from quietarm.ocp.simulation.residual import residual_rows
 from quietarm.ocp.simulation.rollout import SymbolicRollout, symbolic_rollout
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.problem import Problem
@@ -185,7 +185,7 @@ class _Numbers:
     def __init__(self, problem: Problem, print_level: int) -> None:
         (transcription, self.asked), task = problem, problem.transcription.task
         self.task, self.profile, modes = task, transcription.profile, 2 * task.plant.modes
-        self.tips = [residual_rows(task, plant) for plant in task.perturbed_plants]
+        self.tips = [vibration.rows for vibration in after_arrival(task)]
         tips = self.tips if self.asked.bounds_residual else [np.zeros((0, modes))] * len(self.tips)
         self.program = compile_program(
             _Form(

@@ -11,7 +11,8 @@ import casadi as ca
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.collocation import end_to_end, is_zero
+from quietarm.ocp.simulation.collocation import is_zero
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.solvers.elementwise import (
     Shape,
     Table,
@@ -29,8 +30,8 @@ _CSE = {"cse": True}
 class Path:
     """The values y(a, t) through which a profile's coefficients a enter the joint's motion.
 
-    Where the jerk is asked for, y stands once more at the times of `end_to_end`, with its rates by
-    the fraction of the duration.
+    Where the jerk is asked for, y stands once more at the times of `Grid.stretch`, with its rates
+    by the fraction of the duration.
 
     Attributes
     ----------
@@ -47,7 +48,7 @@ class Path:
         self._own = len(y)
         if jerk:
             rates = [derivative(value, at) for value in y]
-            y += ca.substitute([*y, *rates], [at], [end_to_end(at, steps)])
+            y += ca.substitute([*y, *rates], [at], [Grid(steps).stretch(at)])
         self.count = len(y)
         y_a, inputs = jacobian(y, a), [*a, at, *move]
         self._value = ca.Function("y", inputs, y)

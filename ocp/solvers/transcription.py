@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.residual import residual_rows
+from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.solvers.batch import Derivatives, batch
 from quietarm.ocp.task import PointToPoint
 
@@ -51,7 +51,7 @@ class Transcription:
     @cached_property
     def tip_rows(self) -> list[Array]:
         """For each scenario, rows that give tip displacements from the state on arrival."""
-        return [residual_rows(self.task, plant) for plant in self.task.perturbed_plants]
+        return [vibration.rows for vibration in after_arrival(self.task)]
 
     @cached_property
     def plain(self) -> Derivatives:

@@ -9,9 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Body
-from quietarm.ocp import Floor, Plan, Trajectory
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp import Candidate, Floor, Plan, Trajectory
 from quietarm.studies.figures import Line
 
 Array = NDArray[np.float64]
@@ -97,7 +95,7 @@ def _until(motion: Plan | Floor, end: float) -> Trajectory:
     if isinstance(motion, Plan):
         return motion.sampled(np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration]))
     task = replace(task, residual_window=end - task.duration)
-    return resimulated(task, PiecewiseMotion.of_free_motion(task, motion.free)).trajectory
+    return Candidate.of_free_motion(task, motion.free).trajectory
 
 
 def _corners(bodies: Sequence[Body]) -> Array:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from quietarm.ocp import PointToPoint
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp import Candidate, PointToPoint
 from quietarm.studies.display.words import millimetres
 from quietarm.studies.document.blocks import Document, Facts
 from quietarm.studies.reading.path import RecordedPath
@@ -15,8 +13,8 @@ from quietarm.studies.reports.plan import figure_rows, move_rows
 def evaluated_path(task: PointToPoint, path: RecordedPath) -> Document:
     """Figures by CVODES; of an uncertain plant also at the corners of its errors."""
     free = path.motion
-    joint = PiecewiseMotion.of_free_motion(task, free)
-    motion = resimulated(task, joint).motion
+    candidate = Candidate.of_free_motion(task.certain, free)
+    motion = candidate.motion
     ends = (f"{1e3 * gap:.3g}" for gap in (free.lengths.min(), free.lengths.max()))
     gaps = " to ".join(dict.fromkeys(ends))
     jump = np.abs(np.diff(free.acceleration)).max(initial=0.0)
@@ -27,11 +25,10 @@ def evaluated_path(task: PointToPoint, path: RecordedPath) -> Document:
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(task, motion),
     ]
-    names = task.error_names
-    for sample in task.scenarios[1:]:
-        errors = tuple(zip(names, sample, strict=True))
-        words = ", ".join(f"{name} {100 * error:+.3g} %" for name, error in errors)
-        left = resimulated(task, joint, errors).residual
+    for scenario in task.scenarios[1:]:
+        errors = dict(zip(task.error_names, scenario, strict=True))
+        words = ", ".join(f"{name} {100 * error:+.3g} %" for name, error in errors.items())
+        left = candidate.perturbed(errors).residual
         rows.append(("residual", f"{millimetres(left)} with {words}"))
     rows.append(("verified", "by CVODES alone, along the spline"))
     return Document("", [Facts(rows)])

@@ -15,11 +15,8 @@ from quietarm.ocp import (
     Motion,
     Plan,
     evaluate_coefficients,
-    perturb_plant,
     shaped_cycloid,
 )
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.uncertainty import FREQUENCY
 from quietarm.studies.display.words import millimetres
 from quietarm.studies.paper import ROWS, Case, paper_plan
@@ -92,17 +89,9 @@ def systems_of(case: Case, answers: Mapping[Hashable, Any], seeds: int) -> tuple
 
 
 def _of(name: str, answer: Plan | Floor) -> System:
-    task = answer.task
-    if isinstance(answer, Plan):
-        size = answer.profile.size
-        joint = PiecewiseMotion.of_profile(task, answer.profile, answer.coefficients)
-    else:
-        size, joint = None, PiecewiseMotion.of_free_motion(task, answer.free)
-    plants = (
-        perturb_plant(task.plant, {FREQUENCY: error})
-        for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
-    )
-    wrong = max(resimulated(replace(task, plant=plant), joint).residual for plant in plants)
+    size = answer.profile.size if isinstance(answer, Plan) else None
+    errors = ({FREQUENCY: error} for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR))
+    wrong = max(answer.candidate.perturbed(one).residual for one in errors)
     back = answer.turns_back if isinstance(answer, Plan) else None
     return System(name, size, answer.motion, wrong, back, answer.provenance.seconds)
 

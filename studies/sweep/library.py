@@ -155,7 +155,7 @@ class MoveLibrary:
                 raise
         else:
             found = evaluate_coefficients(task, coefficients, profile=self.profile, method="lookup")
-            if not (solve and found.motion.passed(task.limits, OVERRUN)):
+            if not (solve and found.motion.exceeded(task.limits, OVERRUN)):
                 return found
         limit = settings.residual_limit or (None if task.ranges else 0.0)
         return plan_move(task, self.profile, residual_limit=limit, bound=settings.bound)
@@ -183,7 +183,9 @@ class MoveLibrary:
         least = self._least(tasks)
         energies = np.array([plan.energy for plan in plans])
         worst = max(plan.residual for plan in plans)
-        peaks = [max(one.motion.passed(one.task.limits, -1).values(), default=0.0) for one in plans]
+        peaks = [
+            max(one.motion.exceeded(one.task.limits, -1).values(), default=0.0) for one in plans
+        ]
         found = Between(worst, float(np.nanmax(energies / least - 1)), max(peaks), len(tasks))
         self.store.note("between the cells", vars(found))
         return found

@@ -78,7 +78,7 @@ def _table(task: PointToPoint, found: Sequence[Rival], shown: bool) -> Table:
 
 def _broken(task: PointToPoint, rival: Rival) -> list[str]:
     """The limits that a motion breaks."""
-    return [] if rival.motion is None else list(rival.motion.passed(task.limits, _OVERRUN))
+    return [] if rival.motion is None else list(rival.motion.exceeded(task.limits, _OVERRUN))
 
 
 def _picture(task: PointToPoint, found: Sequence[Rival]) -> Figure:

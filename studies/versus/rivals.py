@@ -9,6 +9,7 @@ from itertools import product
 
 import numpy as np
 from quietarm.ocp import (
+    Candidate,
     JointProfile,
     Motion,
     Plan,
@@ -21,9 +22,7 @@ from quietarm.ocp import (
 from quietarm.ocp.checks import install
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shapers import SHAPERS, Impulses, convolved
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.residual import vibrations
-from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp.simulation.free_vibration import FreeVibration
 
 _ALONG = {1: 41, 2: 9}
 """Errors along each side of their ranges, by how many there are; else their corners."""
@@ -51,9 +50,9 @@ def rivals(
 
     The residual limit is of that; those of the task are for the plans and for ruckig.
     """
-    for name, joint_of in _ways(task, profile, residual_limit):
+    for name, candidate_of in _ways(task, profile, residual_limit):
         try:
-            rival = _judged(name, task, joint_of())
+            rival = _judged(name, task, candidate_of())
         except (QuietarmError, ValueError) as error:
             rival = Rival(name, why=str(error))
         yield rival
@@ -61,14 +60,14 @@ def rivals(
 
 def _ways(
     task: PointToPoint, profile: JointProfile, residual_limit: float | None
-) -> Iterator[tuple[str, Callable[[], PiecewiseMotion]]]:
+) -> Iterator[tuple[str, Callable[[], Candidate]]]:
     """What moves the joint, by its name."""
     certain = task.certain
 
-    def along(plan: Plan) -> PiecewiseMotion:
-        return PiecewiseMotion.of_profile(certain, plan.profile, plan.coefficients)
+    def along(plan: Plan) -> Candidate:
+        return Candidate.of_profile(certain, plan.profile, plan.coefficients)
 
-    def shaped_by(shaper: str) -> PiecewiseMotion:
+    def shaped_by(shaper: str) -> Candidate:
         own = shaped_cycloid(certain, shaper)
         return along(evaluate_coefficients(certain, [], profile=own))
 
@@ -84,16 +83,16 @@ def _ways(
         yield f"{name}, ruckig", lambda name=name: _by_ruckig(certain, _impulses(task, name))
 
 
-def _by_ruckig(task: PointToPoint, impulses: Impulses) -> PiecewiseMotion:
+def _by_ruckig(task: PointToPoint, impulses: Impulses) -> Candidate:
     left = task.duration - impulses.times[-1]
     if left < _LEAST_SHARE * task.duration:
         raise ValueError(f"the shaper alone takes {impulses.times[-1]:.3g} s")
     free = shaped(ruckig_motion(replace(task, duration=left)), impulses)
-    return PiecewiseMotion.of_free_motion(task, free)
+    return Candidate.of_free_motion(task, free)
 
 
 def _impulses(task: PointToPoint, shaper: str) -> Impulses:
-    modes = vibrations(task.plant, task.target)
+    modes = FreeVibration(task.plant, task.target).modes
     return convolved([SHAPERS[shaper](*mode) for mode in modes])
 
 
@@ -144,16 +143,15 @@ def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
     return FreeMotion(times, acceleration, jerk)
 
 
-def _judged(name: str, task: PointToPoint, joint: PiecewiseMotion) -> Rival:
-    found = resimulated(task.certain, joint)
-    left = [resimulated(task.certain, joint, one).residual for one in _errors(task.ranges)]
-    return Rival(name, found.motion, max(left, default=None))
+def _judged(name: str, task: PointToPoint, candidate: Candidate) -> Rival:
+    left = [candidate.perturbed(errors).residual for errors in _errors(task.ranges)]
+    return Rival(name, candidate.motion, max(left, default=None))
 
 
-def _errors(ranges: Mapping[str, float]) -> Iterator[tuple[tuple[str, float], ...]]:
+def _errors(ranges: Mapping[str, float]) -> Iterator[dict[str, float]]:
     """Errors within their ranges, evenly along each."""
     if not ranges:
         return
     count = _ALONG.get(len(ranges), 2)
     for errors in product(*(np.linspace(-size, size, count).tolist() for size in ranges.values())):
-        yield tuple(zip(ranges, errors, strict=True))
+        yield dict(zip(ranges, errors, strict=True))

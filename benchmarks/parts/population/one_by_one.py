@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from math import pi
@@ -17,7 +18,7 @@ from parts.population.equations import (
     plant_at_arrays,
     plant_at_scalars,
 )
-from quietarm.ocp.simulation.residual import residual_samples
+from quietarm.ocp import FreeVibration
 from scipy.integrate import solve_ivp
 
 
@@ -72,6 +73,7 @@ def integrate(
     """
     table = np.empty((len(population), 3))
     times = np.linspace(0.0, x.duration, samples + 1)
+    fastest = float(FreeVibration(TASK.plant, TASK.target).fastest)
     for candidate, row in enumerate(population):
         a = row.tolist()
         rates = equations(x, a)
@@ -86,7 +88,7 @@ def integrate(
         if through:
             after = solve_ivp(
                 partial(at_arrival, rates, x.duration), (0.0, x.window), solution.y[:, -1],
-                "DOP853", np.linspace(0.0, x.window, residual_samples(TASK)),
+                "DOP853", np.linspace(0.0, x.window, math.ceil(50 * x.window * fastest) + 1),
                 rtol=1e-8, atol=1e-10,
             )  # fmt: skip
             peak = abs(x.phi) * np.abs(after.y[0]).max()

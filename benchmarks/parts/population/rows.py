@@ -12,8 +12,8 @@ from parts.population.equations import PROFILE, TASK, Values, numbers, peak_afte
 from parts.population.marches import march_arrays, march_compiled
 from parts.population.one_by_one import integrate, rates_in_floats, rates_in_numpy
 from quietarm.metaheuristics import PopulationObjective
-from quietarm.ocp import rollout
-from quietarm.ocp.simulation.collocation import mesh
+from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.solvers.batch import batch
 
 CANDIDATES = 200
 FEW, TUNING = 5, 40  # candidates of solve_ivp: to time, to choose its samples
@@ -29,8 +29,7 @@ def even(steps: int) -> NDArray[np.float64]:
 
 
 def graded(steps: int) -> NDArray[np.float64]:
-    begin, _ = mesh(np.arange(steps + 1.0), steps)
-    return np.array(begin).ravel()
+    return Grid(steps).boundaries
 
 
 @dataclass(frozen=True)
@@ -63,12 +62,13 @@ def accurate(errors: tuple[NDArray[np.float64], ...]) -> bool:
 
 
 def by_rollout(population: NDArray[np.float64], steps: int) -> Values:
-    """The rollout, with the peak after arrival in closed form."""
-    x, rows = numbers(TASK), []
-    for a in population:
-        result = rollout(TASK, PROFILE, a, steps)
-        rows.append([peak_after(x, *result.arrival), result.motion.energy, result.arrival[0]])
-    return np.array(rows)
+    """The with the peak after arrival in closed form."""
+    x, count = numbers(TASK), len(population)
+    found = batch(TASK.plant, PROFILE, steps).values(
+        population, np.tile(TASK.row, (count, 1)), np.zeros((count, 0))
+    )
+    peaks = [peak_after(x, *arrival) for arrival in found.arrival]
+    return np.column_stack([peaks, found.energy, found.arrival[:, 0]])
 
 
 def tuned(

@@ -62,7 +62,7 @@ def lookup(
         found = library.plan(solve=solve, **at)
         between = None if found.status.solved else library.between()
     notes = ["planned: the dataset does not have it"] if between is None else [between.words]
-    broken = " and ".join(found.motion.passed(found.task.limits, OVERRUN))
+    broken = " and ".join(found.motion.exceeded(found.task.limits, OVERRUN))
     trouble = InfeasibleTaskError(
         f"between the cells the move breaks its limit of {broken}; add --solve for a plan that "
         "keeps it"

@@ -3,6 +3,7 @@
 import dataclasses
 
 import pytest
+from fixed_steps import rollout
 from pymoo.algorithms.moo.moead import MOEAD
 from pymoo.algorithms.moo.sms import SMSEMOA
 from pymoo.algorithms.soo.nonconvex.ga import GA
@@ -10,7 +11,7 @@ from pymoo.algorithms.soo.nonconvex.nelder import NelderMead
 from pymoo.operators.mutation.pm import PM
 from pymoo.util.ref_dirs import get_reference_directions
 from quietarm.metaheuristics import INERTIA_2002, VEPSO, search
-from quietarm.ocp import Front, rollout
+from quietarm.ocp import Front
 from small_searches import HALF, LIMITED, assert_is_a_front, one_line
 
 

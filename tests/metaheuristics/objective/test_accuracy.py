@@ -7,12 +7,9 @@ import pytest
 from populations import CONDITIONS, PROFILE, SINGLE_LINK, candidates, pi
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import (
-    PointToPoint,
-    resimulate,
-)
+from quietarm.ocp import Candidate, PointToPoint
 
-FINE = 140  # ocp.simulation.rollout.ROLLOUT_STEPS
+FINE = 140  # ocp.simulation.grid.ROLLOUT_STEPS
 
 
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)
@@ -34,7 +31,7 @@ def test_energy_and_residual_are_those_of_the_independent_integrator(
     X = candidates(8, bound, seed=4)
     values = PopulationObjective(task, PROFILE)(X)
     fine = PopulationObjective(task, PROFILE, steps=FINE)(X)
-    motions = [resimulate(task, PROFILE, x) for x in X]
+    motions = [Candidate.of_profile(task, PROFILE, x).motion for x in X]
     assert fine.energy == pytest.approx([m.energy for m in motions], rel=1e-5, abs=0)
     residuals = np.array([motion.residual for motion in motions])
     # W and W'/omega 1e-6 m off at arrival (`CANDIDATE_STEPS`), on top of the 5e-5 of a peak between
@@ -52,7 +49,7 @@ def test_other_plants_and_durations_are_as_accurate(plant, duration, bound):
     task = PointToPoint(plant, pi / 2, duration)
     X = candidates(10, bound, seed=8)
     values = PopulationObjective(task, PROFILE)(X)
-    motions = [resimulate(task, PROFILE, x) for x in X]
+    motions = [Candidate.of_profile(task, PROFILE, x).motion for x in X]
     error = np.abs(values.energy / [motion.energy for motion in motions] - 1)
     assert np.sum(error <= 1e-4) >= 9, error  # as above
     residuals = np.array([motion.residual for motion in motions])

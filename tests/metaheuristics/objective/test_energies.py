@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from quietarm.metaheuristics.objective.population import PopulationObjective
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.grid import default_steps
 
 import quietarm as qa
 
@@ -23,7 +23,7 @@ def test_a_population_spends_what_cvodes_finds(tasks, name, energy):
     task, bound = tasks[name]
     task, profile = replace(task, energy=energy), qa.CycloidPolynomial(4)
     X = np.random.default_rng(3).uniform(-bound, bound, (6, 4))
-    expected = [qa.resimulate(task, profile, x).energy for x in X]
+    expected = [qa.Candidate.of_profile(task, profile, x).energy for x in X]
     fine = PopulationObjective(task, profile, steps=default_steps(task))(X).energy
     assert fine == pytest.approx(expected, rel=1e-5)
     assert PopulationObjective(task, profile)(X).energy == pytest.approx(expected, rel=3e-3)
@@ -33,5 +33,5 @@ def test_a_search_states_what_cvodes_finds(tasks, energy):
     task = replace(tasks["single link"][0], energy=energy)
     front = qa.search(task, "nsga2", bound=0.2, population=20, generations=10)
     for point in (front.points[0], front.points[-1]):
-        motion = qa.resimulate(task, front.profile, point.coefficients)
+        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
         assert point.energy == pytest.approx(motion.energy, rel=1e-5)

@@ -5,14 +5,10 @@ import math
 
 import numpy as np
 import pytest
+from fixed_steps import rollout
 from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
 from quietarm.metaheuristics import PopulationObjective
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    rollout,
-    sample_trajectory,
-)
+from quietarm.ocp import Candidate, CycloidPolynomial, PointToPoint
 from quietarm.ocp.task import QUANTITIES
 
 LIMITS = tuple(QUANTITIES)
@@ -28,7 +24,7 @@ def test_energy_and_residual_are_those_of_the_rollout_at_the_same_steps(tasks, n
     motions = [rollout(task, PROFILE, x, objective.steps).motion for x in X]
     assert values.energy == pytest.approx([m.energy for m in motions], rel=1e-12, abs=0)
     # Both watch the tip at times of their own, that miss a peak by 5e-5 of it at most
-    # (ocp.simulation.residual.RADIANS_A_SAMPLE).
+    # (`FreeVibration.rows`).
     assert values.residual == pytest.approx([m.residual for m in motions], rel=5e-5, abs=0)
 
 
@@ -49,7 +45,9 @@ def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):
     task, bound = tasks["two links"]
     X = candidates(12, bound)
     times = task.duration + np.linspace(1e-9, task.residual_window, 4000)
-    tips = [np.abs(sample_trajectory(task, PROFILE, x, times).tips).max(axis=0) for x in X]
+    tips = [
+        np.abs(Candidate.of_profile(task, PROFILE, x).sample(times).tips).max(axis=0) for x in X
+    ]
     assert {int(np.argmax(peaks)) for peaks in tips} == {0, 1}  # either link is the worse of some
     expected = np.max(tips, axis=1)
     assert PopulationObjective(task, PROFILE)(X).residual == pytest.approx(

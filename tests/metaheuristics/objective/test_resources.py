@@ -17,7 +17,7 @@ def test_a_faster_mode_gets_more_steps():
         PopulationObjective(PointToPoint(SINGLE_LINK, pi / 6, 0.8), PROFILE).steps
         == CANDIDATE_STEPS
     )
-    # two steps a radian of the fastest mode (ocp.simulation.rollout.default_steps)
+    # two steps a radian of the fastest mode (ocp.simulation.grid.default_steps)
     assert PopulationObjective(PointToPoint(fast, pi / 6, 0.8), PROFILE).steps == 2 * 30 * 0.8
 
 

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from fixed_steps import rollout
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-from quietarm.ocp import CycloidGaussians, CycloidNetwork, CycloidSpline, PointToPoint, rollout
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, CycloidSpline, PointToPoint
 
 TASKS = {
     "single link": PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8),

@@ -3,8 +3,9 @@
 import math
 
 import pytest
+from fixed_steps import rollout
 from quietarm.metaheuristics import search
-from quietarm.ocp import CycloidPolynomial, PointToPoint, resimulate, rollout
+from quietarm.ocp import Candidate, CycloidPolynomial, PointToPoint
 from small_searches import (
     BOUNDS,
     METHODS,
@@ -28,7 +29,7 @@ def test_figures_are_those_of_the_finer_rollout_and_of_the_independent_integrato
         assert point.energy == pytest.approx(motion.energy, rel=1e-12)
         assert point.residual == pytest.approx(motion.residual, rel=5e-5)
     for point in (front.points[0], front.points[-1]):
-        motion = resimulate(front.task, front.profile, point.coefficients)
+        motion = Candidate.of_profile(front.task, front.profile, point.coefficients).motion
         assert point.energy == pytest.approx(motion.energy, rel=1e-5)
         assert point.residual == pytest.approx(motion.residual, rel=1e-4, abs=1e-6)
 
@@ -104,9 +105,9 @@ def test_a_plant_of_two_modes(two_links):
     front = search(task, "nsga2", bound=0.3, population=30, generations=30)
     assert_is_a_front(front)
     stillest, cheapest = (
-        resimulate(task, front.profile, point.coefficients)
+        Candidate.of_profile(task, front.profile, point.coefficients).motion
         for point in (front.stillest(), front.cheapest())
     )
-    plain = resimulate(task, CycloidPolynomial(0), [])
+    plain = Candidate.of_profile(task, CycloidPolynomial(0), []).motion
     assert stillest.residual < plain.residual / 4
     assert cheapest.energy < plain.energy

@@ -9,13 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from quietarm.metaheuristics import PAPER_BOX, search
-from quietarm.ocp import (
-    PointToPoint,
-    epsilon_front,
-    plan_move,
-    polish_front,
-    resimulate,
-)
+from quietarm.ocp import Candidate, PointToPoint, epsilon_front, plan_move, polish_front
 from small_searches import ARM, HALF, SINGLE_LINK, SIXTH, found, pi
 
 # -- the paper's energies --
@@ -37,7 +31,7 @@ def less_searched(method, task):
 def assert_reaches(front, energy):
     point = front.cheapest(PAPERS_RESIDUAL[front.method])
     assert point.energy <= energy
-    motion = resimulate(front.task, front.profile, point.coefficients)
+    motion = Candidate.of_profile(front.task, front.profile, point.coefficients).motion
     assert motion.energy <= energy * (1 + 1e-5)
     assert motion.residual <= PAPERS_RESIDUAL[front.method] * (1 + 1e-3)
 

@@ -10,13 +10,13 @@ from quietarm.metaheuristics import search
 from quietarm.metaheuristics.objective.claims import check_figures
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
+    Candidate,
     CycloidPolynomial,
     Front,
     PointToPoint,
     Uncertainty,
     epsilon_front,
     polish_front,
-    resimulate,
 )
 
 
@@ -41,9 +41,9 @@ def test_residuals_are_those_of_the_worst_sample_by_cvodes(of, task, request):
     front = request.getfixturevalue(of)
     for point in (front.stillest(), front.cheapest()):
         alone = [
-            resimulate(
+            Candidate.of_profile(
                 replace(task, plant=part, uncertainty=None), front.profile, point.coefficients
-            )
+            ).motion
             for part in front.task.perturbed_plants
         ]
         worst = max(one.residual for one in alone)

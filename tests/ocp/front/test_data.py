@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp import CycloidPolynomial, Front, resimulate
+from quietarm.ocp import Candidate, CycloidPolynomial, Front
 
 ROWS = np.array([[0.0, 0.0], [0.003347, -0.1697], [0.02, 0.05], [-0.05, -0.2]])
 
@@ -22,7 +22,7 @@ def given(task):
 
 def by_cvodes(task, rows):
     """(residual, energy) of every row by the independent integrator."""
-    motions = [resimulate(task, CycloidPolynomial(2), row) for row in rows]
+    motions = [Candidate.of_profile(task, CycloidPolynomial(2), row).motion for row in rows]
     return {tuple(row): (m.residual, m.energy) for row, m in zip(rows, motions, strict=True)}
 
 
@@ -44,7 +44,9 @@ def test_coefficients_become_a_front_of_those_that_none_beats(task, given):
 
 def test_motions_that_break_a_limit_or_overflow_are_left_out_and_counted(task):
     figures = by_cvodes(task, ROWS)
-    torques = [resimulate(task, CycloidPolynomial(2), row).peak_torque for row in ROWS]
+    torques = [
+        Candidate.of_profile(task, CycloidPolynomial(2), row).motion.peak_torque for row in ROWS
+    ]
     most = np.median(torques)
     limited = replace(task, torque_limit=most)
     rows = [*ROWS, [1e300, 1e300]]

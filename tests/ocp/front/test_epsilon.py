@@ -51,7 +51,7 @@ def test_points_are_even_in_both_objectives(case):
 def test_every_point_has_the_figures_of_the_independent_integrator(case):
     task, bound, front = case
     for point in front.points:
-        motion = qa.resimulate(task, front.profile, point.coefficients)
+        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
         # of all points but the ends by steps that CVODES confirms to this share at every tenth
         assert point.energy == pytest.approx(motion.energy, rel=1e-6)
         assert point.residual == pytest.approx(motion.residual, rel=1e-6, abs=STILL)
@@ -62,13 +62,13 @@ def test_limits_of_the_task_are_kept_along_the_front():
     plant = qa.ArmOnFlexibleLink()
     free = qa.epsilon_front(qa.PointToPoint(plant, math.pi / 2, 0.8), bound=0.5, points=3, starts=1)
     peak = min(
-        qa.resimulate(free.task, free.profile, point.coefficients).peak_torque
+        qa.Candidate.of_profile(free.task, free.profile, point.coefficients).motion.peak_torque
         for point in free.points
     )
     task = qa.PointToPoint(plant, math.pi / 2, 0.8, torque_limit=0.95 * peak)
     front = qa.epsilon_front(task, bound=0.5, points=3, starts=1)
     for point in front.points:
-        motion = qa.resimulate(task, front.profile, point.coefficients)
+        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
         assert motion.peak_torque <= task.torque_limit * 1.001
     assert front.cheapest().energy > free.cheapest().energy
 
@@ -77,7 +77,9 @@ def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     # One term has nothing left to arrive at rest with: two conditions, one coefficient.
     task, profile = CASES["arm"][0], qa.CycloidPolynomial(1)
     front = qa.epsilon_front(task, profile, points=5)
-    scan = [qa.resimulate(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)]
+    scan = [
+        qa.Candidate.of_profile(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)
+    ]
     stillest = front.stillest()
     assert 0.9 * min(scan) < stillest.residual < 1.001 * min(scan)
     assert len(front.points) > 2

@@ -33,7 +33,7 @@ def test_a_points_residual_is_the_largest_over_the_scenarios(task, name):
     assert len(front.points) > 1
     for point in front.points:
         by_scenario = [
-            qa.resimulate(
+            qa.Candidate.of_profile(
                 replace(task.certain, plant=qa.perturb_plant(task.plant, {"frequency": error})),
                 PROFILE,
                 point.coefficients,

@@ -59,6 +59,6 @@ def test_given_weights_are_used():
 def test_the_figures_are_those_of_the_independent_integrator(case):
     task, bound, front = case
     for point in front.points:
-        motion = qa.resimulate(task, front.profile, point.coefficients)
+        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
         assert (point.residual, point.energy) == (motion.residual, motion.energy)
         assert np.abs(point.coefficients).max() <= bound

@@ -29,7 +29,7 @@ def residuals(plan, errors):
     """By CVODES, of the motion on plants with these errors."""
     task = plan.task.certain
     return [
-        qa.resimulate(
+        qa.Candidate.of_profile(
             replace(task, plant=qa.perturb_plant(task.plant, {"frequency": error})),
             plan.profile,
             plan.coefficients,

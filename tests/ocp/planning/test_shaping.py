@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from fixed_steps import rollout
 from scipy.integrate import solve_ivp
 
 import quietarm as qa
@@ -38,14 +39,14 @@ def test_a_linear_plant_is_left_with_the_closed_form(shaper, r):
     profile = qa.shaped_cycloid(task, shaper)
     other = replace(task, plant=replace(LINEAR, omega=r * LINEAR.omega))
     short = replace(other, duration=task.duration - profile.length)
-    unshaped = qa.resimulate(short, qa.CycloidPolynomial(0), []).residual
+    unshaped = qa.Candidate.of_profile(short, qa.CycloidPolynomial(0), []).residual
     curve = {
         "zv": abs(math.cos(pi * r / 2)),
         "zvd": math.cos(pi * r / 2) ** 2,
         "ei": abs(1.05 / 2 * math.cos(pi * r) + 0.95 / 2),
     }[shaper]
     assert unshaped > 0.01
-    assert qa.resimulate(other, profile, []).residual == pytest.approx(
+    assert qa.Candidate.of_profile(other, profile, []).residual == pytest.approx(
         curve * unshaped, rel=1e-5, abs=1e-9
     )
 
@@ -87,13 +88,13 @@ def test_scipy_restarted_at_every_impulse_agrees(plant, modes, duration):
                 rates, (begin, end), state, "DOP853", rtol=1e-11, atol=1e-13, max_step=2e-3
             )
             state = run.y[:, -1]
-    motion = qa.resimulate(task, profile, [])
-    arrival = qa.sample_trajectory(task, profile, [], [duration]).modes[0]
+    motion = qa.Candidate.of_profile(task, profile, []).motion
+    arrival = qa.Candidate.of_profile(task, profile, []).sample([duration]).modes[0]
     assert arrival == pytest.approx(state[:modes], abs=1e-8)
     assert motion.net_work == pytest.approx(state[-1], rel=1e-6)
     assert motion.energy == pytest.approx(state[-2], rel=1e-5)
     # Fixed steps do not stop where a cycloid begins: they are coarser here than for polynomials.
-    assert qa.rollout(task, profile, []).motion.energy == pytest.approx(motion.energy, rel=2e-2)
+    assert rollout(task, profile, []).motion.energy == pytest.approx(motion.energy, rel=2e-2)
 
 
 def test_a_limit_that_the_only_motion_breaks_is_named(tasks):

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fixed_steps import rollout
 
 import quietarm as qa
 
@@ -28,7 +29,7 @@ def test_no_neighbour_that_arrives_at_rest_costs_less(tasks, solved, name):
     steps = plan.verification.steps
 
     def simulate(a):
-        return qa.rollout(task, plan.profile, a, steps=steps)
+        return rollout(task, plan.profile, a, steps=steps)
 
     best, at = simulate(plan.coefficients), np.array(plan.coefficients)
     columns = [np.subtract(simulate(at + e).arrival, best.arrival) for e in 1e-6 * np.eye(6)]
@@ -65,7 +66,7 @@ def test_a_residual_limit_is_kept_and_saves_energy(tasks, solved, name):
     energies = []
     for limit in (0.0, 1e-3, 1e-2):
         plan = solved(tasks[name], 4, residual_limit=limit)
-        verified = qa.resimulate(plan.task, plan.profile, plan.coefficients)
+        verified = qa.Candidate.of_profile(plan.task, plan.profile, plan.coefficients).motion
         assert verified.residual <= max(limit, 1e-7) * (1 + 1e-6)
         energies.append(plan.energy)
     assert energies[0] > energies[1] > energies[2]

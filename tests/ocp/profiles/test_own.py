@@ -80,7 +80,10 @@ def test_plans_are_kept_and_do_not_depend_on_how_the_coefficients_are_said_to_en
     plans = [qa.plan_move(tasks["arm"], kind(5), starts=1) for kind in (_Waves, _LinearWaves)]
     for plan in plans:
         assert plan.residual < 1e-8
-        assert plan.motion == qa.resimulate(plan.task, plan.profile, plan.coefficients)
+        assert (
+            plan.motion
+            == qa.Candidate.of_profile(plan.task, plan.profile, plan.coefficients).motion
+        )
         plan.save(tmp_path / "plan.json")
         assert qa.Plan.load(tmp_path / "plan.json") == plan
     assert plans[0].energy == pytest.approx(plans[1].energy, rel=1e-6)

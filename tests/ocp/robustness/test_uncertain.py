@@ -7,6 +7,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from fixed_steps import rollout
 from quietarm.ocp.robustness.population import ErrorPopulation
 
 import quietarm as qa
@@ -36,13 +37,16 @@ def test_figures_are_the_worst_of_the_parts_alone(of, request):
     task = request.getfixturevalue(of)
     profile = qa.CycloidPolynomial(len(MOVE))
     alone = [
-        qa.resimulate(replace(task.certain, plant=plant), profile, MOVE)
+        qa.Candidate.of_profile(replace(task.certain, plant=plant), profile, MOVE).motion
         for plant in (
             qa.perturb_plant(task.plant, dict(zip(task.error_names, errors, strict=True)))
             for errors in task.scenarios
         )
     ]
-    together, fixed = qa.resimulate(task, profile, MOVE), qa.rollout(task, profile, MOVE).motion
+    together, fixed = (
+        qa.Candidate.of_profile(task, profile, MOVE).motion,
+        rollout(task, profile, MOVE).motion,
+    )
     for found, tolerance in ((together, 1e-6), (fixed, 1e-2)):  # fixed steps: peaks at the nodes
         for name in ("residual", "peak_deflection"):
             largest = max(getattr(one, name) for one in alone)
@@ -57,6 +61,8 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
     largest = population(np.reshape(grid, (2, -1)).T).residual.max()
     assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
     there = qa.perturb_plant(task.plant, evaluated.worst.errors)
-    again = qa.resimulate(replace(task.certain, plant=there), evaluated.profile, MOVE)
+    again = qa.Candidate.of_profile(
+        replace(task.certain, plant=there), evaluated.profile, MOVE
+    ).motion
     # With the errors as parameters CVODES takes other steps: within its tolerance the same.
     assert evaluated.worst.residual == pytest.approx(again.residual, rel=1e-5)

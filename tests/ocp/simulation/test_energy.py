@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, mesh
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
     resolved_energy,
@@ -101,13 +103,11 @@ def test_terms_beyond_the_quadratic_move_work_across_its_zeros(c0, c1, c2, cubic
 @pytest.mark.parametrize("steps", [2, 10])
 def test_a_power_of_degree_four_is_told_exactly(steps):
     quartic_power = Polynomial([0.3, -2.0, 5.0, 7.0, -11.0])
-    begin, length = (x.full() for x in mesh(ca.DM(np.arange(steps)), steps))
-    at_nodes = quartic_power(begin + length * NODE).T.reshape(
-        1, -1
-    )  # horzcat(*power): node after node
+    grid = Grid(steps)
+    at_nodes = quartic_power(grid.nodes).reshape(1, -1)  # horzcat(*power): node after node
     found = [(ca.DM(at_nodes) @ weights).full().ravel() for weights in beyond_quadratic(steps)]
     for step in range(steps):
-        local = quartic_power(begin[step, 0] + length[step, 0] * X)
+        local = quartic_power(grid.boundaries[step] + grid.lengths[step] * X)
         _, remainder = divmod(local, VANISHING)
         beyond = (local - remainder) // VANISHING  # cubic + quartic (x - 1/2)
         assert found[0][step] == pytest.approx(beyond(0.5), abs=1e-9)
@@ -115,14 +115,14 @@ def test_a_power_of_degree_four_is_told_exactly(steps):
 
 
 @pytest.mark.parametrize(
-    ("target", "angles", "overshoot"),
-    [(1.0, [0.0, 1.25, 1.0], 0.25), (1.0, [0.0, -0.3, 1.0], 0.0), (-1.0, [0.0, -1.25, -1.0], 0.25)],
+    ("target", "halfway", "overshoot"), [(1.0, 1.25, 0.25), (1.0, -0.3, 0.0), (-1.0, -1.25, 0.25)]
 )
-def test_overshoot_is_how_far_the_joint_passes_the_target(target, angles, overshoot):
-    task, n = qa.PointToPoint(qa.SingleLinkManipulator(), target, 0.8), len(angles)
-    joint = qa.JointMotion(np.array(angles), *np.zeros((2, n)))
-    none = {"residual": 0.0, "energy": 0.0, "net_work": 0.0}
-    motion = qa.Motion.from_samples(task, joint, np.zeros((n, 1)), np.zeros(n), **none)
-    assert (motion.peak_jerk, motion.peak("jerk")) == (None, math.inf)  # its jerk is not known
-    assert motion.overshoot == pytest.approx(overshoot, abs=1e-15)
+def test_overshoot_is_how_far_the_joint_passes_the_target(target, halfway, overshoot):
+    # Two moves from rest to rest by constant accelerations: 0 to halfway, and on to the target.
+    there, back = 25 * halfway, 25 * (target - halfway)  # a (0.2 s)^2 is the angle
+    free = FreeMotion([0.0, 0.2, 0.4, 0.6, 0.8], [there, -there, back, -back], np.zeros(4))
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), target, 0.8)
+    motion = qa.Candidate.of_free_motion(task, free).motion
+    assert (motion.peak_jerk, motion.peak("jerk")) == (None, math.inf)  # the acceleration jumps
+    assert motion.overshoot == pytest.approx(overshoot, abs=1e-12)
     assert math.copysign(1.0, motion.overshoot) == 1.0  # else a table prints -0

@@ -3,15 +3,13 @@
 import numpy as np
 import pytest
 from quietarm.ocp.profiles.free_motion import FreeMotion
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulated
 from scipy.integrate import solve_ivp
 
 import quietarm as qa
 
 
 def simulate(task, free):
-    return resimulated(task, PiecewiseMotion.of_free_motion(task, free))
+    return qa.Candidate.of_free_motion(task, free)
 
 
 COARSE = np.array([0.0, 0.01, 0.3, 0.45, 0.8])

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from quietarm.ocp.simulation.grid import default_steps
 
 import quietarm as qa
 
@@ -12,7 +13,7 @@ FAST = qa.PointToPoint(qa.SingleLinkManipulator(omega=1e4), math.pi / 6, 1.0001,
 
 
 def sampled(times):
-    return lambda: qa.sample_trajectory(TASK, PROFILE, [0.1, 0.0], times)
+    return lambda: qa.Candidate.of_profile(TASK, PROFILE, [0.1, 0.0]).sample(times)
 
 
 @pytest.mark.parametrize(
@@ -20,13 +21,15 @@ def sampled(times):
     [
         (sampled([]), r"sample times are \[\]; give finite ones"),
         (sampled([0.2, 0.1]), r"increase from 0 or later"),
-        (lambda: qa.resimulate(TASK, PROFILE, [0.1]), r"got 1 coefficients for a profile of 2"),
-        (lambda: qa.resimulate(TASK, PROFILE, [0.1, math.nan]), r"coefficient 2 is nan"),
         (
-            lambda: qa.rollout(TASK, PROFILE, [0, 0], steps=0),
-            r"steps is 0; give a whole number from 1 up",
+            lambda: qa.Candidate.of_profile(TASK, PROFILE, [0.1]).motion,
+            r"got 1 coefficients for a profile of 2",
         ),
-        (lambda: qa.rollout(FAST, PROFILE, [0, 0]), r"1e\+04 radians .* resolves up to 10000"),
+        (
+            lambda: qa.Candidate.of_profile(TASK, PROFILE, [0.1, math.nan]).motion,
+            r"coefficient 2 is nan",
+        ),
+        (lambda: default_steps(FAST), r"1e\+04 radians .* resolves up to 10000"),
     ],
 )
 def test_a_number_that_cannot_be_is_named(ask, said):

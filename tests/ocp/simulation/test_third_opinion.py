@@ -43,7 +43,7 @@ def case(request, plants):
 
 def test_scipy_agrees(case):
     task, a, other = case
-    motion = qa.resimulate(task, qa.CycloidPolynomial(len(a)), a)
+    motion = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a).motion
     assert motion.energy == pytest.approx(other.energy, rel=1e-9)
     # The samples after arrival miss 1.2e-6 of a peak at most.
     assert motion.residual == pytest.approx(other.residual, rel=3e-6)
@@ -51,7 +51,7 @@ def test_scipy_agrees(case):
 
 def test_scipy_agrees_on_the_diagnostics(case):
     task, a, other = case
-    motion = qa.resimulate(task, qa.CycloidPolynomial(len(a)), a)
+    motion = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a).motion
     times = np.linspace(0.0, task.duration, 4001)
     joint, states = np.array(other.joint(times)).T, other.during.sol(times)
     torque = np.ravel(other.torque(joint.T, states))
@@ -74,7 +74,7 @@ def test_scipy_agrees_at_every_sample(case):
     (task, a, other), duration = case, case[0].duration
     moving, resting = np.linspace(0, duration, 50), np.linspace(duration + 0.01, duration + 1, 50)
     times = np.concatenate([moving, resting])
-    found = qa.sample_trajectory(task, qa.CycloidPolynomial(len(a)), a, times)
+    found = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a).sample(times)
     states = np.hstack([other.during.sol(moving), other.after.sol(resting)])
     joint = np.vstack([np.array(other.joint(moving)).T, [(task.target, 0.0, 0.0)] * 50])
     torque = np.ravel(other.torque(joint.T, states))
@@ -83,5 +83,5 @@ def test_scipy_agrees_at_every_sample(case):
     assert found.tips == pytest.approx(other.phi * states[: other.modes].T, abs=3e-9)
     assert found.torque == pytest.approx(torque, abs=1e-8)
     assert found.power == pytest.approx(torque * joint[:, 1], abs=1e-7)
-    alone = qa.sample_trajectory(task, qa.CycloidPolynomial(len(a)), a, times[20])
+    alone = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a).sample(times[20])
     assert alone.modes[0] == pytest.approx(found.modes[20], abs=1e-9)

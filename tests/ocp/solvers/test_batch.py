@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fixed_steps import rollout
 from quietarm.ocp.solvers.batch import Multipliers, batch
 from quietarm.ocp.solvers.funnel import WIDTHS
 from quietarm.ocp.task import LIMITS
@@ -57,7 +58,7 @@ def test_figures_are_those_of_the_rollout(task, errors):
     a = _candidates(1, made.kind)[0]
     inputs = a, np.array([task.row]), np.array([list(errors.values())])
     wrong = replace(task, plant=qa.perturb_plant(task.plant, errors))
-    expected = qa.rollout(wrong, profile, a[0], steps=steps)
+    expected = rollout(wrong, profile, a[0], steps=steps)
     for found in (made.values(*inputs), _derivatives(made, inputs)):
         assert found.arrival[0] == pytest.approx(np.array(expected.arrival), rel=1e-8, abs=1e-12)
         for name, part in made.places.items():

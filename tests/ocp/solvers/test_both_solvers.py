@@ -29,7 +29,7 @@ def _solved(transcription, asked, solver=SOLVERS[0], start=PROFILE.plain, **sett
 
 def _true(steps, found):
     """The energy by CVODES: IPOPT's takes in what neighbouring steps say, the SQP's does not."""
-    return qa.resimulate(steps.task.certain, steps.profile, found.coefficients).energy
+    return qa.Candidate.of_profile(steps.task.certain, steps.profile, found.coefficients).energy
 
 
 @pytest.fixture(scope="module")

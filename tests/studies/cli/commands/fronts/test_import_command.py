@@ -7,10 +7,11 @@ import re
 import numpy as np
 import pytest
 import scipy.io
+from fixed_steps import rollout
 from lines import MOVE
 from quietarm.metaheuristics import problem_of
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, rollout
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint
 
 IMPORT = f"{MOVE} --quiet"
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)

@@ -16,7 +16,7 @@ def motion(tasks):
 
     def of(name, row):
         a = COEFFICIENTS[name][row]
-        return qa.resimulate(tasks[name], qa.CycloidPolynomial(len(a)), a)
+        return qa.Candidate.of_profile(tasks[name], qa.CycloidPolynomial(len(a)), a).motion
 
     return of
 

@@ -1,0 +1,255 @@
+"""After arrival: with the joint at rest the modes are linear, with constant coefficients."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property, lru_cache
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from quietarm.models import JointMotion, Plant
+from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
+from quietarm.ocp.simulation.collocation import modal_system
+from quietarm.ocp.task import PointToPoint
+
+Array = NDArray[np.float64]
+
+_RADIANS_OF_ROWS = 0.02
+"""Phase of the fastest mode between the rows: these miss at most 5e-5 of a peak."""
+_RADIANS_OF_PEAKS = 0.06
+"""The same between samples of a peak: the cubic between two of them misses 3e-8 of it."""
+_STRIDE, _STRIDES_AT_ONCE = 16, 64
+"""Samples of a peak: products of so many rows, and as many states at once."""
+_TIMES_AT_ONCE = 4096
+_MOST_RADIANS = 4000
+"""In a residual window: rows of more take too much memory."""
+_SMALL, _TERMS = 0.1, 10
+"""Up to this phase the exponential is its Taylor series of so many terms, to 1e-18."""
+_ANGLES = 49
+"""Of the joint, at which the fastest mode of a move is looked for: both ends and between them."""
+
+
+class FreeVibration:
+    """How the modes vibrate on after arrival: a constant matrix gives (W', W'') by (W, W').
+
+    States are W [m], then W' [m/s]; where rest is not what is wanted on arrival, pass what they
+    miss of the wanted state (`PointToPoint.missed`).
+
+    Parameters
+    ----------
+    plant : Plant
+        What vibrates. Its parameters may be columns, of a plant each.
+    angle : float or array_like, shape (n,)
+        Where the joint rests [rad]. With n angles it is n vibrations at once, and all arrays below
+        have a leading axis of n.
+    window : float
+        Time after arrival within which displacements count [s]; frequencies and states need none.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (2 * modes, 2 * modes)
+        What gives the rates of a state by the state [1/s].
+    tips : ndarray, shape (tips, 2 * modes)
+        What gives the tip displacements [m] by the state.
+    fastest : ndarray, shape ()
+        Largest angular frequency [rad/s].
+
+    Raises
+    ------
+    ValueError
+        When the window is too long to be resolved.
+    """
+
+    @one_at_a_time
+    @keep_interrupts()  # casadi loses a Ctrl-C
+    def __init__(self, plant: Plant, angle: ArrayLike, window: float = 0.0) -> None:
+        self.window = window
+        angles, modes = np.atleast_1d(np.asarray(angle, dtype=float)), plant.modes
+        of_rates = np.zeros((len(angles), 2 * modes, 2 * modes))
+        of_rates[:, :modes, modes:] = np.eye(modes)
+        system = modal_system(plant, JointMotion(ca.DM(angles), 0.0, 0.0))
+        for part, columns in ((system.K, slice(0, modes)), (system.D, slice(modes, None))):
+            of_rates[:, modes:, columns] = -_stacked(part, len(angles))
+        of_tips = np.zeros((len(angles), plant.tips, 2 * modes))
+        units = np.eye(modes).tolist()
+        by_mode = [list(plant.tip_displacements(unit)) for unit in units]
+        of_tips[:, :, :modes] = _stacked(by_mode, len(angles)).transpose(0, 2, 1)
+        one = np.ndim(angle) == 0
+        self.matrix, self.tips = (of_rates[0], of_tips[0]) if one else (of_rates, of_tips)
+        self._eigenvalues = np.linalg.eigvals(self.matrix).astype(complex)
+        self.fastest: Array = np.abs(self._eigenvalues).max(axis=-1)
+        self._most = float(self.fastest.max())
+        self._radians = window * self._most
+        if self._radians > _MOST_RADIANS:
+            raise ValueError(
+                f"residual window {window:g} s is {self._radians:.3g} radians of the plant's "
+                f"fastest mode; give at most {window * _MOST_RADIANS / self._radians:.3g} s"
+            )
+
+    @property
+    def modes(self) -> list[tuple[float, float]]:
+        """Undamped frequency [rad/s] and damping ratio of each mode that swings, slowest first."""
+        swinging = self._eigenvalues[self._eigenvalues.imag > 0]
+        return [(float(abs(one)), float(-one.real / abs(one))) for one in sorted(swinging, key=abs)]
+
+    @cached_property
+    def rows(self) -> Array:
+        """Rows whose products with a state are the tip displacements that can be the largest [m].
+
+        Shape (rows, 2 * modes), of one vibration; F1 is the largest absolute product, to 5e-5.
+        """
+        samples = max(2, math.ceil(self._radians / _RADIANS_OF_ROWS) + 1)  # both ends at least
+        step = exponential(self.matrix, self.window / (samples - 1), self._most)
+        rows = extreme_rows(powers(self.tips, step, samples), len(self.tips))
+        rows.setflags(write=False)
+        return rows
+
+    def peak(self, states: ArrayLike) -> Array:
+        """F1 [m]: the largest absolute displacement of a tip within the window.
+
+        Parameters
+        ----------
+        states : array_like, shape (2 * modes,) or (n, 2 * modes)
+            On arrival; many of one vibration, or one of each.
+
+        Returns
+        -------
+        ndarray, shape () or (n,)
+            The peaks, between the samples where a tip turns back there.
+        """
+        given = np.asarray(states, dtype=float)
+        state = given.reshape(-1, 1, given.shape[-1])
+        matrix, tips = (one.reshape(-1, *one.shape[-2:]) for one in (self.matrix, self.tips))
+        strides = max(1, math.ceil(self._radians / _RADIANS_OF_PEAKS / _STRIDE))
+        rounds = math.ceil(strides / _STRIDES_AT_ONCE)
+        columns = math.ceil(strides / rounds)
+        between = self.window / (rounds * columns * _STRIDE)
+        step = exponential(matrix, between, self._most)
+        outputs = np.concatenate([tips, between * tips @ matrix], axis=1)
+        rows = powers(outputs, step, _STRIDE + 1)
+        stride = np.linalg.matrix_power(step, _STRIDE).swapaxes(1, 2)
+        starts, round_ = powers(state, stride, columns), np.linalg.matrix_power(stride, columns)
+        most = np.zeros(len(state))
+        for _ in range(rounds):
+            moved = rows @ starts.swapaxes(1, 2)
+            moved = moved.reshape(len(state), _STRIDE + 1, 2, -1)
+            most = np.maximum(most, _largest(moved[:, :, 0], moved[:, :, 1]))
+            starts = starts @ round_
+        return most.reshape(given.shape[:-1])
+
+    def states(self, state: ArrayLike, times: ArrayLike) -> Array:
+        """The states at times since arrival [s], shape (times, 2 * modes), of one vibration."""
+        at, first = np.atleast_1d(np.asarray(times, dtype=float)), np.asarray(state, dtype=float)
+        parts = np.split(at, range(_TIMES_AT_ONCE, len(at), _TIMES_AT_ONCE))
+        return np.concatenate(
+            [exponential(self.matrix, part, self._most) @ first for part in parts]
+        )
+
+
+def after_arrival(task: PointToPoint) -> list[FreeVibration]:
+    """The vibration at a task's target, in each of its scenarios."""
+    plants, window = task.perturbed_plants, task.residual_window
+    return [vibration_of(plant, task.target, window) for plant in plants]
+
+
+vibration_of = lru_cache(maxsize=256)(FreeVibration)
+"""A vibration that is kept for the next who asks for it."""
+
+
+@lru_cache(maxsize=256)
+def fastest_along(plant: Plant, start: float, target: float) -> float:
+    """Largest angular frequency of a plant at rest, from start to target [rad/s]."""
+    return float(fastest_of_moves(plant, [start], [target])[0])
+
+
+def fastest_of_moves(plant: Plant, starts: ArrayLike, targets: ArrayLike) -> Array:
+    """The same for each of many moves."""
+    angles = np.linspace(starts, targets, _ANGLES)
+    fastest = FreeVibration(plant, angles.ravel()).fastest
+    return fastest.reshape(angles.shape).max(axis=0)
+
+
+def exponential(matrix: Array, times: ArrayLike, fastest: float) -> Array:
+    """exp(matrix * time) for each time [s], by a Taylor series of a small part, squared again.
+
+    Fastest is the largest absolute eigenvalue.
+    """
+    at = matrix * np.asarray(times, dtype=float)[..., None, None]
+    radians = fastest * float(np.max(times, initial=0.0))
+    halvings = max(0, math.ceil(math.log2(max(radians, _SMALL) / _SMALL)))
+    small, unit = at / 2**halvings, np.eye(matrix.shape[-1])
+    found = np.broadcast_to(unit, small.shape)
+    for term in range(_TERMS, 0, -1):
+        found = unit + small @ found / term
+    for _ in range(halvings):
+        found = found @ found
+    return found
+
+
+def powers(rows: Array, step: Array, count: int) -> Array:
+    """The products of rows with the first `count` powers of a matrix, one after another."""
+    most = count * rows.shape[-2]
+    while rows.shape[-2] < most:
+        rows, step = np.concatenate([rows, rows @ step], axis=-2), step @ step
+    return rows[..., :most, :]
+
+
+def _stacked(entries: Sequence[Sequence[object]], count: int) -> Array:
+    """Entries that are numbers or columns, as so many matrices."""
+    columns = [
+        [np.broadcast_to(np.array(ca.DM(entry)).ravel(), count) for entry in row] for row in entries
+    ]
+    return np.moveaxis(np.array(columns), -1, 0)
+
+
+def _largest(tips: Array, rates: Array) -> Array:
+    """Largest absolute value of samples (n, samples, tips), and of the cubics between them.
+
+    Rates are those for the interval between two samples.
+    """
+    most = np.abs(tips).max(axis=(1, 2))
+    turns = np.nonzero(rates[:, :-1] * rates[:, 1:] < 0)
+    (w, after), (v, v_after) = ((one[:, :-1][turns], one[:, 1:][turns]) for one in (tips, rates))
+    at, rise = v / (v - v_after), after - w
+    second, third = 3 * rise - 2 * v - v_after, v + v_after - 2 * rise
+    at -= (v + at * (2 * second + 3 * at * third)) / (2 * second + 6 * at * third)  # Newton
+    np.maximum.at(most, turns[0], np.abs(w + at * (v + at * (second + at * third))))
+    return most
+
+
+def extreme_rows(rows: Array, tips: int) -> Array:
+    """Those rows of displacements, tip after tip at each time, that hold the largest of some state.
+
+    The tip turns in a plane when one mode moves it: of its rows and their negatives those on the
+    convex hull suffice, about half a period of them.
+    """
+    kept: list[Array] = []
+    for tip in range(tips):
+        own = rows[tip::tips]
+        _, spread, axes = np.linalg.svd(own, full_matrices=False)
+        if spread[2:].max(initial=0.0) <= 1e-12 * spread[0]:
+            own = own[_hull(own @ axes[:2].T)]
+        kept.append(own)
+    return np.vstack(kept)
+
+
+def _hull(points: Array) -> list[int]:
+    """Indices of points in the plane that lie, or whose negatives lie, on their common hull."""
+    both = np.vstack([points, -points])
+    order = np.lexsort(both.T[::-1])
+    at: list[list[float]] = both.tolist()  # NumPy's own numbers take much longer one by one
+    corners: set[int] = set()
+    for direction in (order, order[::-1]):  # Andrew's monotone chain: lower hull, then upper
+        chain: list[int] = []
+        for i in direction.tolist():
+            while len(chain) > 1 and _left_turn(at[chain[-2]], at[chain[-1]], at[i]) <= 0:
+                chain.pop()
+            chain.append(i)
+        corners.update(index % len(points) for index in chain)
+    return sorted(corners)
+
+
+def _left_turn(a: Sequence[float], b: Sequence[float], c: Sequence[float]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -1,0 +1,64 @@
+"""A motion's figures by `symbolic_rollout` in numbers, with the plant's scenarios one by one."""
+
+from dataclasses import replace
+from functools import lru_cache
+from types import SimpleNamespace
+
+import casadi as ca
+import numpy as np
+from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.objective import integrated
+from quietarm.ocp.task import QUANTITIES
+
+import quietarm as qa
+
+
+@lru_cache(maxsize=64)
+def _compiled(plant, profile, steps, breaks, energy):
+    """(coefficients, row) -> quantities at the nodes, angles, arrival, energy, net work."""
+    a, row = ca.MX.sym("a", profile.size), ca.MX.sym("row", 3 + 2 * plant.modes)
+    *move, initial = ca.vertsplit(row, [0, 1, 2, 3, row.numel()])
+    found = qa.symbolic_rollout(
+        plant, profile, ca.vertsplit(a), move, steps, jerk=True, breaks=breaks,
+        initial=ca.vertsplit(initial), energy=energy,
+    )  # fmt: skip
+    nodes = list(zip(found.joints, found.states, found.torque, strict=True))
+    quantities = [
+        ca.vertcat(*(value for joint, state, torque in nodes
+                     for value in one.of(joint, plant.tip_displacements(state.W), torque)))
+        for one in QUANTITIES.values()
+    ]  # fmt: skip
+    angles = ca.vertcat(*(joint.angle for joint in found.joints))
+    net_work = integrated(found.power, found.h)
+    outputs = [*quantities, angles, found.arrival, found.energy, net_work]
+    return ca.Function("rollout", [a, row], outputs)
+
+
+def _of_scenario(task, plant, profile, coefficients, steps):
+    function = _compiled(plant, profile, steps, profile.breaks(task.duration), task.energy)
+    found = function.call([ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.row)])
+    *quantities, angles, arrival, energy, net_work = (one.full() for one in found)
+    vibration = qa.FreeVibration(plant, task.target, task.residual_window)
+    past_target = (angles - task.target) * np.sign(task.span)
+    peaks = zip(QUANTITIES.values(), quantities, strict=True)
+    motion = qa.Motion(
+        residual=float(vibration.peak(task.missed(arrival.ravel()))),
+        energy=energy.item(),
+        net_work=net_work.item(),
+        overshoot=max(0.0, past_target.max()),
+        **{one.peak: float(np.abs(values).max()) for one, values in peaks},
+    )
+    return motion, arrival.ravel()
+
+
+def rollout(task, profile, coefficients, steps=None):
+    """Motion, arrival and steps; residual and deflection are the worst of all scenarios."""
+    steps = default_steps(task) if steps is None else steps
+    each = [
+        _of_scenario(task, plant, profile, coefficients, steps) for plant in task.perturbed_plants
+    ]
+    residual, deflection = (
+        max(getattr(motion, name) for motion, _ in each) for name in ("residual", "peak_deflection")
+    )
+    motion = replace(each[0][0], residual=residual, peak_deflection=deflection)
+    return SimpleNamespace(motion=motion, arrival=each[0][1], steps=steps)

@@ -1,0 +1,48 @@
+"""How many steps a move takes, and what is kept of a grid for the next simulation."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import casadi as ca
+import pytest
+from fixed_steps import rollout
+from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.objective import beyond_quadratic
+
+import quietarm as qa
+
+PLAIN = qa.CycloidPolynomial(0)
+
+
+@dataclass(frozen=True)
+class StiffMidway(qa.Plant):
+    """A mode of 10 rad/s at 0 and at pi that is forty times as fast between them."""
+
+    name: ClassVar[str] = "stiff-midway"
+    modes: ClassVar[int] = 1
+
+    def modal_accelerations(self, joint, W, dW):
+        frequency = 10.0 * (1 + 39 * ca.sin(joint.angle) ** 2)
+        return [-(frequency**2) * W[0] - 0.2 * dW[0] - joint.acceleration]
+
+    def torque(self, joint, W, dW, ddW):
+        return 2 * joint.acceleration + ddW[0]
+
+    def tip_displacements(self, W):
+        return [W[0]]
+
+
+def test_steps_resolve_the_fastest_mode_on_the_way():
+    # 400 rad/s halfway, where both ends say 10: two steps a radian.
+    task = qa.PointToPoint(StiffMidway(), math.pi, 2.0)
+    assert default_steps(task) == pytest.approx(2 * 400 * 2.0, rel=1e-2)
+    fixed, exact = rollout(task, PLAIN, []).motion, qa.Candidate.of_profile(task, PLAIN, []).motion
+    assert fixed.residual == pytest.approx(exact.residual, rel=1e-3)
+    assert fixed.energy == pytest.approx(exact.energy, rel=1e-5)
+
+
+def test_what_a_long_recording_takes_is_not_kept():
+    # 160 bytes a step: 32 recordings of 200,000 samples would take 1 GB.
+    assert beyond_quadratic(140)[0] is beyond_quadratic(140)[0]
+    assert beyond_quadratic(9_000)[0] is not beyond_quadratic(9_000)[0]
