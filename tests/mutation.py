@@ -49,7 +49,11 @@ TESTS = {
     "ocp/profiles/polynomial.py": ["ocp/profiles/test_polynomial.py"],
     "ocp/simulation/free_vibration.py": ["ocp/simulation", "ocp/planning/test_shaping.py"],
     "ocp/simulation/rollout.py": ["ocp/simulation", "metaheuristics/objective/test_population.py"],
-    "ocp/simulation/resimulation.py": ["ocp/simulation", "ocp/robustness/test_uncertain.py"],
+    "ocp/candidate.py": [
+        "ocp/test_candidate.py",
+        "ocp/simulation",
+        "ocp/robustness/test_uncertain.py",
+    ],
 }
 """The modules to change, and the tests that should notice."""
 
