@@ -222,34 +222,14 @@ def _largest(tips: Array, rates: Array) -> Array:
 def extreme_rows(rows: Array, tips: int) -> Array:
     """Those rows of displacements, tip after tip at each time, that hold the largest of some state.
 
-    The tip turns in a plane when one mode moves it: of its rows and their negatives those on the
-    convex hull suffice, about half a period of them.
+    A tip that one mode moves turns in a plane, and dies away: half a turn suffices.
     """
     kept: list[Array] = []
     for tip in range(tips):
         own = rows[tip::tips]
-        _, spread, axes = np.linalg.svd(own, full_matrices=False)
+        turning, spread, _ = np.linalg.svd(own, full_matrices=False)
         if spread[2:].max(initial=0.0) <= 1e-12 * spread[0]:
-            own = own[_hull(own @ axes[:2].T)]
+            angle = np.unwrap(np.arctan2(turning[:, 1], turning[:, 0]))
+            own = own[np.abs(angle - angle[0]) <= np.pi]
         kept.append(own)
     return np.vstack(kept)
-
-
-def _hull(points: Array) -> list[int]:
-    """Indices of points in the plane that lie, or whose negatives lie, on their common hull."""
-    both = np.vstack([points, -points])
-    order = np.lexsort(both.T[::-1])
-    at: list[list[float]] = both.tolist()  # NumPy's own numbers take much longer one by one
-    corners: set[int] = set()
-    for direction in (order, order[::-1]):  # Andrew's monotone chain: lower hull, then upper
-        chain: list[int] = []
-        for i in direction.tolist():
-            while len(chain) > 1 and _left_turn(at[chain[-2]], at[chain[-1]], at[i]) <= 0:
-                chain.pop()
-            chain.append(i)
-        corners.update(index % len(points) for index in chain)
-    return sorted(corners)
-
-
-def _left_turn(a: Sequence[float], b: Sequence[float], c: Sequence[float]) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

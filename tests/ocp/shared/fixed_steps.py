@@ -42,7 +42,7 @@ def _of_scenario(task, plant, profile, coefficients, steps):
     past_target = (angles - task.target) * np.sign(task.span)
     peaks = zip(QUANTITIES.values(), quantities, strict=True)
     motion = qa.Motion(
-        residual=float(vibration.peak(task.missed(arrival.ravel()))),
+        residual=float(np.abs(vibration.rows @ task.missed(arrival.ravel())).max()),
         energy=energy.item(),
         net_work=net_work.item(),
         overshoot=max(0.0, past_target.max()),
@@ -52,7 +52,10 @@ def _of_scenario(task, plant, profile, coefficients, steps):
 
 
 def rollout(task, profile, coefficients, steps=None):
-    """Motion, arrival and steps; residual and deflection are the worst of all scenarios."""
+    """Motion, arrival and steps, with the residual at the samples of a population.
+
+    Residual and deflection are the worst of all scenarios.
+    """
     steps = default_steps(task) if steps is None else steps
     each = [
         _of_scenario(task, plant, profile, coefficients, steps) for plant in task.perturbed_plants
