@@ -53,6 +53,7 @@ class SolveSettings:
     steps: int | None = None
     guess: tuple[float, ...] | None = None
     solver: Literal["sqp", "ipopt"] = "sqp"
+    print_level: int = field(default=0, compare=False)
 
     def __post_init__(self) -> None:
         limit = not_negative("residual limit", self.residual_limit, "m")
@@ -162,8 +163,6 @@ class Provenance(Generic[S]):
         Versions of quietarm, casadi, numpy and Python.
     seconds : float
         How long it took; not compared.
-    stopped : str or None
-        After what Ctrl-C ended the work early, in words; None where it ran to its end.
     """
 
     method: str
@@ -171,7 +170,6 @@ class Provenance(Generic[S]):
     search: Mapping[str, Setting] = field(default_factory=dict, hash=False)
     versions: Mapping[str, str] = field(default_factory=versions, hash=False)
     seconds: NotNegative = field(default=0.0, compare=False)
-    stopped: str | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "search", settings_given(self.search))

@@ -237,8 +237,3 @@ class MotionAnswer(Saved):
     def residual(self) -> float:
         """F1, the largest absolute tip displacement after arrival [m], by the same."""
         return self.motion.residual
-
-    @property
-    def complete(self) -> bool:
-        """Whether the solver ran to its end; False where Ctrl-C stopped it."""
-        return self.provenance.stopped is None

@@ -26,6 +26,7 @@ class Gradient:
         objective = problem.objective
         settings = SolveSettings(bound=bound, starts=1, seed=seed)
         self._curve = Curve.begin(objective.task, objective.profile, settings)
+        self.iterations = 0
         self._problem, self._random = problem, np.random.default_rng(seed)
         self._lower, self._upper = objective.profile.box(bound)
 
@@ -34,6 +35,7 @@ class Gradient:
         (found,) = self._curve.solver.solve([self._curve.problem(residual_limit)], [start])
         size = len(start)
         an_iteration = 1 + size + size * (size + 1) // 2
+        self.iterations += found.iterations
         self._problem.spend(found.iterations * an_iteration)
         if found.status.solved:
             inside = np.clip(found.coefficients, self._lower, self._upper)

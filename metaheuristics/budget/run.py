@@ -116,7 +116,7 @@ def search_within(
     front = front_through(
         record.non_dominated()[0], task, profile,
         method=method, settings=stated, seed=seed, seconds=seconds, evaluations=record.spent,
-        iterations=gradient.sweep.iterations, failed=problem.failed, infeasible=problem.infeasible,
+        iterations=gradient.iterations, failed=problem.failed, infeasible=problem.infeasible,
     )  # fmt: skip
     return BudgetRun(front, tuple(record.marks), record.visits)
 

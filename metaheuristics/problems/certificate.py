@@ -16,7 +16,7 @@ from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
 from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.planning.best_of_starts import first_steps
 from quietarm.ocp.planning.certify import judge
-from quietarm.ocp.planning.plan_move import plan_at_samples
+from quietarm.ocp.planning.from_starts import plan_from_starts
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
 from quietarm.ocp.solvers.problem import Problem, Scalarization
@@ -167,7 +167,7 @@ def _gained(front: Front, found: Sequence[tuple[int, Problem, Solution]]) -> flo
             guess=tuple(one.coefficients.tolist()),
         )  # fmt: skip
         with suppress(QuietarmError):
-            plan = plan_at_samples(steps.task, steps.profile, settings)
+            plan, _ = plan_from_starts(steps.task, steps.profile, settings)
             gained = max(gained, 1 - plan.energy / front.points[i].energy)
     return gained
 

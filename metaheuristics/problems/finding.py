@@ -16,7 +16,7 @@ from quietarm.ocp import (
     non_dominated,
 )
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.planning.plan_move import plan_at_samples
+from quietarm.ocp.planning.from_starts import plan_from_starts
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.choice import SolverName
 
@@ -98,7 +98,7 @@ def _better(
             guess=None if guess is None else guess.coefficients, solver=solver,
         )  # fmt: skip
         # not `plan_move`: a front's residual is that at the samples of an uncertain plant
-        plan = plan_at_samples(front.task, front.profile, settings)
+        plan, _ = plan_from_starts(front.task, front.profile, settings)
     except QuietarmError:
         return point
     found = FrontPoint(plan.coefficients, plan.residual, plan.energy)

@@ -70,9 +70,6 @@ class Front(Saved):
         Ranges of the residual [m] in which a weighted sum has no point, whatever the weight.
     history : tuple of Generation
         Hypervolume by generation.
-    excess : float or None
-        Of an uncertain plant, the share by which a point's residual may pass what it states between
-        the samples of the plant; None where only the samples were looked at.
     complete : bool
         Whether the method ran to its end.
     versions : dict of str to str
@@ -104,7 +101,6 @@ class Front(Saved):
     failures: tuple[FailedPoint, ...] = ()
     gaps: tuple[tuple[NotNegative, NotNegative], ...] = ()
     history: tuple[Generation, ...] = ()
-    excess: float | None = None
     complete: bool = True
     versions: Mapping[str, str] = field(default_factory=versions, hash=False)
     seconds: NotNegative = field(default=0.0, compare=False)

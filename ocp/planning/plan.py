@@ -95,6 +95,12 @@ class Plan(MotionAnswer):
         return Candidate.of_profile(self.task, self.profile, self.coefficients)
 
     @property
+    def residual_limit(self) -> float | None:
+        """Largest residual that was asked for [m]; None where the gradient was not asked."""
+        settings = self.provenance.settings
+        return None if settings is None else settings.residual_limit
+
+    @property
     def path(self) -> JointPath:
         """The joint's motion as a callable of time and derivative order."""
         return self.profile.path(self.coefficients, *self.task.move)

@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
-from dataclasses import replace
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from quietarm.ocp.errors import InfeasibleTaskError
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.planning.best_of_starts import (
-    first_steps,
-    solve_from_starts,
-    start_coefficients,
-)
-from quietarm.ocp.planning.certify import OVERRUN, certify
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.feasibility import UNITS
+from quietarm.ocp.planning.from_starts import plan_from_starts
 from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
-from quietarm.ocp.planning.robust import limit_of, robust_plan
+from quietarm.ocp.planning.robust import plan_robustly
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.record import Provenance, SolveSettings, Verification
-from quietarm.ocp.solvers.choice import SolverName, solver_of
-from quietarm.ocp.solvers.problem import Problem, Scalarization
-from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, Transcription
+from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.solvers.choice import SolverName
+from quietarm.ocp.solvers.transcription import RESIDUAL, STILL
 from quietarm.ocp.task import PointToPoint
 
 
@@ -32,11 +22,9 @@ def only_motion(
     task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
 ) -> Plan:
     """The figures of the only motion that a profile has, within the task's limits."""
-    asked = 0.0 if residual_limit is None else residual_limit
-    plan = evaluate_coefficients(
-        task, [], profile=profile, method="evaluated", settings={"residual_limit": asked}
-    )
-    residual = {} if residual_limit is None else {"residual": max(residual_limit, STILL)}
+    asked = {} if residual_limit is None else {"residual_limit": residual_limit}
+    plan = evaluate_coefficients(task, [], profile=profile, method="evaluated", settings=asked)
+    residual = {} if residual_limit is None else {RESIDUAL: max(residual_limit, STILL)}
     limits = {**residual, **task.limits}
     broken = [
         f"its {name} reaches {plan.motion.peak(name):.4g} {UNITS[name]}, above {limits[name]:g}"
@@ -62,6 +50,7 @@ def plan_move(
     steps: int | None = None,
     guess: ArrayLike | None = None,
     solver: SolverName = "sqp",
+    print_level: int = 0,
 ) -> Plan:
     """Find the motion of least energy whose residual vibration is within a limit.
 
@@ -76,7 +65,9 @@ def plan_move(
         Largest F1 [m]; 0 asks for rest on arrival, or for the task's `final` state, where there
         are coefficients to choose. By default 0; of an uncertain task, which hardly ever arrives
         at rest whatever its errors, 5 % of how far the plain cycloid of the same duration bends the
-        assumed plant's tip on its way.
+        nominal plant's tip on its way, or less: what the plan of the nominal plant leaves in the
+        worst case. Where neither can be reached, the least worst case. `Plan.residual_limit` is
+        the one that was taken.
     bound : float, optional
         Largest absolute coefficient; none by default.
     starts : int
@@ -93,13 +84,15 @@ def plan_move(
     solver : {"sqp", "ipopt"}
         Sequential quadratic programs, all starts at once, or IPOPT, one after another. Where the
         first solves no start, IPOPT takes over.
+    print_level : int
+        How much of its log IPOPT prints, 0 to 12.
 
     Returns
     -------
     Plan
-        The coefficients, with the figures of an independent integrator. Of an uncertain plant the
-        residual limit holds between the samples as well, as its ``worst`` states; its task has the
-        samples that this took.
+        The coefficients, with the figures of an independent integrator. Of an uncertain task the
+        residual limit holds between the scenarios as well, as its ``worst`` states; its task has
+        the scenarios that this took.
 
     Raises
     ------
@@ -114,43 +107,9 @@ def plan_move(
     if guess is not None:
         guess = profile.checked(guess)
     least = 0.0 if residual_limit is None else residual_limit
-    settings = SolveSettings(least, bound, starts, seed, steps, guess, solver)
+    settings = SolveSettings(least, bound, starts, seed, steps, guess, solver, print_level)
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
-    settings = replace(settings, residual_limit=limit_of(task, residual_limit))
     if task.uncertainty is not None:
-        return robust_plan(task, profile, settings, plan_from)
-    return plan_at_samples(task, profile, settings)
-
-
-def plan_at_samples(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Plan:
-    """The plan of a task whose residual limit holds at the plant's samples, if it has any."""
-    return plan_from(task, profile, settings, start_coefficients(profile, settings))[0]
-
-
-def plan_from(
-    task: PointToPoint,
-    profile: JointProfile,
-    settings: SolveSettings,
-    starts: Sequence[NDArray[np.float64]],
-) -> tuple[Plan, list[NDArray[np.float64]]]:
-    """The plan from given starts, and the coefficients of all that were solved, cheapest first."""
-    began, solver = time.perf_counter(), solver_of(settings.solver)
-    transcription = Transcription(task, profile, first_steps(task, profile, settings))
-    limits = {RESIDUAL: settings.residual_limit, **task.limits}
-    problem = Problem(transcription, Scalarization(limits, settings.bound))
-    best, solved = solve_from_starts(problem, starts, solver)
-    certified = certify(problem, best, solver)
-    solution, motion = certified.solution, certified.checked.motion
-    plan = Plan(
-        task=task,
-        profile=profile,
-        coefficients=profile.checked(solution.coefficients),
-        motion=motion,
-        status=solution.status,
-        verification=Verification.between(
-            certified.steps, solution.energy, solution.residual, motion
-        ),
-        provenance=Provenance(settings.solver, settings, seconds=time.perf_counter() - began),
-    )
-    return plan, [one.coefficients for one in solved]
+        return plan_robustly(task, profile, settings, residual_limit)
+    return plan_from_starts(task, profile, settings)[0]

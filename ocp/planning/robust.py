@@ -1,43 +1,51 @@
-"""Hold a residual limit between the samples of an uncertain plant, not only at them."""
+"""Plans of uncertain tasks, whose residual limit holds between the scenarios as well."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.planning.best_of_starts import start_coefficients
+from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
+from quietarm.ocp.planning.best_of_starts import (
+    best_of_starts,
+    first_steps,
+    start_coefficients,
+)
 from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.from_starts import plan_from_starts
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.record import REST, SolveSettings
 from quietarm.ocp.robustness.measures import quiet_residual
-from quietarm.ocp.robustness.worst import peaks_between
+from quietarm.ocp.robustness.worst import peaks_between, worst_of
+from quietarm.ocp.solvers.choice import solver_of
+from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
 from quietarm.ocp.task import PointToPoint
 
 EXCESS = 0.05
-"""Share of the limit by which the residual between samples may pass it before more are added."""
+"""Share of the limit by which the residual between scenarios may exceed it before more are added;
+and the room above the least worst case, where no lower limit can be reached."""
 _ROUNDS, _ADDED, _KEPT = 6, 4, 4
-"""Most rounds of added samples; most samples that one adds; most motions to go on from."""
+"""Most rounds of added scenarios; most that one adds; most motions to go on from."""
 _SAME = 1e-6
-"""Errors that differ by less than this share of their range are one sample."""
+"""Errors that differ by less than this share of their range are one scenario."""
 _TIGHTENINGS = 4
 """Most times that the limit is tightened by what is left of the excess."""
 
-Starts = Sequence[NDArray[np.float64]]
-Peaks = NDArray[np.float64]
-"""Residuals [m] and errors of peaks between the samples, the largest first."""
-PlanFrom = Callable[
-    [PointToPoint, JointProfile, SolveSettings, Starts], tuple[Plan, list[NDArray[np.float64]]]
-]
-"""(task, profile, settings, starts) -> plan, and coefficients of all starts that were solved."""
+Array = NDArray[np.float64]
+Starts = Sequence[Array]
 
 
 def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
-    """The residual limit of a plan, also where none is given."""
+    """The residual limit that is given, or the largest that is taken by default.
+
+    Of an uncertain task `quiet_residual`; ValueError where that, or what is given, is 0.
+    """
     if task.uncertainty is None:
         return 0.0 if residual_limit is None else residual_limit
     if residual_limit is None:
@@ -55,34 +63,99 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
     return residual_limit
 
 
-def robust_plan(
-    task: PointToPoint, profile: JointProfile, settings: SolveSettings, plan_from: PlanFrom
+def plan_robustly(
+    task: PointToPoint,
+    profile: JointProfile,
+    settings: SolveSettings,
+    residual_limit: float | None,
 ) -> Plan:
-    """The plan of an uncertain plant, with its residual limit held between the samples.
+    """The plan of an uncertain task.
 
-    Every sample's residual is a constraint of one program. Where the residual of its solution
-    passes the limit between them by more than `EXCESS`, those peaks become samples, and the motions
-    that were found are the next starts. What is left of the excess is then taken off the limit.
+    Without a residual limit it leaves no more in the worst case than the plan of the nominal plant.
     """
-    began, limit = time.perf_counter(), settings.residual_limit
+    began, largest = time.perf_counter(), limit_of(task, residual_limit)
+    if residual_limit is not None:
+        plan = _hold(task, profile, replace(settings, residual_limit=largest))
+        if plan.excess is not None and plan.excess > OVERRUN:
+            assert plan.worst is not None
+            raise SolverFailedError(
+                f"the residual is {plan.worst.residual:.4g} m in the worst case, above its limit "
+                f"of {residual_limit:g} m: give a larger residual limit, more {profile.term}s or "
+                "a smaller uncertainty"
+            )
+    else:
+        plan = _hold_default(task, profile, settings, largest)
+    return replace(plan, provenance=replace(plan.provenance, seconds=time.perf_counter() - began))
 
-    def solve(task: PointToPoint, starts: Starts) -> tuple[Plan, Peaks, Starts]:
-        plan, others = plan_from(task, profile, settings, starts)
+
+def _hold_default(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, largest: float
+) -> Plan:
+    """The plan within the default limit, at most what the nominal plant's plan leaves."""
+    nominal, reached = list[Plan](), np.inf
+    with suppress(SolverFailedError):  # only other motions may keep the limits
+        plain = replace(settings, residual_limit=0.0)
+        plan, _ = plan_from_starts(task.certain, profile, plain)
+        nominal = [plan]
+        worst = worst_of(task, profile, plan.coefficients)
+        reached = np.inf if worst is None else max(worst.residual, REST)
+    starts = [np.array(plan.coefficients) for plan in nominal]
+    limit = min(largest, reached)
+    try:
+        plan = _hold(task, profile, replace(settings, residual_limit=limit), starts)
+    except InfeasibleTaskError:
+        least = _least_worst_case(task, profile, settings, starts)
+        limit = min((1 + EXCESS) * least, reached)
+        plan = _hold(task, profile, replace(settings, residual_limit=limit), starts)
+    if plan.excess is None or plan.excess <= OVERRUN or plan.worst is None:
+        return plan
+    # it is as low as this profile gets: the limit is what it leaves
+    settings = replace(settings, residual_limit=plan.worst.residual)
+    return replace(plan, provenance=replace(plan.provenance, settings=settings))
+
+
+def _least_worst_case(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, starts: Starts
+) -> float:
+    """The least residual over the scenarios [m]; InfeasibleTaskError where limits are not kept."""
+    transcription = Transcription(task, profile, first_steps(task, profile, settings))
+    asked = Scalarization(task.limits, settings.bound, {RESIDUAL: 1.0})
+    every = [*starts, *start_coefficients(profile, settings)]
+    solver = solver_of(settings.solver)
+    (found,) = best_of_starts([Problem(transcription, asked)], [every], solver)
+    if not found.status.solved:
+        raise InfeasibleTaskError(f"no motion keeps the limits: {found.status.text}")
+    return found.residual
+
+
+def _hold(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, starts: Starts = ()
+) -> Plan:
+    """The plan whose residual limit holds between the scenarios as well, if that can be had.
+
+    The residual of every scenario is a constraint of one problem. Where that of its solution
+    exceeds the limit between them by more than `EXCESS`, those peaks become scenarios, and the
+    motions that were found are the next starts. What is left of the excess is then taken off the
+    limit.
+    """
+    limit = settings.residual_limit
+
+    def solve(task: PointToPoint, starts: Starts) -> tuple[Plan, Array, Starts]:
+        plan, others = plan_from_starts(task, profile, settings, starts)
         return *_look_between(plan), [np.array(plan.coefficients), *others[:_KEPT]]
 
-    plan, peaks, starts = solve(task, start_coefficients(profile, settings))
+    plan, peaks, starts = solve(task, [*starts, *start_coefficients(profile, settings)])
     for _ in range(_ROUNDS):
-        more = _new_samples(task, peaks[peaks[:, 0] > limit, 1:])
+        more = _new_scenarios(task, peaks[peaks[:, 0] > limit, 1:])
         if peaks[0, 0] / limit - 1 <= EXCESS or not more:
             break
         task = task.with_samples([*task.scenarios[1:], *more])
         plan, peaks, starts = solve(task, starts)
-    plan = _tighten(plan, peaks, settings, plan_from)
-    provenance = replace(plan.provenance, settings=settings, seconds=time.perf_counter() - began)
-    return replace(plan, provenance=provenance)
+    plan = _tighten(plan, peaks, settings)
+    return replace(plan, provenance=replace(plan.provenance, settings=settings))
 
 
-def _tighten(plan: Plan, peaks: Peaks, settings: SolveSettings, plan_from: PlanFrom) -> Plan:
+def _tighten(plan: Plan, peaks: Array, settings: SolveSettings) -> Plan:
     """Take what is left of the excess off the limit."""
     limit = used = settings.residual_limit
     for _ in range(_TIGHTENINGS):
@@ -93,21 +166,21 @@ def _tighten(plan: Plan, peaks: Peaks, settings: SolveSettings, plan_from: PlanF
         tighter = replace(settings, residual_limit=used, steps=plan.verification.steps)
         start = [np.array(plan.coefficients)]
         try:
-            found, _ = plan_from(plan.task, plan.profile, tighter, start)
+            found, _ = plan_from_starts(plan.task, plan.profile, tighter, start)
         except SolverFailedError:
             break
         plan, peaks = _look_between(found)
     return plan
 
 
-def _new_samples(task: PointToPoint, errors: NDArray[np.float64]) -> list[list[float]]:
-    """Those of the errors that no sample of the uncertain plant has."""
+def _new_scenarios(task: PointToPoint, errors: Array) -> list[list[float]]:
+    """Those of the errors that are no scenario of the task yet."""
     known = np.array(task.scenarios[1:])
     near = _SAME * np.array(list(task.ranges.values()))
     return [one.tolist() for one in errors if (np.abs(known - one) > near).any(axis=1).all()]
 
 
-def _look_between(plan: Plan) -> tuple[Plan, Peaks]:
-    """The plan with its worst case, and the largest peaks between the samples."""
+def _look_between(plan: Plan) -> tuple[Plan, Array]:
+    """The plan with its worst case; residuals [m] and errors of peaks, the largest first."""
     worst, peaks = peaks_between(plan.task, plan.profile, plan.coefficients, _ADDED)
     return replace(plan, worst=worst), peaks

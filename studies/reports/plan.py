@@ -33,7 +33,7 @@ def plan_document(plan: Plan, notes: Sequence[str] = (), sensitive: bool = False
         *figure_rows(plan.task, motion),
         *([("turns back", f"by {back:.3g} rad on the way")] if back > _SEEN else []),
         *_worst_rows(plan),
-        ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
+        ("status", plan.status.text),
         _verified_row(plan),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
@@ -74,17 +74,8 @@ def _not_held(plan: Plan) -> str:
     """That a robust plan passes its residual limit between the samples, and what would help."""
     if plan.excess is None or plan.excess <= EXCESS:
         return ""
-    remedy = (
-        "give a larger --residual-limit, more --terms or a smaller --robust error"
-        if plan.complete
-        else "let the plan run to its end"
-    )
+    remedy = "give a larger --residual-limit, more --terms or a smaller --robust error"
     return f"; not robust enough: more than {EXCESS:.0%} above; {remedy}"
-
-
-def stopped_words(after: str | None) -> str:
-    """That Ctrl-C came, and after what; nothing where it did not."""
-    return f" Interrupted after {after}; this is the best until then." if after else ""
 
 
 def _verified_row(plan: Plan) -> Row:

@@ -7,9 +7,8 @@ from typing import Any
 
 import click
 from quietarm.ocp import PointToPoint, energy_floor
-from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies import figures
-from quietarm.studies.cli.ending import finish, interruption
+from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import task_options
 from quietarm.studies.cli.types import JSON_FILE, PICTURE, WHOLE
@@ -48,11 +47,8 @@ def floor(
     """  # noqa: D301  # \b is click's: do not rewrap
     with working("refining the grid", Console(stderr=True), quiet=quiet):
         found = energy_floor(task, **asked)
-        with note_interrupts() as came:  # the floor is found, and the plan takes a moment
-            plan = plan_beside(found) if found.complete else None
-
+        plan = plan_beside(found)
     finish(
         [(output, found.save), (figure, drawing(lambda: figures.floor_figure(found, plan)))],
         floor_document(found, plan),
-        trouble=interruption(found.provenance.stopped) if came or not found.complete else None,
     )

@@ -10,7 +10,7 @@ import click
 from quietarm.metaheuristics.ensemble import LostSeedsError, search_many, seeds_of
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError, cross_check
 from quietarm.studies import figures
-from quietarm.studies.cli.ending import finish, interruption
+from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import (
     family_option,
     method_settings_option,
@@ -208,16 +208,12 @@ def _by_gradient(
     if not front.points:
         reasons = (line.strip() for line in failure_lines(front, asked_for)[1:])
         raise SolverFailedError(f"no point was found: {'; '.join(reasons)}")
-    checked, complete = None, front.complete
-    if check and complete:
-        try:
-            with count(_CHECKED, "checked points", errors, quiet=quiet) as report:
-                checked = cross_check(front, _CHECKED, report)
-        except KeyboardInterrupt:  # the front is there
-            complete = False
+    checked = None
+    if check:
+        with count(_CHECKED, "checked points", errors, quiet=quiet) as report:
+            checked = cross_check(front, _CHECKED, report)
     document = sweep_document(front, asked_for, checked)
-    trouble = None if complete else interruption()
-    return [front], lambda: figures.sweep_figure(front), document, trouble
+    return [front], lambda: figures.sweep_figure(front), document, None
 
 
 def _by_search(

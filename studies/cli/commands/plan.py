@@ -21,7 +21,7 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.ocp.planning.robust import limit_of
-from quietarm.studies.cli.ending import finish, interruption
+from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import (
     method_settings_option,
@@ -109,7 +109,7 @@ def plan(
         raise ValueError(
             "--duration fastest is for the gradient and profiles with coefficients; give a time"
         )
-    motions, notes, complete = profile_of(profile, task, terms), list[str](), True
+    motions, notes = profile_of(profile, task, terms), list[str]()
     if method != GRADIENT:
         found = _by_search(task, method, motions, settings_of_one(setting), polish, quiet, **asked)
         if not (polish or asked["residual_limit"] or found.worst):
@@ -121,14 +121,12 @@ def plan(
         del asked["starts"]
         with working("looking for the shortest duration", Console(stderr=True), quiet=quiet):
             shortest = fastest_move(task, motions, **asked)
-        found, complete = shortest.plan, shortest.complete
+        found = shortest.plan
         notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
     else:
         with working("solving", Console(stderr=True), quiet=quiet):
             found = plan_move(task, motions, **asked)
-    complete = complete and found.complete
-    stopped = None if complete else interruption(found.provenance.stopped)
-    finish(files_of(found), plan_document(found, notes, sensitive), trouble=stopped)
+    finish(files_of(found), plan_document(found, notes, sensitive))
 
 
 def _by_search(
@@ -166,15 +164,12 @@ def _by_search(
     found = _told(found, seconds=front.seconds)
     if not polish:
         return found
-    try:
-        polished = plan_move(
-            task, profile, residual_limit=residual_limit, bound=bound, starts=1, seed=seed,
-            guess=point.coefficients,
-        )  # fmt: skip
-    except KeyboardInterrupt:
-        return _told(found, stopped="the search, before its point was polished")
-    seconds = front.seconds + polished.provenance.seconds
-    return _told(polished, method=f"{method}, polished by ipopt", search=used, seconds=seconds)
+    polished = plan_move(
+        task, profile, residual_limit=residual_limit, bound=bound, starts=1, seed=seed,
+        guess=point.coefficients,
+    )  # fmt: skip
+    by, seconds = polished.provenance.method, front.seconds + polished.provenance.seconds
+    return _told(polished, method=f"{method}, polished by {by}", search=used, seconds=seconds)
 
 
 def _told(plan: Plan, **changes: Any) -> Plan:

@@ -11,7 +11,7 @@ import numpy as np
 from quietarm.ocp import Front, Gain, polish_front
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
-from quietarm.studies.cli.ending import finish, interruption
+from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import CSV_FILE, INPUT, JSON_FILE, PICTURE, WHOLE
@@ -53,8 +53,7 @@ def polish(
     """Improve the points of a front that was written by `quietarm front`.
 
     From each point the gradient looks for a cheaper motion of no larger residual. What a
-    metaheuristic's front gains shows how far it was from the optimum. Ctrl-C ends the work early
-    and keeps what was improved.
+    metaheuristic's front gains shows how far it was from the optimum.
 
     \b
     Examples:
@@ -67,10 +66,7 @@ def polish(
     given = whole_front if points is None else thinned(whole_front, points)
     with count(len(given.points), "points", errors, quiet=quiet) as report:
         polished = polish_front(given, report=report)
-    gains = [gain for gain in polished.gains if gain.tried]
-    if not gains:
-        raise KeyboardInterrupt
-
+    gains = list(polished.gains)
     finish(
         [
             (output, polished.front.save),
@@ -78,7 +74,6 @@ def polish(
             (figure, drawing(lambda: figures.polish_figure(given, polished))),
         ],
         _gains_document(whole_front, given, polished.front, gains),
-        trouble=interruption() if len(gains) < len(given.points) else None,
     )
 
 

@@ -9,7 +9,7 @@ from quietarm.metaheuristics import PROBLEMS, problem_of
 from quietarm.metaheuristics.objective.claims import check_figures
 from quietarm.metaheuristics.problems import finding
 from quietarm.ocp import evaluate_coefficients
-from quietarm.ocp.planning.plan_move import plan_at_samples
+from quietarm.ocp.planning.from_starts import plan_from_starts
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.uncertainty import perturb_plant
 
@@ -52,7 +52,7 @@ def test_no_cold_start_is_better_than_the_exact_front(name):
     middle = front.points[len(front.points) // 2]
     problem = problem_of(name)
     settings = SolveSettings(middle.residual, problem.bound, starts=1, seed=99)
-    plan = plan_at_samples(front.task, problem.profile, settings)
+    plan, _ = plan_from_starts(front.task, problem.profile, settings)
     assert plan.residual <= middle.residual * (1 + 1e-3)
     assert plan.energy >= middle.energy * (1 - BETTER)
 

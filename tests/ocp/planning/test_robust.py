@@ -55,7 +55,7 @@ def test_residual_and_energy_are_those_of_samples_and_assumed_plant(plan):
 
 def test_what_cannot_be_met_says_what_can(task):
     with pytest.raises(qa.InfeasibleTaskError, match="residual limit"):
-        qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2, starts=1)
+        qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2, starts=1, residual_limit=1e-3)
 
 
 def test_ipopt_finds_the_same(task, plan):
@@ -63,3 +63,32 @@ def test_ipopt_finds_the_same(task, plan):
     assert other.provenance.method == "ipopt"
     assert other.excess <= robust.EXCESS
     assert other.energy == pytest.approx(plan.energy, rel=1e-2)
+
+
+@pytest.mark.parametrize("error", [1e-4, 0.05, 0.1])
+def test_by_default_it_leaves_no_more_than_the_plain_plan_in_the_worst_case(task, error):
+    task = replace(task, uncertainty=qa.Uncertainty({"frequency": error}))
+    plain, plan = qa.plan_move(task.certain), qa.plan_move(task)
+    errors = error * np.linspace(-1, 1, 21)
+    leaves = [max(residuals(one, errors)) for one in (plain, plan)]
+    assert leaves[1] <= max(leaves[0], 1e-6) * (1 + 1e-3)
+    # the answer says which limit that was, at most 5 % of how far the plain cycloid bends the tip
+    bent = qa.evaluate_coefficients(task.certain, []).motion.peak_deflection
+    assert leaves[1] <= plan.residual_limit * (1 + 1e-3) <= 0.05 * bent * (1 + 2e-3)
+
+
+def test_where_the_default_is_out_of_reach_the_limit_is_near_the_least_worst_case(task):
+    one_term = qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2)
+    limit = one_term.residual_limit
+    assert one_term.worst.residual <= limit * (1 + 1e-3)
+    with pytest.raises(qa.InfeasibleTaskError):
+        qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2, residual_limit=0.9 * limit)
+
+
+def test_a_limit_that_does_not_hold_is_refused_with_what_is_left(task, monkeypatch):
+    # without rounds and tightening nothing holds between the scenarios
+    monkeypatch.setattr(robust, "_ROUNDS", 0)
+    monkeypatch.setattr(robust, "_TIGHTENINGS", 0)
+    task = replace(task, uncertainty=qa.Uncertainty({"frequency": 0.2}))
+    with pytest.raises(qa.SolverFailedError, match="in the worst case, above its limit of 0.002 m"):
+        qa.plan_move(task, residual_limit=2e-3)
