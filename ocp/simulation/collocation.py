@@ -10,9 +10,9 @@ Ordinary Differential Equations I, section II.7 (Gauss methods), used in Nystrom
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -38,17 +38,8 @@ def _gauss() -> tuple[list[float], list[float], list[list[float]], list[list[flo
 GAUSS_NODES, GAUSS_WEIGHTS, _ONCE, _TWICE = _gauss()
 
 
-@dataclass(frozen=True)
-class ModalSystem:
-    """The coefficients of W'' = g - D W' - K W at one time, read off the plant's own equations.
-
-    Attributes
-    ----------
-    g : list of Expression, `modes` entries
-        Excitation by the joint [m/s^2].
-    K, D : list of list of Expression, `modes` x `modes`
-        Stiffness [1/s^2] and damping [1/s].
-    """
+class ModalSystem(NamedTuple):
+    """W'' = g - D W' - K W at one time: g [m/s^2] by mode, K [1/s^2] and D [1/s] by two modes."""
 
     g: list[Expression]
     K: list[list[Expression]]
@@ -56,24 +47,23 @@ class ModalSystem:
 
 
 def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
-    """Coefficients of the modes along a joint motion.
+    """The modes' coefficients along a joint motion, read off the plant's own equations.
 
-    The equations are affine in the modes (`Plant.validate`), so that their values at zero and at
-    each unit vector give the coefficients without a derivative, element by element.
+    These are affine in the modes (`Plant.validate`), so that their values at zero and at each unit
+    vector give the coefficients without a derivative, element by element.
     """
-    modes, zero = range(plant.modes), [0.0] * plant.modes
-    acts = _acting(plant)
+    modes, zero, acts = range(plant.modes), [0.0] * plant.modes, _acting(plant)
+    units = [[float(other == mode) for other in modes] for mode in modes]
     g = list(plant.modal_accelerations(joint, zero, zero))
 
-    def columns(of_rate: bool) -> list[list[Expression]]:
-        response: list[Sequence[Expression]] = []
-        for mode in modes:
-            unit = [float(other == mode) for other in modes]
-            W, dW = (zero, unit) if of_rate else (unit, zero)
-            response.append(plant.modal_accelerations(joint, W, dW))
-        return [[g[i] - response[j][i] if acts[i][j] else 0.0 for j in modes] for i in modes]
+    def columns(responses: Sequence[Modes]) -> list[list[Expression]]:
+        return [[g[i] - responses[j][i] if acts[i][j] else 0.0 for j in modes] for i in modes]
 
-    return ModalSystem(g, K=columns(of_rate=False), D=columns(of_rate=True))
+    return ModalSystem(
+        g,
+        K=columns([plant.modal_accelerations(joint, unit, zero) for unit in units]),
+        D=columns([plant.modal_accelerations(joint, zero, unit) for unit in units]),
+    )
 
 
 def _acting(plant: Plant) -> list[list[bool]]:
@@ -93,8 +83,7 @@ def _kind_of(plant: Plant) -> Any:
     return ca.SX if is_sx or any(_kind_of(one) is ca.SX for one in inside) else ca.MX
 
 
-@dataclass(frozen=True)
-class NodeState:
+class NodeState(NamedTuple):
     """The modes at one node of a step: amplitudes [m], rates [m/s], accelerations [m/s^2]."""
 
     W: list[Expression]
@@ -104,18 +93,10 @@ class NodeState:
 
 @dataclass(frozen=True)
 class Step:
-    """One step of length `h` as an affine map of the state (W, W') before it.
+    """One step of length `h` [s] as an affine map of the state (W, W') before it.
 
-    Attributes
-    ----------
-    h : Expression
-        Length of the step [s].
-    response : list of list of Expression
-        For node j and mode i, entry j * modes + i: W'' as [constant, by W..., by W'...].
-    modes : int
-        Number of modes.
-    forced : list of list of Expression
-        In the same rows, W'' by an excitation of 1 in each of these rows: where it was asked for.
+    Row j * modes + i of `response` is W'' of node j and mode i as [constant, by W..., by W'...];
+    that of `forced`, where it was asked for, W'' by an excitation of 1 in each of these rows.
     """
 
     h: Expression
@@ -135,10 +116,14 @@ class Step:
     def accelerations(self, W: Modes, dW: Modes) -> list[list[Expression]]:
         """W'' at the nodes for the state before the step: a list over nodes of lists over modes."""
         state = [*W, *dW]
-        flat = [
-            row[0] + sum(row[1 + k] * x for k, x in enumerate(state) if not is_zero(row[1 + k]))
+        return self._by_node(
+            row[0]
+            + sum(gain * x for gain, x in zip(row[1:], state, strict=True) if not is_zero(gain))
             for row in self.response
-        ]
+        )
+
+    def _by_node(self, rows: Iterable[Expression]) -> list[list[Expression]]:
+        flat = list(rows)
         return [flat[j * self.modes : (j + 1) * self.modes] for j in range(NODES)]
 
     def end(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> tuple[Modes, Modes]:
@@ -157,21 +142,14 @@ class Step:
 
         Entries of `columns` for modes that do not act on each other are the number 0.0.
         """
-        size = 2 * self.modes
 
-        def after(state: list[float], constant: bool) -> list[Expression]:
-            W, dW = state[: self.modes], state[self.modes :]
-            moved = [
-                (row[0] if constant else 0.0)
-                + sum(row[1 + k] for k, value in enumerate(state) if value)
-                for row in self.response
-            ]
-            ddW = [moved[j * self.modes : (j + 1) * self.modes] for j in range(NODES)]
-            ends = self.end(W, dW, ddW)
-            return [*ends[0], *ends[1]]
+        def after(column: int) -> list[Expression]:
+            state = [float(column == 1 + row) for row in range(2 * self.modes)]
+            ddW = self._by_node(row[column] for row in self.response)
+            W, dW = self.end(state[: self.modes], state[self.modes :], ddW)
+            return [*W, *dW]
 
-        units = [[float(row == column) for row in range(size)] for column in range(size)]
-        return after([0.0] * size, True), [after(unit, False) for unit in units]
+        return after(0), [after(1 + row) for row in range(2 * self.modes)]
 
     def nodes(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> list[NodeState]:
         """The modes at the nodes, from the state before the step and W'' at its nodes."""
@@ -191,35 +169,30 @@ def step(plant: Plant, joints: Sequence[JointMotion], h: Expression, forced: boo
 
     Where it is asked for, the step can be `driven_by` another excitation.
     """
-    modes = range(plant.modes)
+    modes, count = range(plant.modes), NODES * plant.modes
     matrix: list[list[Expression]] = []
     right: list[list[Expression]] = []
     for j, joint in enumerate(joints):
-        system = modal_system(plant, joint)
+        g, K, D = modal_system(plant, joint)
         for i in modes:
-            K, D = system.K[i], system.D[i]
-            acts = [not (is_zero(K[mode]) and is_zero(D[mode])) for mode in modes]
-            matrix.append(
-                [
-                    float(j == node and i == mode)
-                    + (
-                        h * (_ONCE[j][node] * D[mode] + _TWICE[j][node] * h * K[mode])
-                        if acts[mode]
-                        else 0.0
-                    )
-                    for node in range(NODES)
-                    for mode in modes
-                ]
-            )
-            by_rate = [
-                -D[mode] - GAUSS_NODES[j] * h * K[mode] if acts[mode] else 0.0 for mode in modes
-            ]
-            unit = (
-                [float(len(right) == row) for row in range(NODES * plant.modes)] if forced else []
-            )
-            right.append([system.g[i], *(-K[mode] for mode in modes), *by_rate, *unit])
+            own, terms = len(matrix), list(zip(K[i], D[i], strict=True))
+            weights = zip(_ONCE[j], _TWICE[j], strict=True)
+            implicit = [_held(h, k, d, once, twice) for once, twice in weights for k, d in terms]
+            matrix.append([float(own == at) + entry for at, entry in enumerate(implicit)])
+            by_rate = [_negative(d, GAUSS_NODES[j] * h, k) for k, d in terms]
+            unit = [float(own == at) for at in range(count)] if forced else []
+            right.append([g[i], *(-k for k in K[i]), *by_rate, *unit])
     rows, size = eliminate(matrix, right), 1 + 2 * plant.modes
     return Step(h, [row[:size] for row in rows], plant.modes, [row[size:] for row in rows])
+
+
+def _held(h: Expression, k: Expression, d: Expression, once: float, twice: float) -> Expression:
+    """What W'' at a node adds to the spring and damper forces at another."""
+    return 0.0 if is_zero(k) and is_zero(d) else h * (once * d + twice * h * k)
+
+
+def _negative(d: Expression, time: Expression, k: Expression) -> Expression:
+    return 0.0 if is_zero(k) and is_zero(d) else -d - time * k
 
 
 def _times(factor: Expression, entry: Expression) -> Expression:

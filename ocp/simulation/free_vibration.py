@@ -222,14 +222,31 @@ def _largest(tips: Array, rates: Array) -> Array:
 def extreme_rows(rows: Array, tips: int) -> Array:
     """Those rows of displacements, tip after tip at each time, that hold the largest of some state.
 
-    A tip that one mode moves turns in a plane, and dies away: half a turn suffices.
+    A tip that one mode moves turns in a plane, and dies away: of half a turn the corners of the
+    convex hull suffice.
     """
     kept: list[Array] = []
     for tip in range(tips):
         own = rows[tip::tips]
         turning, spread, _ = np.linalg.svd(own, full_matrices=False)
         if spread[2:].max(initial=0.0) <= 1e-12 * spread[0]:
-            angle = np.unwrap(np.arctan2(turning[:, 1], turning[:, 0]))
-            own = own[np.abs(angle - angle[0]) <= np.pi]
+            own = own[_corners(turning[:, 0], turning[:, 1])]
         kept.append(own)
     return np.vstack(kept)
+
+
+def _corners(x: Array, y: Array) -> list[int]:
+    """Indices of points, turning on and inwards, on the hull of these and their negatives."""
+    angle = np.unwrap(np.arctan2(y, x))
+    half = np.abs(angle - angle[0]) <= np.pi
+    y = np.copysign(1.0, angle[-1] - angle[0]) * y  # anticlockwise
+    points = [*zip(x[half].tolist(), y[half].tolist(), strict=True), (-float(x[0]), -float(y[0]))]
+    corners: list[int] = []
+    for i, (u, v) in enumerate(points):
+        while len(corners) > 1:
+            (a, b), (c, d) = points[corners[-2]], points[corners[-1]]
+            if (c - a) * (v - b) > (d - b) * (u - a):
+                break
+            corners.pop()
+        corners.append(i)
+    return corners[:-1]
