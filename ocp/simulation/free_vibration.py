@@ -32,20 +32,19 @@ _ANGLES = 49
 
 
 class FreeVibration:
-    """How the modes vibrate on after arrival: a constant matrix gives (W', W'') by (W, W').
+    """How the modes vibrate on after arrival; states are W [m], then W' [m/s].
 
-    States are W [m], then W' [m/s]; where rest is not what is wanted on arrival, pass what they
-    miss of the wanted state (`PointToPoint.missed`).
+    Where rest is not what is wanted on arrival, pass what a state misses of that
+    (`PointToPoint.missed`).
 
     Parameters
     ----------
     plant : Plant
         What vibrates. Its parameters may be columns, of a plant each.
     angle : float or array_like, shape (n,)
-        Where the joint rests [rad]. With n angles it is n vibrations at once, and all arrays below
-        have a leading axis of n.
+        Where the joint rests [rad]; n vibrations at once have arrays with a leading axis of n.
     window : float
-        Time after arrival within which displacements count [s]; frequencies and states need none.
+        How long displacements count after arrival [s]; frequencies and states need none.
 
     Attributes
     ----------
@@ -96,10 +95,7 @@ class FreeVibration:
 
     @cached_property
     def rows(self) -> Array:
-        """Rows whose products with a state are the tip displacements that can be the largest [m].
-
-        Shape (rows, 2 * modes), of one vibration; F1 is the largest absolute product, to 5e-5.
-        """
+        """Shape (rows, 2 * modes): F1 is the largest absolute product with a state, to 5e-5."""
         samples = max(2, math.ceil(self._radians / _RADIANS_OF_ROWS) + 1)  # both ends at least
         step = exponential(self.matrix, self.window / (samples - 1), self._most)
         rows = extreme_rows(powers(self.tips, step, samples), len(self.tips))
@@ -172,10 +168,7 @@ def fastest_of_moves(plant: Plant, starts: ArrayLike, targets: ArrayLike) -> Arr
 
 
 def exponential(matrix: Array, times: ArrayLike, fastest: float) -> Array:
-    """exp(matrix * time) for each time [s], by a Taylor series of a small part, squared again.
-
-    Fastest is the largest absolute eigenvalue.
-    """
+    """exp(matrix * time) for each time [s]; fastest is the largest absolute eigenvalue."""
     at = matrix * np.asarray(times, dtype=float)[..., None, None]
     radians = fastest * float(np.max(times, initial=0.0))
     halvings = max(0, math.ceil(math.log2(max(radians, _SMALL) / _SMALL)))
@@ -205,10 +198,7 @@ def _stacked(entries: Sequence[Sequence[object]], count: int) -> Array:
 
 
 def _largest(tips: Array, rates: Array) -> Array:
-    """Largest absolute value of samples (n, samples, tips), and of the cubics between them.
-
-    Rates are those for the interval between two samples.
-    """
+    """Largest absolute value of samples (n, samples, tips), and of the cubics between them."""
     most = np.abs(tips).max(axis=(1, 2))
     turns = np.nonzero(rates[:, :-1] * rates[:, 1:] < 0)
     (w, after), (v, v_after) = ((one[:, :-1][turns], one[:, 1:][turns]) for one in (tips, rates))
@@ -220,10 +210,9 @@ def _largest(tips: Array, rates: Array) -> Array:
 
 
 def extreme_rows(rows: Array, tips: int) -> Array:
-    """Those rows of displacements, tip after tip at each time, that hold the largest of some state.
+    """Those rows of displacements, tip after tip at each time, that are the largest of some state.
 
-    A tip that one mode moves turns in a plane, and dies away: of half a turn the corners of the
-    convex hull suffice.
+    A tip that one mode moves turns in a plane, and dies away: corners of half a turn suffice.
     """
     kept: list[Array] = []
     for tip in range(tips):
