@@ -46,7 +46,7 @@ class ModalSystem(NamedTuple):
 
 def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
     """The modes' coefficients along a joint motion, by the plant's equations at unit vectors."""
-    modes, zero, acts = range(plant.modes), [0.0] * plant.modes, _acting(plant)
+    modes, zero, acts = range(plant.modes), [0.0] * plant.modes, _acting(plant, joint)
     units = [[float(other == mode) for other in modes] for mode in modes]
     g = list(plant.modal_accelerations(joint, zero, zero))
 
@@ -60,9 +60,11 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
     )
 
 
-def _acting(plant: Plant) -> list[list[bool]]:
+def _acting(plant: Plant, joint: JointMotion) -> list[list[bool]]:
     """Whether mode j is in the equation of mode i at all: else there is no term to compute with."""
     modes, kind = range(plant.modes), _kind_of(plant)
+    if isinstance(joint.angle, ca.DM):  # numbers tell by themselves
+        return [[True for _ in modes] for _ in modes]
     joint = JointMotion(*(kind.sym("joint") for _ in range(3)))
     W, dW = ([kind.sym("W") for _ in modes] for _ in range(2))
     after = [kind(entry) for entry in plant.modal_accelerations(joint, W, dW)]
