@@ -73,7 +73,7 @@ def test_ctrl_c_ends_a_plan_and_writes_nothing(solving, folder):
     before = sorted(folder.iterdir())
     out, err = interrupt(process, 0.01)
     assert (process.returncode, out) == (1, "")
-    assert err.splitlines()[-1] == "quietarm: interrupted"
+    assert err.splitlines()[-1] == "quietarm: interrupted; what was written until then is kept"
     assert sorted(folder.iterdir()) == before
 
 

@@ -70,7 +70,7 @@ def test_ctrl_c_ends_a_front_and_writes_nothing(folder, at_a_terminal, ctrl_c):
         found, *_ = map(int, re.findall(r"\d+", process.stderr.readline()))
     out, err = ctrl_c(process)
     assert (process.returncode, out) == (1, "")
-    assert err.splitlines()[-1] == "quietarm: interrupted"
+    assert err.splitlines()[-1] == "quietarm: interrupted; what was written until then is kept"
     assert not list(folder.glob("f.*"))
 
 
