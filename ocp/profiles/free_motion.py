@@ -33,8 +33,7 @@ class FreeMotion:
     acceleration : ndarray, shape (steps,)
         Joint acceleration at the beginning of every interval [rad/s^2].
     jerk : ndarray, shape (steps,)
-        Its rate of change on the interval [rad/s^3]: 0 where the acceleration is constant on
-        every interval.
+        Its rate of change on the interval [rad/s^3]: 0 where the acceleration is constant.
     """
 
     times: NDArray[np.float64]
@@ -44,22 +43,20 @@ class FreeMotion:
     def __post_init__(self) -> None:
         for name, values in vars(self).items():
             array = np.array(values, dtype=float)
-            if array.ndim != 1 or not np.all(np.isfinite(array)):
-                raise ValueError(f"{name} is no list of finite numbers")
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        if not len(self.acceleration) == len(self.jerk) == len(self.times) - 1 > 0:
+        if not self.acceleration.shape == self.jerk.shape == (len(self.times) - 1,) != (0,):
             raise ValueError(
                 f"{len(self.times)} times do not fit {len(self.acceleration)} accelerations and "
                 f"{len(self.jerk)} jerks; give one of each for every interval"
             )
-        if self.times[0] != 0 or np.any(np.diff(self.times) <= 0):
+        if self.times[0] != 0 or not np.all(np.diff(self.times) > 0):
             raise ValueError("the times do not increase from 0")
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, FreeMotion):
-            return NotImplemented
-        return all(np.array_equal(a, vars(other)[name]) for name, a in vars(self).items())
+        return isinstance(other, FreeMotion) and all(
+            np.array_equal(a, vars(other)[name]) for name, a in vars(self).items()
+        )
 
     def __hash__(self) -> int:
         return hash(tuple(array.tobytes() for array in vars(self).values()))

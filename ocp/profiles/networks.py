@@ -19,32 +19,26 @@ from quietarm.ocp.profiles.cycloid import Cycloid, Input, with_bump
 REACH = 1.25
 """At first the units lie in even cells of T between plus and minus this: the outermost have their
 middle beyond the ends of the move, where they act most."""
+_WEIGHT = 0.5
+"""Largest weight where no bound is given."""
 _LIGHT = 0.1
 """Random starts have weights within this share of their bound: with large ones the joint swings
 back and forth, and IPOPT runs out of iterations."""
-
 SHARPEST = 200.0
 """Largest inverse width or gain. CVODES has the energy of such a unit within 0.1 %; one that is ten
 times as sharp can lie between its steps, as it can between the fixed steps, which then agree."""
 
 
 class Range(NamedTuple):
-    """Values of one kind of parameter, one for each unit, each of shape (units,).
+    """One kind of the units' parameters: first values, spread of starts, least and largest values.
 
-    Attributes
-    ----------
-    first : ndarray
-        Where the first start has them.
-    spread : ndarray
-        Random starts lie within this of the first.
-    least, most : ndarray
-        Where they must stay.
+    Each is of shape (units,), or one number for all of them.
     """
 
-    first: NDArray[np.float64]
-    spread: NDArray[np.float64]
-    least: NDArray[np.float64]
-    most: NDArray[np.float64]
+    first: NDArray[np.float64] | float
+    spread: NDArray[np.float64] | float
+    least: NDArray[np.float64] | float
+    most: NDArray[np.float64] | float
 
 
 @dataclass(frozen=True)
@@ -52,20 +46,21 @@ class CycloidOfUnits(Cycloid):
     """U = t/TE + (1 - T^2) (v_0 + sum_j v_j g(x_j, y_j, T)), T = -1 + 2 t/TE.
 
     The coefficients are v_0 to v_n, then x_1 to x_n, then y_1 to y_n: 1 + 3 n of them. A bound is
-    for the weights v, x and y have `ranges` of their own; all are numbers of order one.
+    for the weights, v, x and y have `ranges` of their own; all are numbers of order one.
 
     Units can swap places, or almost cancel each other with ever larger weights. So weights are
     always bounded, by `default_bound` where no bound is given, and starts are near the plain
     cycloid, with the units side by side.
     """
 
-    default_bound: ClassVar[float | None] = 0.5
+    default_bound: ClassVar[float | None] = _WEIGHT
     sharp: ClassVar[bool] = True
     random_starts: ClassVar[int] = 4
     constants: ClassVar[int] = 1
     each: ClassVar[int] = 3
     sharpness: ClassVar[str]
     """What y is called in a message."""
+    terms: int = 5
 
     def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
         """As every profile's; ValueError, too, where a unit is sharper than `SHARPEST`."""
@@ -88,25 +83,31 @@ class CycloidOfUnits(Cycloid):
     def unit(x: Expression, y: Expression, T: Expression) -> Input:
         """One unit g and its first two derivatives by T; finite for all x and y."""
 
+    def _every(self, weight: float, kind: str) -> NDArray[np.float64]:
+        """Numbers for all coefficients: one for the weights, and one field of the ranges."""
+        own = [np.broadcast_to(getattr(of, kind), self.terms) for of in self.ranges]
+        return np.concatenate([np.full(1 + self.terms, weight), *own])
+
     @property
     def plain(self) -> NDArray[np.float64]:
         """No weight, and the units side by side."""
-        return np.concatenate([np.zeros(1 + self.terms), *(kind.first for kind in self.ranges)])
+        return self._every(0.0, "first")
 
     def box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """`bound` for the weights, `ranges` for the rest."""
-        weights = np.full(1 + self.terms, self.default_bound if bound is None else bound)
-        return (
-            np.concatenate([-weights, *(kind.least for kind in self.ranges)]),
-            np.concatenate([weights, *(kind.most for kind in self.ranges)]),
-        )
+        weight = _WEIGHT if bound is None else bound
+        return self._every(-weight, "least"), self._every(weight, "most")
 
     def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Small weights, and the units nearly in their even cells."""
         lower, upper = self.box(bound)
-        weights = _LIGHT * upper[: 1 + self.terms]
-        around = np.concatenate([weights, *(kind.spread for kind in self.ranges)])
+        around = self._every(_LIGHT * upper[0], "spread")
         return np.maximum(lower, self.plain - around), np.minimum(upper, self.plain + around)
+
+    @property
+    def cells(self) -> NDArray[np.float64]:
+        """Middles of even cells between plus and minus `REACH`, one for each unit."""
+        return REACH * (2 * np.arange(self.terms) + 1 - self.terms) / self.terms
 
     def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
         """U and its derivatives; the weights alone enter linearly."""
@@ -118,15 +119,6 @@ class CycloidOfUnits(Cycloid):
             g, dg, ddg = self.unit(x, y, T)
             p, dp, ddp = p + v * g, dp + v * dg, ddp + v * ddg
         return with_bump(fraction, p, dp, ddp)
-
-
-def side_by_side(units: int) -> NDArray[np.float64]:
-    """Middles of even cells between -1 and 1, shape (units,)."""
-    return (2 * np.arange(units) + 1 - units) / units
-
-
-_WIDEST, _SHARPEST = 0.3, 3.0
-"""Inverse widths: from nearly a parabola over the whole move to a sixth of it."""
 
 
 @dataclass(frozen=True)
@@ -142,27 +134,18 @@ class CycloidGaussians(CycloidOfUnits):
     ----------
     terms : int
         How many Gaussians, n, 1 to 32; the profile has 1 + 3 n coefficients.
-
-    Raises
-    ------
-    ValueError
-        When `terms` is not a whole number in that range.
     """
 
     name: ClassVar[str] = "cycloid-gaussians"
     term: ClassVar[str] = "Gaussian"
     sharpness: ClassVar[str] = "the inverse width of a Gaussian"
-    terms: int = 5
 
     @property
     def ranges(self) -> tuple[Range, Range]:
-        """Centres, then inverse widths."""
-        one = np.ones(self.terms)
-        middle, half = REACH * side_by_side(self.terms), REACH / self.terms * one
-        return (
-            Range(middle, half, middle - half, middle + half),
-            Range(2.0 * one, 0.25 * one, _WIDEST * one, _SHARPEST * one),
-        )
+        """Centres; inverse widths, from nearly a parabola over the move to a sixth of it."""
+        half = REACH / self.terms
+        centres = Range(self.cells, half, self.cells - half, self.cells + half)
+        return centres, Range(2.0, 0.25, 0.3, 3.0)
 
     @staticmethod
     def unit(x: Expression, y: Expression, T: Expression) -> Input:
@@ -170,11 +153,6 @@ class CycloidGaussians(CycloidOfUnits):
         z = y * (T - x)
         g = ca.exp(-z * z)
         return g, -2 * y * z * g, y * y * (4 * z * z - 2) * g
-
-
-_STRAIGHTEST, _STEEPEST = 0.3, 4.0
-"""Gains: from nearly a straight line over the whole move to a step that takes a quarter of it."""
-_FIRST_GAIN = 1.5
 
 
 @dataclass(frozen=True)
@@ -189,27 +167,18 @@ class CycloidNetwork(CycloidOfUnits):
     ----------
     terms : int
         How many hidden nodes, n, 1 to 32; the profile has 1 + 3 n coefficients.
-
-    Raises
-    ------
-    ValueError
-        When `terms` is not a whole number in that range.
     """
 
     name: ClassVar[str] = "cycloid-network"
     term: ClassVar[str] = "node"
     sharpness: ClassVar[str] = "the gain of a hidden node"
-    terms: int = 5
 
     @property
     def ranges(self) -> tuple[Range, Range]:
-        """Biases, then gains."""
-        one = np.ones(self.terms)
-        biases = _FIRST_GAIN * REACH * side_by_side(self.terms)
-        return (
-            Range(biases, 0.5 * one, -_STEEPEST * one, _STEEPEST * one),
-            Range(_FIRST_GAIN * one, 0.5 * one, _STRAIGHTEST * one, _STEEPEST * one),
-        )
+        """Biases; gains, from nearly a straight line to a step that takes a quarter of the move."""
+        gain, steepest = 1.5, 4.0
+        biases = Range(gain * self.cells, 0.5, -steepest, steepest)
+        return biases, Range(gain, 0.5, 0.3, steepest)
 
     @staticmethod
     def unit(x: Expression, y: Expression, T: Expression) -> Input:

@@ -27,11 +27,6 @@ class CycloidSpline(Cycloid):
     ----------
     terms : int
         How many control points may move, 4 to 32; as many coefficients.
-
-    Raises
-    ------
-    ValueError
-        When `terms` is not a whole number in that range.
     """
 
     name: ClassVar[str] = "cycloid-spline"
