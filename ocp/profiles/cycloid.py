@@ -4,30 +4,27 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import casadi as ca
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.checks import whole
-from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
 Input = tuple[Expression, Expression, Expression]
 """U, and its first two derivatives by the fraction of the duration."""
 
 MAX_TERMS = 32
-"""Most terms. The condition number of the powers of T on [-1, 1] grows like (1 + sqrt 2)^N: 4e11 at
-32 terms, where double precision leaves four digits of a coefficient. The solver works along other
-axes, in which that does not matter."""
+"""Most terms: the condition number of the powers of T on [-1, 1] grows like (1 + sqrt 2)^N, and at
+4e11 double precision leaves four digits of a coefficient."""
 
 
 @dataclass(frozen=True)
 class Cycloid(JointProfile):
     """A cycloid whose input U goes from 0 to 1 in a way that the coefficients shape.
 
-    Whatever the coefficients, U is 0 at the start and 1 on arrival, so the joint is at its ends
-    there, with speed and acceleration zero, eq (5).
+    So the joint is at its ends there, with speed and acceleration zero, eq (5).
     """
 
     term: ClassVar[str] = "term"
@@ -64,27 +61,18 @@ class Cycloid(JointProfile):
         return self.constants + self.each * self.terms
 
     @abstractmethod
-    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
+    def input(self, coefficients: Values, fraction: Expression) -> Input:
         """U, 0 and 1 at the ends, and its first two derivatives by the fraction."""
 
-    def derivatives(
-        self,
-        coefficients: Sequence[Expression],
-        fraction: Expression,
-        start: Expression,
-        target: Expression,
-        duration: Expression,
-    ) -> tuple[Expression, ...]:
+    def derivatives(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
         """Theta by eq (1), theta' by eq (2), theta'' by eq (3) mended."""
-        return self.outer(self.input(coefficients, fraction), start, target, duration)[:3]
+        return self.outer(self.input(coefficients, fraction), *move)[:3]
 
-    def inner(
-        self, coefficients: Sequence[Expression], fraction: Expression, *move: Expression
-    ) -> Sequence[Expression]:
+    def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
         """U and its derivatives by the fraction, which do not depend on the move."""
         return self.input(coefficients, fraction)
 
-    def outer(self, inner: Sequence[Expression], *move: Expression) -> JointMotion:
+    def outer(self, inner: Values, *move: Expression) -> JointMotion:
         """The cycloid of U: eqs (1), (2) and (3), the latter mended."""
         start, target, duration = move
         U, dU, ddU = inner[0], inner[1] / duration, inner[2] / duration**2
@@ -121,7 +109,7 @@ class CycloidPolynomial(Cycloid):
     name: ClassVar[str] = "cycloid-polynomial"
     least_terms: ClassVar[int] = 0
 
-    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
+    def input(self, coefficients: Values, fraction: Expression) -> Input:
         """U of eq (6) and its derivatives: linear in the coefficients."""
         T = 2 * fraction - 1  # eq (7)
         p = dp = ddp = 0 * T

@@ -30,10 +30,8 @@ class FreeMotion:
     ----------
     times : ndarray, shape (steps + 1,)
         The grid, from 0 to the duration [s].
-    acceleration : ndarray, shape (steps,)
-        Joint acceleration at the beginning of every interval [rad/s^2].
-    jerk : ndarray, shape (steps,)
-        Its rate of change on the interval [rad/s^3]: 0 where the acceleration is constant.
+    acceleration, jerk : ndarray, shape (steps,)
+        Joint acceleration when an interval begins [rad/s^2], and its rate of change [rad/s^3].
     """
 
     times: NDArray[np.float64]
@@ -45,13 +43,11 @@ class FreeMotion:
             array = np.array(values, dtype=float)
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        if not self.acceleration.shape == self.jerk.shape == (len(self.times) - 1,) != (0,):
+        fit = self.acceleration.shape == self.jerk.shape == (len(self.times) - 1,) != (0,)
+        if not fit or self.times[0] != 0 or not np.all(np.diff(self.times) > 0):
             raise ValueError(
-                f"{len(self.times)} times do not fit {len(self.acceleration)} accelerations and "
-                f"{len(self.jerk)} jerks; give one of each for every interval"
+                "the times do not increase from 0, with an acceleration and a jerk on each interval"
             )
-        if self.times[0] != 0 or not np.all(np.diff(self.times) > 0):
-            raise ValueError("the times do not increase from 0")
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, FreeMotion) and all(
@@ -85,9 +81,8 @@ class FreeMotion:
 
     def intervals(self, start: float) -> NDArray[np.float64]:
         """Arguments of `joint_after` and length [s] of every interval, shape (5, steps)."""
-        return np.vstack(
-            [self.boundaries(start)[:, :-1], self.acceleration, self.jerk, self.lengths]
-        )
+        begins = self.boundaries(start)[:, :-1]
+        return np.vstack([begins, self.acceleration, self.jerk, self.lengths])
 
     def split(self, parts: NDArray[np.int_]) -> FreeMotion:
         """The same motion on a finer grid: interval k in `parts[k]` equal parts."""

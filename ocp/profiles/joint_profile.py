@@ -12,6 +12,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion
+from quietarm.ocp.checks import finite
+
+Values = Sequence[Expression]
+"""The coefficients, or what follows from them."""
 
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
@@ -20,9 +24,8 @@ UNBOUNDED_SPREAD = 0.2
 class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
-    A new family is one subclass, a frozen dataclass: it says how many coefficients it has and gives
-    theta and its first two time derivatives, in operations that work element by element. casadi
-    derives the jerk.
+    A new family is one subclass, a frozen dataclass with a `size` and `derivatives`, in operations
+    that work element by element. casadi derives the jerk.
     """
 
     name: ClassVar[str]
@@ -79,8 +82,7 @@ class JointProfile(ABC):
     def box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Least and largest coefficients, each of shape (size,), infinite without a bound.
 
-        `bound` is what a user gives: the largest absolute value of every coefficient, or of the
-        kind of them that it makes sense for. A family of several kinds says its own box.
+        `bound` is the largest absolute value, of the kind of coefficients that it makes sense for.
         """
         largest = np.full(self.size, np.inf if bound is None else bound)
         return -largest, largest
@@ -96,12 +98,13 @@ class JointProfile(ABC):
     @abstractmethod
     def derivatives(
         self,
-        coefficients: Sequence[Expression],
+        coefficients: Values,
         fraction: Expression,
         start: Expression,
         target: Expression,
         duration: Expression,
-    ) -> tuple[Expression, ...]:
+        /,
+    ) -> Values:
         """Joint angle and its first two time derivatives.
 
         Parameters
@@ -117,31 +120,24 @@ class JointProfile(ABC):
 
         Returns
         -------
-        tuple of Expression
+        sequence of Expression
             theta [rad], theta' [rad/s], theta'' [rad/s^2]; what follows them is not read.
         """
 
-    def inner(
-        self, coefficients: Sequence[Expression], fraction: Expression, *move: Expression
-    ) -> Sequence[Expression]:
-        """The values that the coefficients enter; `outer` makes the joint's motion of these three.
+    def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
+        """Three values that the coefficients enter; `outer` makes the joint's motion of them.
 
         A profile whose coefficients enter linearly somewhere on the way to the joint says so by
-        these two methods; the gradient is then several times cheaper. By default it is the motion
-        itself. The move is start, target and duration, as in `derivatives`.
+        these two; the gradient is then several times cheaper. The move is as in `derivatives`.
         """
         return self.derivatives(coefficients, fraction, *move)[:3]
 
-    def outer(self, inner: Sequence[Expression], *move: Expression) -> JointMotion:
+    def outer(self, inner: Values, *move: Expression) -> JointMotion:
         """Angle, speed and acceleration of the joint from the values of `inner`."""
         return JointMotion(*inner)
 
     def motion(
-        self,
-        coefficients: Sequence[Expression],
-        fraction: Expression,
-        *move: Expression,
-        jerk: bool = False,
+        self, coefficients: Values, fraction: Expression, *move: Expression, jerk: bool = False
     ) -> JointMotion:
         """Angle, speed and acceleration of the joint, and its jerk where it is asked for."""
         if not jerk:
@@ -159,21 +155,9 @@ class JointProfile(ABC):
     def path(
         self, coefficients: ArrayLike, start: float, target: float, duration: float
     ) -> JointPath:
-        """One member of the family, as a callable of time and derivative order.
+        """One member of the family, from start to target [rad] in the duration [s].
 
-        Parameters
-        ----------
-        coefficients : array_like, shape (size,)
-            The coefficients.
-        start, target : float
-            Joint angles at the ends [rad].
-        duration : float
-            Travelling time [s].
-
-        Raises
-        ------
-        ValueError
-            As `checked`.
+        ValueError where `checked` refuses the coefficients or the duration.
         """
         return JointPath(self, self.checked(coefficients, duration), start, target, duration)
 
@@ -193,10 +177,7 @@ class JointProfile(ABC):
                 f"got {values.size} coefficients for a profile of {self.size}; "
                 f"give {self.size} numbers"
             )
-        for place, value in enumerate(values, start=1):
-            if not math.isfinite(value):
-                raise ValueError(f"coefficient {place} is {value}; give a finite number")
-        return tuple(values.tolist())
+        return tuple(finite(f"coefficient {i}", value) for i, value in enumerate(values, 1))
 
 
 def known_profiles() -> dict[str, type[JointProfile]]:
@@ -210,14 +191,10 @@ class JointPath:
 
     Attributes
     ----------
-    profile : JointProfile
-        The family.
-    coefficients : tuple of float
-        Its member.
-    start, target : float
-        Joint angles at the ends [rad].
-    duration : float
-        Travelling time [s].
+    profile, coefficients
+        The family and its member.
+    start, target, duration : float
+        Joint angles at the ends [rad], and travelling time [s].
     """
 
     profile: JointProfile
@@ -240,11 +217,6 @@ class JointPath:
         -------
         ndarray
             theta [rad] or its derivative [rad/s^order], in the shape of `time`.
-
-        Raises
-        ------
-        ValueError
-            When `order` is not 0, 1, 2 or 3.
         """
         if order not in range(4):
             raise ValueError(f"derivative order is {order!r}; give 0, 1, 2 or 3")

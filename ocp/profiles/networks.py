@@ -1,12 +1,8 @@
-"""Cycloids whose input is a weighted sum of units with parameters of their own.
-
-Radial basis functions and hidden nodes, as this project reads the paper's comparators.
-"""
+"""Cycloids of a weighted sum of radial basis functions or hidden nodes, the paper's comparators."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -15,18 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression
 from quietarm.ocp.profiles.cycloid import Cycloid, Input, with_bump
+from quietarm.ocp.profiles.joint_profile import Values
 
 REACH = 1.25
-"""At first the units lie in even cells of T between plus and minus this: the outermost have their
-middle beyond the ends of the move, where they act most."""
+"""First units lie in even cells of T between plus and minus this, the outermost beyond the ends."""
 _WEIGHT = 0.5
 """Largest weight where no bound is given."""
 _LIGHT = 0.1
-"""Random starts have weights within this share of their bound: with large ones the joint swings
-back and forth, and IPOPT runs out of iterations."""
+"""Random starts have weights within this share of their bound: larger ones swing the joint."""
 SHARPEST = 200.0
-"""Largest inverse width or gain. CVODES has the energy of such a unit within 0.1 %; one that is ten
-times as sharp can lie between its steps, as it can between the fixed steps, which then agree."""
+"""Largest inverse width or gain: CVODES has the energy of such a unit within 0.1 %; one that is ten
+times as sharp can lie between all integrators' steps."""
 
 
 class Range(NamedTuple):
@@ -45,12 +40,9 @@ class Range(NamedTuple):
 class CycloidOfUnits(Cycloid):
     """U = t/TE + (1 - T^2) (v_0 + sum_j v_j g(x_j, y_j, T)), T = -1 + 2 t/TE.
 
-    The coefficients are v_0 to v_n, then x_1 to x_n, then y_1 to y_n: 1 + 3 n of them. A bound is
-    for the weights, v, x and y have `ranges` of their own; all are numbers of order one.
-
-    Units can swap places, or almost cancel each other with ever larger weights. So weights are
-    always bounded, by `default_bound` where no bound is given, and starts are near the plain
-    cycloid, with the units side by side.
+    The coefficients are v_0 to v_n, then x_1 to x_n, then y_1 to y_n. A bound is for the weights v;
+    x and y have `ranges`. Units can swap places, or almost cancel each other with ever larger
+    weights: so weights are always bounded, and starts have the units side by side.
     """
 
     default_bound: ClassVar[float | None] = _WEIGHT
@@ -58,19 +50,16 @@ class CycloidOfUnits(Cycloid):
     random_starts: ClassVar[int] = 4
     constants: ClassVar[int] = 1
     each: ClassVar[int] = 3
-    sharpness: ClassVar[str]
-    """What y is called in a message."""
     terms: int = 5
 
     def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
         """As every profile's; ValueError, too, where a unit is sharper than `SHARPEST`."""
         values = super().checked(coefficients, duration)
-        for place, value in enumerate(values[1 + 2 * self.terms :], start=2 + 2 * self.terms):
-            if abs(value) > SHARPEST:
-                raise ValueError(
-                    f"coefficient {place} is {value:g}, {self.sharpness}; give at most "
-                    f"{SHARPEST:g}: a sharper one acts between the integrators' steps"
-                )
+        if (largest := max(map(abs, values[1 + 2 * self.terms :]))) > SHARPEST:
+            raise ValueError(
+                f"the inverse width or gain of a {self.term} is {largest:g}; give at most "
+                f"{SHARPEST:g}: a sharper one acts between the integrators' steps"
+            )
         return values
 
     @property
@@ -109,7 +98,7 @@ class CycloidOfUnits(Cycloid):
         """Middles of even cells between plus and minus `REACH`, one for each unit."""
         return REACH * (2 * np.arange(self.terms) + 1 - self.terms) / self.terms
 
-    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
+    def input(self, coefficients: Values, fraction: Expression) -> Input:
         """U and its derivatives; the weights alone enter linearly."""
         n, T = self.terms, 2 * fraction - 1  # eq (7)
         constant, *weights = coefficients[: 1 + n]
@@ -126,9 +115,8 @@ class CycloidGaussians(CycloidOfUnits):
     """A cycloid whose input is a sum of Gaussians: ref. [24], as this project reads it.
 
     U = t/TE + (1 - T^2) (w_0 + sum_j w_j exp(-(k_j (T - c_j))^2)), T = -1 + 2 t/TE. The
-    coefficients are w_0 to w_n, the centres c_1 to c_n, and the inverse widths k_1 to k_n, which
-    may be any number up to 200 either way, also zero. Every centre keeps to a cell of its own, so
-    that no two Gaussians can change places.
+    coefficients are w_0 to w_n, the centres c_1 to c_n, each in a cell of its own, and the inverse
+    widths k_1 to k_n, up to 200 either way, also zero.
 
     Parameters
     ----------
@@ -138,7 +126,6 @@ class CycloidGaussians(CycloidOfUnits):
 
     name: ClassVar[str] = "cycloid-gaussians"
     term: ClassVar[str] = "Gaussian"
-    sharpness: ClassVar[str] = "the inverse width of a Gaussian"
 
     @property
     def ranges(self) -> tuple[Range, Range]:
@@ -160,8 +147,8 @@ class CycloidNetwork(CycloidOfUnits):
     """A cycloid whose input is a network of one hidden layer: ref. [23], as this project reads it.
 
     U = t/TE + (1 - T^2) (v_0 + sum_j v_j tanh(b_j + k_j T)), T = -1 + 2 t/TE. The coefficients are
-    v_0 to v_n, the biases b_1 to b_n, and the gains k_1 to k_n. Gains are positive: a negative one
-    is the same as other signs of its weight and bias. They may be up to 200.
+    v_0 to v_n, the biases b_1 to b_n, and the gains k_1 to k_n, up to 200; a negative gain is the
+    same as other signs of its weight and bias.
 
     Parameters
     ----------
@@ -171,7 +158,6 @@ class CycloidNetwork(CycloidOfUnits):
 
     name: ClassVar[str] = "cycloid-network"
     term: ClassVar[str] = "node"
-    sharpness: ClassVar[str] = "the gain of a hidden node"
 
     @property
     def ranges(self) -> tuple[Range, Range]:

@@ -1,6 +1,5 @@
-"""Input shapers, and the cycloid through one, the usual remedy in practice.
+"""Input shapers, impulses whose convolution with a motion leaves a vibration out, and the cycloid.
 
-A shaper is a row of impulses in time whose convolution with a motion leaves a vibration out.
 Formulas and their sources: docs/physics.md, 'Input shaping'.
 """
 
@@ -15,7 +14,7 @@ from typing import ClassVar, NamedTuple
 import casadi as ca
 from quietarm.models import Expression
 from quietarm.ocp.checks import finite, positive
-from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
 TOLERATED = 0.05
 """Share of the unshaped vibration that EI leaves at the frequency that it is made for."""
@@ -24,8 +23,7 @@ _LEAST_DECAY_OF_EI = math.sqrt(TOLERATED / (2 - TOLERATED))
 MOST_DAMPING_OF_EI = 1 / math.hypot(1, math.pi / math.log(_LEAST_DECAY_OF_EI))
 """The damping ratio of that decay, about 0.504."""
 LEAST_SHARE = 0.05
-"""Least share of the duration that is left for the cycloid: a shorter one would be a jolt between
-the integrators' steps."""
+"""Least share of the duration for the cycloid: a shorter one would be a jolt between steps."""
 MOST_IMPULSES = 243
 """Five modes of three impulses; the motion has a cycloid for every impulse."""
 
@@ -71,10 +69,9 @@ def _fitted(
     frequency: float,
     damping_ratio: float,
 ) -> Impulses:
-    """Of every impulse the time over the undamped period and the amplitude, by powers of damping.
+    """Klipper's fits of September 2025: times over the period and amplitudes by powers of damping.
 
-    They leave `TOLERATED` or less over a wider range than EI: Klipper's definitions since September
-    2025.
+    They leave `TOLERATED` or less over a wider range than EI.
     """
     _refuse_damping(name, damping_ratio, most)
 
@@ -139,8 +136,8 @@ def convolved(shapers: Sequence[Impulses]) -> Impulses:
 class ShapedCycloid(JointProfile):
     """The plain cycloid convolved with an input shaper; it has no coefficients.
 
-    Every impulse of the shaper begins a cycloid of its share of the move. The cycloids are shorter
-    than the duration by the shaper's length, so that the whole takes the duration.
+    Every impulse begins a cycloid of its share of the move, shorter than the duration by the
+    shaper's length.
 
     Parameters
     ----------
@@ -154,8 +151,7 @@ class ShapedCycloid(JointProfile):
     Raises
     ------
     ValueError
-        When the shaper is not known, a number is out of range, the numbers do not match, or the
-        shaper would have a negative impulse.
+        When the shaper is not known or not for such damping, or a number is out of range.
     """
 
     name: ClassVar[str] = "shaped-cycloid"
@@ -218,15 +214,9 @@ class ShapedCycloid(JointProfile):
         ends = (begin + duration - self.length for begin in begins)
         return tuple(sorted({at / duration for at in (*begins, *ends) if 0 < at < duration}))
 
-    def derivatives(
-        self,
-        coefficients: Sequence[Expression],
-        fraction: Expression,
-        start: Expression,
-        target: Expression,
-        duration: Expression,
-    ) -> tuple[Expression, ...]:
+    def derivatives(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
         """Sum of the cycloids, each at rest before it begins and after it ends."""
+        start, target, duration = move
         cycloid, turn = duration - self.length, 2 * math.pi
         angle = speed = acceleration = 0 * fraction
         for share, begin in zip(*self.impulses, strict=True):
