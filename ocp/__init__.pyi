@@ -25,7 +25,6 @@ from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
 from .front.weighted import weighted_front as weighted_front
-from .modal_state import ModalState as ModalState
 from .planning.fastest import Fastest as Fastest
 from .planning.fastest import fastest_move as fastest_move
 from .planning.many import Moves as Moves
@@ -54,6 +53,7 @@ from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .simulation.trajectory import Trajectory as Trajectory
+from .task import ModalState as ModalState
 from .task import PointToPoint as PointToPoint
 from .uncertainty import Uncertainty as Uncertainty
 from .uncertainty import perturb_plant as perturb_plant
