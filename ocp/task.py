@@ -199,11 +199,12 @@ class PointToPoint:
             raise ValueError(
                 f"duration is {self.duration:g} s; give {LEAST_DURATION:g} to {MOST_DURATION:g} s"
             )
-        for state in (self.initial, self.final):
-            if state is not None and len(state.W) != self.plant.modes:
+        modes = self.plant.modes
+        for name, state in (("initial", self.initial), ("final", self.final)):
+            if state is not None and len(state.W) != modes:
                 raise ValueError(
-                    f"a modal state has {len(state.W)} modes and {self.plant.name} has "
-                    f"{self.plant.modes}; give W and W' of each"
+                    f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
+                    "give W and W' of each"
                 )
         for plant in self.perturbed_plants:
             check_along(plant, self.start, self.target)

@@ -125,9 +125,10 @@ def refuse_unknown(plant: Plant, names: Iterable[str], also: Sequence[str] = _OF
 def _refuse_beyond(name: str, error: float) -> None:
     """Refuse an error that turns a sign, or leaves nothing of anything but the damping."""
     if error < -1 or (error == -1 and name != DAMPING):
+        becomes = "negative" if error < -1 else "0"
         least = "100 % or less" if name == DAMPING else "less than 100 %"
         raise ValueError(
-            f"an error of {100 * error:g} % is too large for the {name}; give {least}, as 0.1 for "
+            f"an error of {100 * error:g} % makes the {name} {becomes}; give {least}, as 0.1 for "
             "10 %"
         )
 
@@ -144,6 +145,7 @@ def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
 
 def check_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
     """Ranges as numbers; ValueError unless the plant keeps its contract at the ends of each."""
+    refuse_unknown(plant, ranges)
     sizes = _sizes(ranges)
     for name, size in sizes.items():
         _check_range(plant, name, size)
