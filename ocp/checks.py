@@ -23,11 +23,13 @@ def finite(name: str, value: Any, unit: str = "") -> float:
     return number
 
 
-def positive(name: str, value: Any, unit: str = "") -> float:
+def positive(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
     """A positive finite number as a float."""
     number = finite(name, value, unit)
     if number <= 0:
         raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
+    if number > most:
+        raise ValueError(f"{name} is {number:g}; give at most {most:g}{why and f' ({why})'}")
     return number
 
 
