@@ -19,9 +19,9 @@ from quietarm.ocp.floor.transcription import (
     values_at_nodes,
 )
 from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
     NODES,
