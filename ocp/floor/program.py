@@ -9,7 +9,7 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models import Expression, Plant
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
@@ -74,7 +74,8 @@ def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy
     W, dW, *ddW = map(ca.vertsplit, ca.vertsplit(modal, modes))
     one = Step(h, [], modes)
     equations, power, rest = list[Expression](), list[Expression](), list[Expression]()
-    limited = {name: list[Expression]() for name in names}
+    derivatives = {name: QUANTITIES[name].derivative for name in names}
+    limited = {name: [] if of is None else [begun[of]] for name, of in derivatives.items()}
     for share, node in zip(GAUSS_NODES, one.nodes(W, dW, ddW), strict=True):
         joint = joint_after(begun, share * h)
         by_plant = plant.modal_accelerations(joint, node.W, node.dW)
@@ -82,11 +83,10 @@ def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy
         torque = plant.torque(joint, node.W, node.dW, node.ddW)
         power.append(power_of(torque, joint.speed))
         rest.append(energy.smooth(torque, joint.speed))
-        for name, values in limited.items():
-            values += QUANTITIES[name].of(joint, plant.tip_displacements(node.W), torque)
-    for name in names:
-        if QUANTITIES[name].derivative is not None:
-            limited[name] = [*QUANTITIES[name].of(JointMotion(*begun), [], 0.0)]
+        tips = plant.tip_displacements(node.W)
+        for name in names:
+            if derivatives[name] is None:
+                limited[name] += QUANTITIES[name].of(joint, tips, torque)
     W_after, dW_after = one.end(W, dW, ddW)
     after = [*joint_after(begun, h)[:orders], *W_after, *dW_after]
     outputs = [ca.vertcat(*rows) for rows in (after, equations, power, rest, *limited.values())]
@@ -103,7 +103,7 @@ def _solver_of(
     the positive and negative part of the power at the nodes. Parameters are the intervals' lengths,
     scales of the columns, measures of energy and quantities, the state at the end, and weights.
     """
-    interval, parts = _interval(plant, smooth, names, energy), _parts_of(energy)
+    interval, parts = _interval(plant, smooth, names, energy), NODES * (energy.absolute > 0)
     rows, states, count = interval.size1_in(0), interval.size1_out(0), 1 + len(names)
     parameters = [ca.MX.sym("p", size) for size in (steps, rows, count, states, count)]
     lengths, scale, measures, end, weights = parameters
@@ -155,7 +155,7 @@ class FloorProgram:
             )
         self.task, self.smooth, self._names = task, smooth, tuple(task.limits)
         self._states = 2 + smooth + 2 * task.plant.modes
-        self._parts = _parts_of(task.energy)
+        self._parts = NODES * (task.energy.absolute > 0)
         self._values = _interval(task.plant, smooth, self._names, task.energy)
         # what the plain cycloid reaches, so that the solver sees numbers of order one
         cycloid = CycloidPolynomial(0).path([], *task.move)
@@ -202,14 +202,14 @@ class FloorProgram:
             np.concatenate([*given, weights]),
         )
         of_energy = np.concatenate([*given, [1.0], np.zeros(len(names))])
-        mean = float(solver.get_function("nlp_f")(stop.unknowns, of_energy))
+        mean = solver.get_function("nlp_f")(stop.unknowns, of_energy)
         peaks, found = np.split(stop.unknowns, [len(names)])
         columns = found.reshape(steps, -1).T[: len(self._scale)] * self._scale[:, None]
         last = columns[self._states]
         acceleration, jerk = (columns[2], last) if self.smooth else (last, np.zeros(steps))
         return FreeSolution(
             free=FreeMotion(free.times, acceleration, jerk),
-            energy=mean * task.duration * self._measures[0],
+            energy=float(mean * task.duration * self._measures[0]),
             peaks=dict(zip(names, (peaks * self._measures[1:]).tolist(), strict=True)),
             status=SolveStatus.from_ipopt(stop.return_status),
             iterations=stop.iterations,
@@ -247,11 +247,6 @@ class FloorProgram:
         ddW = [ca.DM.zeros(h.shape) + entry for node in one.accelerations(W, dW) for entry in node]
         columns = ca.vertcat(*begun[:-1], *W, *dW, begun[-1], *ddW)
         return columns.full(), [values.full() for values in self._values(columns, h)[2:]]
-
-
-def _parts_of(energy: Energy) -> int:
-    """Values of either part of the power on an interval; none where |power| does not count."""
-    return NODES if energy.absolute else 0
 
 
 def _flat(peaks: ArrayLike, columns: Array) -> Array:
