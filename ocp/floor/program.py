@@ -58,7 +58,6 @@ def finer(free: FreeMotion) -> FreeMotion:
     return free.split(parts)
 
 
-@lru_cache(maxsize=16)
 def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy) -> ca.Function:
     """(column, length) -> state after, collocation equations, power, smooth energy, quantities.
 
@@ -93,45 +92,6 @@ def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy
     return ca.Function("interval", [x, h], outputs, {"cse": True})
 
 
-@lru_cache(maxsize=16)
-def _solver_of(
-    plant: Plant, smooth: bool, steps: int, names: tuple[str, ...], energy: Energy, warm: bool
-) -> ca.Function:
-    """IPOPT for the program, from anywhere or from a coarser grid's solution.
-
-    Unknowns are the largest value of each limited quantity, and of every interval its column and
-    the positive and negative part of the power at the nodes. Parameters are the intervals' lengths,
-    scales of the columns, measures of energy and quantities, the state at the end, and weights.
-    """
-    interval, parts = _interval(plant, smooth, names, energy), NODES * (energy.absolute > 0)
-    rows, states, count = interval.size1_in(0), interval.size1_out(0), 1 + len(names)
-    parameters = [ca.MX.sym("p", size) for size in (steps, rows, count, states, count)]
-    lengths, scale, measures, end, weights = parameters
-    peaks, x = ca.MX.sym("peaks", len(names)), ca.MX.sym("x", rows + 2 * parts, steps)
-    columns, forward, backward = ca.vertsplit(x, [0, rows, rows + parts, rows + 2 * parts])
-    after, equations, power, rest, *values = interval.map(steps)(
-        columns * ca.repmat(scale, 1, steps), lengths.T
-    )
-    spent = rest / measures[0]
-    constraints = [
-        after / ca.repmat(scale[:states], 1, steps) - ca.horzcat(columns[:states, 1:], end),
-        equations / ca.repmat(scale[states + 1 :], 1, steps),
-    ]
-    if parts:
-        spent += energy.absolute * (forward + backward)
-        constraints.append(forward - backward - power / measures[0])
-    for i, value in enumerate(values):
-        constraints += [peaks[i] - value / measures[1 + i], peaks[i] + value / measures[1 + i]]
-    mean = ca.dot(lengths, (ca.DM(GAUSS_WEIGHTS).T @ spent).T) / ca.sum1(lengths)
-    problem = {
-        "x": ca.vertcat(peaks, ca.vec(x)),
-        "p": ca.vertcat(*parameters),
-        "f": ca.dot(weights, ca.vertcat(mean, peaks)),
-        "g": ca.vertcat(*map(ca.vec, constraints)),
-    }
-    return compile_nlp(problem, _WARM if warm else COLD)
-
-
 @dataclass(frozen=True)
 class FreeSolution:
     """What one run of the solver gives, in SI units and by its own discretisation."""
@@ -144,7 +104,12 @@ class FreeSolution:
 
 
 class FloorProgram:
-    """A task, to be solved on any grid."""
+    """A task, to be solved on any grid.
+
+    Unknowns are the largest value of each limited quantity, and of every interval its column (see
+    `_interval`) and the positive and negative part of the power at the nodes. All are scaled by
+    what the plain cycloid reaches, so that the solver sees numbers of order one.
+    """
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, task: PointToPoint, smooth: bool) -> None:
@@ -155,18 +120,50 @@ class FloorProgram:
             )
         self.task, self.smooth, self._names = task, smooth, tuple(task.limits)
         self._states = 2 + smooth + 2 * task.plant.modes
-        self._parts = NODES * (task.energy.absolute > 0)
-        self._values = _interval(task.plant, smooth, self._names, task.energy)
-        # what the plain cycloid reaches, so that the solver sees numbers of order one
-        cycloid = CycloidPolynomial(0).path([], *task.move)
-        columns, (power, rest, *limited) = self._simulate(
-            self.along(cycloid, first_grid(_SCALE_STEPS))
-        )
+        self._parts = NODES if task.energy.absolute else 0
+        self._interval = _interval(task.plant, smooth, self._names, task.energy)
+        self._solver = lru_cache(maxsize=4)(self._build)
+        cycloid = self.along(CycloidPolynomial(0).path([], *task.move), first_grid(_SCALE_STEPS))
+        columns, (power, rest, *limited) = self._simulate(cycloid)
         self._scale = np.abs(columns).max(axis=1)
         self._scale[0] = abs(task.span)
         self._scale[self._scale == 0] = 1.0
         energy = task.energy.absolute * np.abs(power) + np.abs(rest)
         self._measures = np.array([np.abs(of).max() or 1.0 for of in (energy, *limited)])
+
+    def _build(self, steps: int, warm: bool) -> ca.Function:
+        """IPOPT, from anywhere or from a coarser grid's solution.
+
+        Parameters are the intervals' lengths, and the weights of the energy and of each quantity.
+        """
+        rows, states, parts = len(self._scale), self._states, self._parts
+        scale = ca.repmat(ca.DM(self._scale), 1, steps)
+        of_energy, *measures = self._measures.tolist()
+        lengths, weights = ca.MX.sym("lengths", steps), ca.MX.sym("weights", 1 + len(measures))
+        peaks, x = ca.MX.sym("peaks", len(measures)), ca.MX.sym("x", rows + 2 * parts, steps)
+        columns, forward, backward = ca.vertsplit(x, [0, rows, rows + parts, rows + 2 * parts])
+        after, equations, power, rest, *values = self._interval.map(steps)(
+            columns * scale, lengths.T
+        )
+        arrived = ca.DM(self._resting(self.task.target, self.task.final_state))
+        spent = rest / of_energy
+        constraints = [
+            after / scale[:states, :] - ca.horzcat(columns[:states, 1:], arrived),
+            equations / scale[states + 1 :, :],
+        ]
+        if parts:
+            spent += self.task.energy.absolute * (forward + backward)
+            constraints.append(forward - backward - power / of_energy)
+        for peak, value, measure in zip(ca.vertsplit(peaks), values, measures, strict=True):
+            constraints += [peak - value / measure, peak + value / measure]
+        mean = ca.dot(lengths, (ca.DM(GAUSS_WEIGHTS).T @ spent).T) / ca.sum1(lengths)
+        problem = {
+            "x": ca.vertcat(peaks, ca.vec(x)),
+            "p": ca.vertcat(lengths, weights),
+            "f": ca.dot(weights, ca.vertcat(mean, peaks)),
+            "g": ca.vertcat(*map(ca.vec, constraints)),
+        }
+        return compile_nlp(problem, _WARM if warm else COLD)
 
     def along(self, path: JointPath, fractions: Array) -> FreeMotion:
         """A motion of this kind on a grid whose speed at the grid is that of a path."""
@@ -188,10 +185,7 @@ class FloorProgram:
     ) -> FreeSolution:
         """Run the solver from one motion, on its grid."""
         task, names, steps = self.task, self._names, free.steps
-        solver = _solver_of(task.plant, self.smooth, steps, names, task.energy, warm)
-        weights = [float(name == minimise) for name in (ENERGY, *names)]
-        end = self._scaled(task.target, task.final_state)
-        given = free.lengths, self._scale, self._measures, end
+        solver, units = self._solver(steps, warm), np.eye(1 + len(names))
         equations = steps * (self._states + NODES * task.plant.modes + self._parts)
         largest = np.where(np.arange(solver.size1_in("ubg")) < equations, 0.0, np.inf)
         stop = run_ipopt(
@@ -199,10 +193,9 @@ class FloorProgram:
             self._guess(free),
             self._bounds(limits, steps),
             (np.zeros(len(largest)), largest),
-            np.concatenate([*given, weights]),
+            np.append(free.lengths, units[[ENERGY, *names].index(minimise)]),
         )
-        of_energy = np.concatenate([*given, [1.0], np.zeros(len(names))])
-        mean = solver.get_function("nlp_f")(stop.unknowns, of_energy)
+        mean = solver.get_function("nlp_f")(stop.unknowns, np.append(free.lengths, units[0]))
         peaks, found = np.split(stop.unknowns, [len(names)])
         columns = found.reshape(steps, -1).T[: len(self._scale)] * self._scale[:, None]
         last = columns[self._states]
@@ -227,15 +220,14 @@ class FloorProgram:
         upper = np.full((len(self._scale) + 2 * self._parts, steps), np.inf)
         lower = -upper
         lower[len(self._scale) :] = 0.0
-        begun = self._scaled(self.task.start, self.task.initial_state)
+        begun = self._resting(self.task.start, self.task.initial_state)
         lower[: self._states, 0] = upper[: self._states, 0] = begun
         most = [limits.get(name, np.inf) for name in self._names] / self._measures[1:]
         return _flat(np.zeros(len(most)), lower), _flat(most, upper)
 
-    def _scaled(self, angle: float, modes: tuple[float, ...]) -> Array:
-        """The state with the joint at rest, as the solver sees it."""
-        resting = [0.0] * (1 + self.smooth)
-        return np.array([angle, *resting, *modes]) / self._scale[: self._states]
+    def _resting(self, angle: float, modes: tuple[float, ...]) -> Array:
+        """The state with the joint at rest, scaled."""
+        return np.array([angle, *[0.0] * (1 + self.smooth), *modes]) / self._scale[: self._states]
 
     def _simulate(self, free: FreeMotion) -> tuple[Array, list[Array]]:
         """The columns of a motion, and the values of `_interval` from the power on."""
@@ -246,7 +238,7 @@ class FloorProgram:
         W, dW, _ = march(*one.transition(), h.shape, self.task.initial_state)
         ddW = [ca.DM.zeros(h.shape) + entry for node in one.accelerations(W, dW) for entry in node]
         columns = ca.vertcat(*begun[:-1], *W, *dW, begun[-1], *ddW)
-        return columns.full(), [values.full() for values in self._values(columns, h)[2:]]
+        return columns.full(), [values.full() for values in self._interval(columns, h)[2:]]
 
 
 def _flat(peaks: ArrayLike, columns: Array) -> Array:
