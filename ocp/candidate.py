@@ -1,8 +1,7 @@
 """A motion of a task, judged by CVODES: the one judge of every answer.
 
-Every figure that a plan or a floor reports comes from here, not from the optimiser's own fixed
-steps. The two share the equations, the energy's quadrature and the vibration after arrival, but no
-integrator.
+With the optimisers' fixed steps it shares the equations, the energy's quadrature and the vibration
+after arrival, but no integrator.
 """
 
 from __future__ import annotations
@@ -60,10 +59,8 @@ class Candidate(WithPeaks):
 
     Raises
     ------
-    ValueError
-        By what is asked for, when the residual window is too long to be resolved.
-    SolverFailedError
-        By what is asked for, when CVODES cannot follow the motion.
+    ValueError, SolverFailedError
+        By what is asked for, when the residual window is too long, or CVODES cannot follow.
     """
 
     task: PointToPoint
@@ -114,10 +111,7 @@ class Candidate(WithPeaks):
 
     @cached_property
     def motion(self) -> Motion:
-        """All figures; peaks are those between the samples.
-
-        They take a fifth of the simulation's time, and a front without limits needs none of them.
-        """
+        """All figures; peaks are those between the samples."""
         extreme, task = self._extreme, self.task
         joint = extreme.motion if self.path.has_jerk else extreme.motion._replace(jerk=None)
         past_target = (joint.angle - task.target) * np.sign(task.span)
@@ -141,11 +135,7 @@ class Candidate(WithPeaks):
 
     @property
     def trajectory(self) -> Trajectory:
-        """Samples of the move and of the residual window after it.
-
-        Where two pieces meet there are two samples of the same time: before and after a jump of
-        torque or acceleration.
-        """
+        """The move and the residual window; where two pieces meet, two samples of one time."""
         lengths, fractions = self.path.given[-1], self._grid.samples
         begins = np.append(0.0, np.cumsum(lengths[:-1]))
         times = (begins[:, None] + np.outer(lengths, fractions)).ravel()

@@ -14,9 +14,8 @@ import numpy as np
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
 from quietarm.ocp import Front, PointToPoint, QuietarmError
-from quietarm.ocp.planning.best_of_starts import first_steps
+from quietarm.ocp.planning.best_of_starts import plan_from_starts
 from quietarm.ocp.planning.certify import judge
-from quietarm.ocp.planning.from_starts import plan_from_starts
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
 from quietarm.ocp.solvers.problem import Problem, Scalarization
@@ -114,9 +113,7 @@ def certified(
 
 
 def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProblem) -> Certificate:
-    steps = LIMITED_STEPS if task.limits else None
-    settings = SolveSettings(bound=problem.bound, steps=steps)
-    steps = Transcription(task, front.profile, first_steps(task, front.profile, settings))
+    steps = Transcription.of(task, front.profile, LIMITED_STEPS if task.limits else None)
     problems = [
         Problem(
             steps, Scalarization({RESIDUAL: r if r > STILL else 0.0, **task.limits}, problem.bound)

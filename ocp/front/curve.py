@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
-from quietarm.ocp.planning.best_of_starts import first_steps, start_coefficients
+from quietarm.ocp.planning.best_of_starts import start_coefficients
 from quietarm.ocp.planning.certify import (
     CHECK_EVERY,
     FINER_AGREEMENT,
@@ -68,8 +68,7 @@ class Curve:
     def begin(cls, task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Curve:
         """On the steps that the settings or the task ask for."""
         profile.refuse_no_choice()
-        steps = first_steps(task, profile, settings)
-        return cls(Transcription(task, profile, steps), settings)
+        return cls(Transcription.of(task, profile, settings.steps), settings)
 
     @property
     def task(self) -> PointToPoint:

@@ -1,43 +1,28 @@
-"""Where a solver starts, on how many steps, and the best of what it finds."""
+"""Where a solver starts, and the best of what it finds, certified."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.planning.certify import MOST_SOLVER_STEPS
+from quietarm.ocp.planning.certify import certify
 from quietarm.ocp.planning.feasibility import explain, least_peaks_of
+from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.solvers.choice import Solver
+from quietarm.ocp.record import Provenance, SolveSettings, Verification
+from quietarm.ocp.solvers.choice import Solver, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.problem import Problem, Scalarization
 from quietarm.ocp.solvers.solution import Solution
-from quietarm.ocp.solvers.transcription import ENERGY
+from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL, Transcription
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
-PLAN_STEPS, FINER_STEPS, STEPS_A_TERM = 48, 80, 8
-"""Steps that resolve a profile: more with more terms, since the power changes sign more often, but
-within the first two; with limits the second, since limits hold only at the nodes."""
 SAME = 1e-5
 """Solutions whose objectives differ by less than this share count as one motion."""
-
-
-def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> int:
-    """Steps of the solver's transcription to begin with."""
-    fewest = FINER_STEPS if task.limits else PLAN_STEPS
-    least = min(max(fewest, STEPS_A_TERM * (profile.size - 2)), FINER_STEPS)
-    steps = settings.steps or default_steps(task, least=least)
-    if steps > MOST_SOLVER_STEPS and settings.steps is None:
-        raise ValueError(
-            f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
-            f"mode; the solver resolves up to {MOST_SOLVER_STEPS // 2}: give a shorter duration"
-        )
-    return steps
 
 
 def start_coefficients(profile: JointProfile, settings: SolveSettings) -> list[Array]:
@@ -122,3 +107,36 @@ def solve_from_starts(
     if not solved:
         raise explain(problem, tried, least)
     return replace(solved[0], iterations=sum(one.iterations for one in tried)), solved
+
+
+def plan_from_starts(
+    task: PointToPoint,
+    profile: JointProfile,
+    settings: SolveSettings,
+    starts: Sequence[NDArray[np.float64]] | None = None,
+) -> tuple[Plan, list[NDArray[np.float64]]]:
+    """The plan from starts, by default those of the settings, whose limit holds in all scenarios.
+
+    And the coefficients of all that were solved, cheapest first. Errors are those of
+    `solve_from_starts` and `certify`.
+    """
+    began, solver = time.perf_counter(), solver_of(settings.solver, settings.print_level)
+    starts = start_coefficients(profile, settings) if starts is None else starts
+    transcription = Transcription.of(task, profile, settings.steps)
+    limits = {RESIDUAL: settings.residual_limit, **task.limits}
+    problem = Problem(transcription, Scalarization(limits, settings.bound))
+    best, solved = solve_from_starts(problem, starts, solver)
+    certified = certify(problem, best, solver)
+    solution, motion = certified.solution, certified.checked.motion
+    plan = Plan(
+        task=task,
+        profile=profile,
+        coefficients=profile.checked(solution.coefficients),
+        motion=motion,
+        status=solution.status,
+        verification=Verification.between(
+            certified.steps, solution.energy, solution.residual, motion
+        ),
+        provenance=Provenance(settings.solver, settings, seconds=time.perf_counter() - began),
+    )
+    return plan, [one.coefficients for one in solved]

@@ -16,11 +16,14 @@ from quietarm.ocp.solvers.batch import Batch, Values, batch
 from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.solution import Solution
-from quietarm.ocp.solvers.transcription import STILL, STILL_SHARE, Transcription
+from quietarm.ocp.solvers.transcription import (
+    MOST_STEPS,
+    STILL,
+    STILL_SHARE,
+    Transcription,
+)
 from quietarm.ocp.task import QUANTITIES
 
-MOST_SOLVER_STEPS = 3200
-"""The solver's steps are doubled up to this many."""
 _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
 """Of a limit, and of rest: by these shares may the two integrators' residuals differ."""
@@ -45,7 +48,7 @@ class Tolerances:
     """
 
     energy: float = 1e-5
-    most_steps: int = MOST_SOLVER_STEPS
+    most_steps: int = MOST_STEPS
 
 
 OF_A_PLAN = Tolerances()

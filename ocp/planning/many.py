@@ -12,7 +12,6 @@ from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
-    first_steps,
     start_coefficients,
 )
 from quietarm.ocp.planning.certify import (
@@ -33,7 +32,7 @@ from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.problem import Problem, Scalarization
 from quietarm.ocp.solvers.solution import Solution
-from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, transcribe
+from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, first_steps, transcribe
 from quietarm.ocp.task import QUANTITIES, PointToPoint
 
 Array = NDArray[np.float64]
@@ -124,7 +123,7 @@ def plan_moves(
     _check(tasks, profile)
     problems = [
         Problem(one, Scalarization({RESIDUAL: residual_limit, **one.task.limits}, bound))
-        for one in transcribe(tasks, profile, _steps(tasks, profile, settings))
+        for one in transcribe(tasks, profile, _steps(tasks, profile))
     ]
     chosen, first = solver_of(solver), start_coefficients(profile, settings)
     random = start_coefficients(profile, replace(settings, starts=4))[1:]
@@ -165,11 +164,11 @@ def _from_neighbours(
     return solver.solve(problems, starts, warm=True)
 
 
-def _steps(tasks: Sequence[PointToPoint], profile: JointProfile, settings: SolveSettings) -> int:
+def _steps(tasks: Sequence[PointToPoint], profile: JointProfile) -> int:
     """Steps that do for all: those of the move that takes the most periods."""
     starts, targets, durations = np.array([task.move for task in tasks]).T
     radians = durations * fastest_of_moves(tasks[0].plant, starts, targets)
-    return first_steps(tasks[int(np.argmax(radians))], profile, settings)
+    return first_steps(tasks[int(np.argmax(radians))], profile)
 
 
 class _Row(NamedTuple):

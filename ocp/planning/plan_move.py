@@ -5,9 +5,9 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 from quietarm.ocp.errors import InfeasibleTaskError
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.planning.best_of_starts import plan_from_starts
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.feasibility import UNITS
-from quietarm.ocp.planning.from_starts import plan_from_starts
 from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
 from quietarm.ocp.planning.robust import plan_robustly
 from quietarm.ocp.profiles.joint_profile import JointProfile

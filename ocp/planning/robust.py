@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
-    first_steps,
+    plan_from_starts,
     start_coefficients,
 )
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.from_starts import plan_from_starts
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, SolveSettings
@@ -118,7 +117,7 @@ def _least_worst_case(
     task: PointToPoint, profile: JointProfile, settings: SolveSettings, starts: Starts
 ) -> float:
     """The least residual over the scenarios [m]; InfeasibleTaskError where limits are not kept."""
-    transcription = Transcription(task, profile, first_steps(task, profile, settings))
+    transcription = Transcription.of(task, profile, settings.steps)
     asked = Scalarization(task.limits, settings.bound, {RESIDUAL: 1.0})
     every = [*starts, *start_coefficients(profile, settings)]
     solver = solver_of(settings.solver)

@@ -12,9 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 class BufferedFunction:
     """A function with memory of its own, for one thread at a time.
 
-    A plain call of a casadi function allocates its working memory anew and passes every number of
-    its results through a Python list. For a population that takes as long as two steps of it, for
-    the samples of a simulation by CVODES a third of the simulation.
+    A plain call passes every number through a Python list: a third of a simulation by CVODES.
     """
 
     def __init__(self, function: ca.Function) -> None:

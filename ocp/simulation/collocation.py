@@ -1,11 +1,9 @@
 """One step of the plant's modes along a given joint motion, by Gauss collocation.
 
-For a given joint motion the modes obey W'' = g - D W' - K W with coefficients that vary in time.
-With W'' a polynomial through the three Gauss nodes of a step, the state after the step is an affine
-map of the state before it, exact to order six, and W'' at the nodes costs one small linear solve.
-A step needs the joint only at its nodes, so that a population can compute all its sines at once;
-the nodes' weights integrate the power to the same order. Source: Hairer, Norsett, Wanner, Solving
-Ordinary Differential Equations I, section II.7 (Gauss methods), used in Nystrom form.
+The modes obey W'' = g - D W' - K W with coefficients that vary in time. With W'' a polynomial
+through the three Gauss nodes of a step, the state after it is an affine map of the state before,
+exact to order six. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I,
+section II.7 (Gauss methods), in Nystrom form.
 """
 
 from __future__ import annotations
@@ -47,12 +45,8 @@ class ModalSystem(NamedTuple):
 
 
 def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
-    """The modes' coefficients along a joint motion, read off the plant's own equations.
-
-    These are affine in the modes (`Plant.validate`), so that their values at zero and at each unit
-    vector give the coefficients without a derivative, element by element.
-    """
-    modes, zero, acts = range(plant.modes), [0.0] * plant.modes, _acting(plant)
+    """The modes' coefficients along a joint motion, by the plant's equations at unit vectors."""
+    modes, zero, acts = range(plant.modes), [0.0] * plant.modes, _acting(plant, joint)
     units = [[float(other == mode) for other in modes] for mode in modes]
     g = list(plant.modal_accelerations(joint, zero, zero))
 
@@ -66,9 +60,11 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
     )
 
 
-def _acting(plant: Plant) -> list[list[bool]]:
+def _acting(plant: Plant, joint: JointMotion) -> list[list[bool]]:
     """Whether mode j is in the equation of mode i at all: else there is no term to compute with."""
     modes, kind = range(plant.modes), _kind_of(plant)
+    if isinstance(joint.angle, ca.DM):  # numbers tell by themselves
+        return [[True for _ in modes] for _ in modes]
     joint = JointMotion(*(kind.sym("joint") for _ in range(3)))
     W, dW = ([kind.sym("W") for _ in modes] for _ in range(2))
     after = [kind(entry) for entry in plant.modal_accelerations(joint, W, dW)]
@@ -138,10 +134,7 @@ class Step:
         )
 
     def transition(self) -> tuple[list[Expression], list[list[Expression]]]:
-        """The step as state = constant + sum over columns: (constant, columns), by unit states.
-
-        Entries of `columns` for modes that do not act on each other are the number 0.0.
-        """
+        """(constant, columns): the state after is constant + columns times the state before."""
 
         def after(column: int) -> list[Expression]:
             state = [float(column == 1 + row) for row in range(2 * self.modes)]
@@ -165,10 +158,7 @@ class Step:
 
 
 def step(plant: Plant, joints: Sequence[JointMotion], h: Expression, forced: bool = False) -> Step:
-    """One step of length h [s] from the joint at its nodes, each of any number of steps at once.
-
-    Where it is asked for, the step can be `driven_by` another excitation.
-    """
+    """One step of length h [s] from the joint at its nodes; if forced, it can be `driven_by`."""
     modes, count = range(plant.modes), NODES * plant.modes
     matrix: list[list[Expression]] = []
     right: list[list[Expression]] = []
@@ -211,11 +201,9 @@ def _combine(weights: Sequence[float], ddW: Sequence[Modes], mode: int) -> Expre
 def eliminate(
     matrix: list[list[Expression]], right: list[list[Expression]]
 ) -> list[list[Expression]]:
-    """Solve `matrix` x = `right` by Gaussian elimination, element by element.
+    """Solve `matrix` x = `right`, element by element, without pivoting.
 
-    Without pivoting, since candidates computed together must share the order of elimination. The
-    matrix is the identity plus terms of the order of a step over the shortest period, which
-    `default_steps` keeps small.
+    The matrix is the identity and what `default_steps` keeps small.
     """
     size = len(matrix)
     for i in range(size):

@@ -1,9 +1,8 @@
 """The independent integrator: CVODES along any joint motion.
 
-A motion is smooth pieces one after another. CVODES starts anew at every piece, since the
-acceleration (or the jerk) jumps there, and gives the modes at the nodes of a fine quadrature, which
-finds the power's sign changes. It is built once for a plant and a kind of piece: what differs
-between moves is a parameter, and time is the fraction of the piece.
+It starts anew at every smooth piece, and gives the modes at the nodes of a fine quadrature. It is
+built once for a plant and a kind of piece: what differs between moves is a parameter, and time is
+the fraction of the piece.
 """
 
 from __future__ import annotations
@@ -42,17 +41,7 @@ Array = NDArray[np.float64]
 
 
 class Run(NamedTuple):
-    """What CVODES gives.
-
-    Attributes
-    ----------
-    outputs : ndarray, shape (rows of `outputs_of`, pieces * samples)
-        Of every piece: at its ends, and at the nodes of the quadrature.
-    arrival : ndarray, shape (2 * modes,)
-        W (m) and then W' (m/s) on arrival.
-    energy, net_work : float
-        F2 and the integral of torque * speed [J].
-    """
+    """`outputs_of` every piece at its ends and nodes, a column each; state on arrival; work [J]."""
 
     outputs: Array
     arrival: Array
@@ -70,10 +59,7 @@ def integrate(
     steps: int,
     energy: Energy,
 ) -> Run:
-    """Follow a motion on a plant with errors, with so many steps of the quadrature on every piece.
-
-    Initial is W (m) and then W' (m/s) at the start. SolverFailedError where CVODES cannot follow.
-    """
+    """Follow a motion on a plant with errors, by so many steps of the quadrature on a piece."""
     with _refusing(path.remedy):
         figures = _figures(plant, path.law, path.given.shape, steps, tuple(errors), energy)
         given = path.given.T, [list(errors.values())], [initial]
@@ -169,10 +155,7 @@ def _perturbed(plant: Plant, names: tuple[str, ...], errors: ca.SX | ca.MX) -> P
 
 
 def _options(times: Array) -> dict[str, str | float | int]:
-    """Options of a run that ends within some seconds, also where it cannot follow the motion.
-
-    CVODES counts its steps from one sample to the next.
-    """
+    """Options of a run of some seconds at most; steps are counted from sample to sample."""
     gaps = np.diff(times, prepend=0.0)
     share = float(gaps.max() / gaps.sum())
     return {**CVODES, "max_num_steps": max(_LEAST_A_SAMPLE, round(_MOST_STEPS * share))}

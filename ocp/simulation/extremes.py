@@ -14,11 +14,9 @@ jumps or bends sharply there, and the largest sample is taken instead."""
 
 
 def extremes(times: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Least and largest value of each row, where the derivative is zero between the samples.
+    """Least and largest value of each row, by a polynomial around its extreme samples.
 
-    A polynomial of degree six goes through the extreme sample and its neighbours; Newton's method
-    finds the root of its derivative. Where a row jumps or bends sharply, its extreme sample is
-    returned. A function in pieces may jump from one to the next.
+    Where a row jumps or bends sharply, it is the sample itself. Rows may be pieces of these times.
     """
     signed = np.concatenate([-rows, rows])
     at = np.argmax(signed, axis=1)

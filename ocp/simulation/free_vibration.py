@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.models import JointMotion, Plant
+from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.simulation.collocation import modal_system
 from quietarm.ocp.task import PointToPoint
@@ -32,20 +32,19 @@ _ANGLES = 49
 
 
 class FreeVibration:
-    """How the modes vibrate on after arrival: a constant matrix gives (W', W'') by (W, W').
+    """How the modes vibrate on after arrival; states are W [m], then W' [m/s].
 
-    States are W [m], then W' [m/s]; where rest is not what is wanted on arrival, pass what they
-    miss of the wanted state (`PointToPoint.missed`).
+    Where rest is not what is wanted on arrival, pass what a state misses of that
+    (`PointToPoint.missed`).
 
     Parameters
     ----------
     plant : Plant
         What vibrates. Its parameters may be columns, of a plant each.
     angle : float or array_like, shape (n,)
-        Where the joint rests [rad]. With n angles it is n vibrations at once, and all arrays below
-        have a leading axis of n.
+        Where the joint rests [rad]; n vibrations at once have arrays with a leading axis of n.
     window : float
-        Time after arrival within which displacements count [s]; frequencies and states need none.
+        How long displacements count after arrival [s]; frequencies and states need none.
 
     Attributes
     ----------
@@ -91,15 +90,12 @@ class FreeVibration:
     @property
     def modes(self) -> list[tuple[float, float]]:
         """Undamped frequency [rad/s] and damping ratio of each mode that swings, slowest first."""
-        swinging = self._eigenvalues[self._eigenvalues.imag > 0]
-        return [(float(abs(one)), float(-one.real / abs(one))) for one in sorted(swinging, key=abs)]
+        swinging = [complex(one) for one in self._eigenvalues if one.imag > 0]
+        return [(abs(one), -one.real / abs(one)) for one in sorted(swinging, key=abs)]
 
     @cached_property
     def rows(self) -> Array:
-        """Rows whose products with a state are the tip displacements that can be the largest [m].
-
-        Shape (rows, 2 * modes), of one vibration; F1 is the largest absolute product, to 5e-5.
-        """
+        """Shape (rows, 2 * modes): F1 is the largest absolute product with a state, to 5e-5."""
         samples = max(2, math.ceil(self._radians / _RADIANS_OF_ROWS) + 1)  # both ends at least
         step = exponential(self.matrix, self.window / (samples - 1), self._most)
         rows = extreme_rows(powers(self.tips, step, samples), len(self.tips))
@@ -166,16 +162,14 @@ def fastest_along(plant: Plant, start: float, target: float) -> float:
 
 def fastest_of_moves(plant: Plant, starts: ArrayLike, targets: ArrayLike) -> Array:
     """The same for each of many moves."""
-    angles = np.linspace(starts, targets, _ANGLES)
+    ends = np.asarray(starts, dtype=float), np.asarray(targets, dtype=float)
+    angles = np.linspace(*ends, _ANGLES)
     fastest = FreeVibration(plant, angles.ravel()).fastest
     return fastest.reshape(angles.shape).max(axis=0)
 
 
 def exponential(matrix: Array, times: ArrayLike, fastest: float) -> Array:
-    """exp(matrix * time) for each time [s], by a Taylor series of a small part, squared again.
-
-    Fastest is the largest absolute eigenvalue.
-    """
+    """exp(matrix * time) for each time [s]; fastest is the largest absolute eigenvalue."""
     at = matrix * np.asarray(times, dtype=float)[..., None, None]
     radians = fastest * float(np.max(times, initial=0.0))
     halvings = max(0, math.ceil(math.log2(max(radians, _SMALL) / _SMALL)))
@@ -196,7 +190,7 @@ def powers(rows: Array, step: Array, count: int) -> Array:
     return rows[..., :most, :]
 
 
-def _stacked(entries: Sequence[Sequence[object]], count: int) -> Array:
+def _stacked(entries: Sequence[Sequence[Expression]], count: int) -> Array:
     """Entries that are numbers or columns, as so many matrices."""
     columns = [
         [np.broadcast_to(np.array(ca.DM(entry)).ravel(), count) for entry in row] for row in entries
@@ -205,10 +199,7 @@ def _stacked(entries: Sequence[Sequence[object]], count: int) -> Array:
 
 
 def _largest(tips: Array, rates: Array) -> Array:
-    """Largest absolute value of samples (n, samples, tips), and of the cubics between them.
-
-    Rates are those for the interval between two samples.
-    """
+    """Largest absolute value of samples (n, samples, tips), and of the cubics between them."""
     most = np.abs(tips).max(axis=(1, 2))
     turns = np.nonzero(rates[:, :-1] * rates[:, 1:] < 0)
     (w, after), (v, v_after) = ((one[:, :-1][turns], one[:, 1:][turns]) for one in (tips, rates))
@@ -220,10 +211,9 @@ def _largest(tips: Array, rates: Array) -> Array:
 
 
 def extreme_rows(rows: Array, tips: int) -> Array:
-    """Those rows of displacements, tip after tip at each time, that hold the largest of some state.
+    """Those rows of displacements, tip after tip at each time, that are the largest of some state.
 
-    A tip that one mode moves turns in a plane, and dies away: of half a turn the corners of the
-    convex hull suffice.
+    A tip that one mode moves turns in a plane, and dies away: corners of half a turn suffice.
     """
     kept: list[Array] = []
     for tip in range(tips):

@@ -27,17 +27,15 @@ _LEAST_STEPS = 6
 class Grid:
     """Steps of a move, or of a smooth piece of it, as fractions of its duration.
 
-    Steps are finer at the ends, by a blend of even and Chebyshev spacing: there the powers of T in
-    the profile change fastest. For random coefficients in the paper's boxes this takes a tenth to
-    a thirtieth of the error of even steps.
+    Steps are finer at the ends, where the powers of T in the profile change fastest: in the paper's
+    boxes the error is a tenth to a thirtieth of that of even steps.
 
     Parameters
     ----------
     steps : int
         Number of steps; with breaks, somewhat more.
     breaks : tuple of float
-        Fractions at which the motion is not smooth. Between two of them there are as many steps as
-        are due to that share of the move, or some more.
+        Fractions at which the motion is not smooth; there a step ends.
     """
 
     steps: int
@@ -71,10 +69,9 @@ class Grid:
         return np.concatenate([[0.0], self.nodes.T.ravel(), [1.0]])
 
     def stretch(self, fraction: Expression) -> Expression:
-        """A node's place stretched: the first is the start of the move then, and the last its end.
+        """A node's place, stretched from the start of the move to its end where nothing breaks.
 
-        The jerk is sampled there: unlike all else it may be largest at the very ends, where it
-        jumps. With breaks it is not known there, and nothing is stretched.
+        The jerk is sampled there: unlike all else it may be largest at the very ends.
         """
         if self.breaks:
             return fraction
@@ -88,10 +85,7 @@ class Grid:
 
 
 def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
-    """Steps that resolve the profile (`least`) and the fastest mode on the way (2 a radian).
-
-    Of an uncertain plant the fastest of all scenarios counts.
-    """
+    """Steps for the profile (`least`), and 2 a radian of the fastest mode of all scenarios."""
     plants = task.perturbed_plants
     radians = task.duration * max(fastest_along(one, task.start, task.target) for one in plants)
     if 2 * radians > MOST_STEPS:

@@ -48,13 +48,10 @@ def integrated(at_nodes: Sequence[Expression], h: Expression) -> Expression:
 def resolved_energy(
     power: Sequence[Expression], h: Expression, cubic: Expression = 0.0, quartic: Expression = 0.0
 ) -> Expression:
-    """Integral of |power| with its sign changes resolved.
+    """Integral of |power|, split at the zeros of the quadratic through each step's nodes.
 
-    The power on a step is the quadratic through its three Gauss nodes; its integral is split at the
-    quadratic's zeros. Splitting where the power keeps its sign changes nothing, so that complex
-    zeros and zeros outside the step need no special case. Terms of third and fourth degree that
-    vanish at the nodes move work across a zero and add none to the step; the zeros stay those of
-    the quadratic, since the work hardly changes near a zero.
+    Where the power keeps its sign, a split changes nothing. Terms of third and fourth degree vanish
+    at the nodes: they move work across a zero and add none to the step.
     """
     c, zeros = quadratic(power), power_zeros(power)
     return ca.sum2(h * _parted_energy(c, cubic, quartic, zeros))
@@ -72,7 +69,8 @@ def power_zeros(power: Sequence[Expression]) -> list[Expression]:
     """
     c = quadratic(power)
     discriminant = c[1] * c[1] - 4 * c[0] * c[2]
-    half = -(c[1] + ca.copysign(ca.sqrt(ca.fmax(discriminant, _TINY)), c[1])) / 2  # no cancellation
+    root = ca.sqrt(ca.fmax(discriminant, _TINY))  # at 0 its derivative is infinite
+    half = -(c[1] + ca.copysign(root, c[1])) / 2  # no cancellation
     first, second = (
         ca.fmin(ca.fmax(zero, 0), 1) for zero in (half / (c[2] + _TINY), c[0] / (half + _TINY))
     )
@@ -94,11 +92,10 @@ def _parted_energy(
 
 
 def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
-    """What the neighbouring steps say about the power on a step, for `resolved_energy`.
+    """What neighbouring steps say of the power on a step; kept, but for long recordings.
 
     The quartic through five nodes in a row, the step's own three in the middle, is the quadratic
     through these plus (x - node 1)(x - node 2)(x - node 3) (cubic + quartic (x - 1/2)).
-    Both are kept for the next rollout of as many steps, but those of a long recording are not.
     """
     return (_kept_beyond if steps <= _MOST_KEPT else _beyond)(steps)
 
@@ -144,8 +141,8 @@ class Motion(WithPeaks):
     Attributes
     ----------
     residual : float
-        F1: largest absolute tip displacement in the residual window after arrival [m], from the
-        free vibration of the state that the task asks for; of none where that is rest.
+        F1: largest tip displacement in the residual window after arrival [m], from the free
+        vibration of the state that the task asks for; of none where that is rest.
     energy : float
         F2: the task's energy, by default the integral of abs(torque * speed) over the move [J].
     net_work : float

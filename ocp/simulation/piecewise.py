@@ -1,7 +1,4 @@
-"""A joint motion in smooth pieces, as the independent integrator takes it.
-
-A profile is one piece; a free motion has one for every interval of its grid.
-"""
+"""A joint motion in smooth pieces: one of a profile, one for every interval of a free motion."""
 
 from __future__ import annotations
 
@@ -35,24 +32,16 @@ class _AlongProfile:
 
 
 def _freely(given: Sequence[Expression], fraction: Expression, *, jerk: bool) -> JointMotion:
-    """The law of a free motion, from the joint at the beginning of an interval, and its length."""
+    """The law of a free motion, from the joint where an interval begins, and its length."""
     return joint_after(given[:-1], fraction * given[-1])
 
 
 @dataclass(frozen=True, eq=False)
 class PiecewiseMotion:
-    """A joint motion in smooth pieces, for CVODES.
+    """A joint motion in smooth pieces: its law, and what that is given, a column for each piece.
 
-    Attributes
-    ----------
-    given : ndarray, shape (numbers, pieces)
-        What the law is given on each piece; the last row is how long they take [s].
-    has_jerk : bool
-        Whether the acceleration is continuous.
-    smooth : bool
-        Whether it is one piece, without a break in any derivative or a sharp turn.
-    remedy : str
-        The end of the message where CVODES cannot follow it.
+    The last row is how long they take [s]. Its acceleration is continuous if it `has_jerk`; it is
+    `smooth` if no derivative breaks. The remedy ends the message where CVODES cannot follow it.
     """
 
     law: Law

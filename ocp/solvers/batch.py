@@ -6,7 +6,7 @@ expressions; here they are compiled for blocks of rows and called.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
@@ -27,12 +27,12 @@ from quietarm.ocp.solvers.node import Path
 from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
-_FEW, _SOME, _MANY = 1, 4, 100
-"""Rows of a compiled call: of derivatives for one candidate or for more, and of values alone."""
+_OF_VALUES, _OF_DERIVATIVES = (8, 100), (4, 8)
+"""Rows of a compiled call: to build one takes as long as hundreds of its calls."""
 _LEAST_STRETCH = 1e-3
 """Share of the largest speed below which a direction in a box counts as this share."""
 _PADDED = 200
-"""So many times single rows are padded to the next block before a function of one is built."""
+"""So many times single rows are padded to a block before a function of one is built."""
 
 
 @dataclass(frozen=True)
@@ -109,15 +109,56 @@ class Derivatives(Values):
         )
 
 
+class _Compiled:
+    """A function of rows, compiled for a block of rows when one of that size is first needed."""
+
+    def __init__(self, build: Callable[[int], ca.Function], sizes: tuple[int, ...]) -> None:
+        self._build, self._sizes, self._singles = build, sizes, 0
+        self._functions = dict[int, ca.Function]()
+        self._idle = dict[int, list[BufferedFunction]]()
+
+    def __call__(self, inputs: Sequence[Array], threads: int = 1) -> list[Array]:
+        """The outputs, a row each, a block for each thread at a time."""
+        most, rows = self._sizes[-1], max(len(inputs[0]), 1)
+        blocks = [[one[i : i + most] for one in inputs] for i in range(0, rows, most)]
+        self._prepare(len(blocks[0][0]))
+        if threads > 1 and len(blocks) > 1:
+            with ThreadPoolExecutor(threads) as pool:
+                parts = list(pool.map(self._evaluate, blocks))
+        else:
+            parts = [self._evaluate(block) for block in blocks]
+        return [np.concatenate(part) for part in zip(*parts, strict=True)]
+
+    def _prepare(self, rows: int) -> int:
+        """The size of block for so many rows, built; often single rows get a function of one."""
+        self._singles += rows == 1
+        sizes = (1, *self._sizes) if self._singles > _PADDED else self._sizes
+        size = next(one for one in sizes if one >= rows)
+        if size not in self._functions:
+            self._functions[size] = self._build(size)
+            self._idle[size] = []
+        return size
+
+    def _evaluate(self, block: Sequence[Array]) -> list[Array]:
+        rows = len(block[0])
+        size = self._prepare(rows)
+        try:
+            function = self._idle[size].pop()
+        except IndexError:  # all are in use by other threads, or none is made yet
+            function = BufferedFunction(self._functions[size])
+        found = function(*(np.resize(one, (size, one.shape[1])).T for one in block))
+        copies = [one[:, :rows].T.copy() for one in found]  # the next call overwrites its own
+        self._idle[size].append(function)
+        return copies
+
+
 class Batch:
     """A plant's motion along a profile in a number of steps, for many candidates at once."""
 
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
-        self._compiled = dict[int, BufferedFunction]()
-        self._padded = 0
-        self._valued, self._singles = dict[int, ca.Function](), 0
-        self._idle: dict[int, list[BufferedFunction]] = {1: [], _MANY: []}
+        self._values = _Compiled(partial(compile_values, kind), _OF_VALUES)
+        self._derivatives = _Compiled(partial(compile_derivatives, kind), _OF_DERIVATIVES)
 
     @cached_property
     def places(self) -> dict[str, slice]:
@@ -170,40 +211,13 @@ class Batch:
 
     @keep_interrupts()  # casadi loses a Ctrl-C
     def values(self, coefficients: Array, move: Array, errors: Array, threads: int = 1) -> Values:
-        """Evaluate candidates without derivatives, a block of them for each thread at a time.
+        """Evaluate candidates without derivatives.
 
         Arguments as for `derivatives`; the energy takes in what neighbouring steps say, and is a
         little more exact.
         """
-        size = self._for_values(len(coefficients))
-        blocks = _blocks((coefficients, move, errors), size)
-        evaluate = partial(self._values, size)
-        if threads > 1 and len(blocks) > 1:
-            with ThreadPoolExecutor(threads) as pool:
-                parts = list(pool.map(evaluate, blocks))
-        else:
-            parts = [evaluate(block) for block in blocks]
-        energy, arrival, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
+        energy, arrival, limited = self._values((coefficients, move, errors), threads)
         return Values(energy[:, 0], arrival, limited)
-
-    def _for_values(self, rows: int) -> int:
-        """Rows of the function that values are asked of: one for who asks for single ones often."""
-        self._singles += rows == 1
-        size = 1 if rows == 1 and self._singles > _PADDED else _MANY
-        if size not in self._valued:
-            self._valued[size] = compile_values(self.kind, size)
-        return size
-
-    def _values(self, size: int, block: list[Array]) -> list[Array]:
-        try:
-            function = self._idle[size].pop()
-        except IndexError:  # all are in use by other threads, or none is made yet
-            function = BufferedFunction(self._valued[size])
-        rows = len(block[0])
-        found = function(*(_fill(one, size).T for one in block))
-        copies = [one[:, :rows].T.copy() for one in found]
-        self._idle[size].append(function)
-        return copies
 
     def derivatives(
         self,
@@ -235,51 +249,27 @@ class Batch:
         )
         inputs = [coefficients, move, errors, width[:, None], weights.energy[:, None],
                   weights.arrival, weights.limited]  # fmt: skip
-        parts = [self._block(block) for block in _blocks(inputs, 2 * _SOME)]
-        return Derivatives(*(np.concatenate(part) for part in zip(*parts, strict=True)))
-
-    def _function(self, rows: int) -> tuple[int, BufferedFunction]:
-        """One for so many rows or more: to build one takes as long as hundreds of its calls."""
-        size = _SOME if rows <= _SOME else 2 * _SOME
-        if rows == 1:
-            self._padded += 1
-            size = _FEW if self._padded > _PADDED else _SOME
-        if size not in self._compiled:
-            self._compiled[size] = BufferedFunction(compile_derivatives(self.kind, size))
-        return size, self._compiled[size]
-
-    def _block(self, inputs: list[Array]) -> tuple[Array, ...]:
-        rows, size = len(inputs[0]), self.kind.profile.size
-        filled, function = self._function(rows)
-        outputs = function(*(_fill(one, filled).T for one in inputs))
+        size, steps = self.kind.profile.size, self.kind.steps
 
         def by_coefficient(one: Array) -> Array:
-            """From (values, coefficients, steps; rows) to (rows; coefficients; values, steps)."""
-            apart = one.reshape(-1, size, self.kind.steps, filled)[..., :rows]
-            return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
+            """From columns by value, coefficient and step to (rows, coefficients, others)."""
+            return one.reshape(rows, -1, size, steps).swapaxes(1, 2).reshape(rows, size, -1)
 
-        # copies: the next call overwrites the function's own
-        copies = [one[:, :rows].T.copy() for one in outputs[:5]]
-        energy, arrival, limited, gradient, arrival_jacobian = copies
-        limited_jacobian, left, right = (by_coefficient(one) for one in outputs[5:8])
-        hessian = left @ right.transpose(0, 2, 1)
-        if outputs[8].size:
-            hessian += outputs[8][:, :rows].T.reshape(rows, size, size)
-        return (
-            energy[:, 0], arrival, limited, gradient, arrival_jacobian.reshape(rows, -1, size),
-            limited_jacobian.transpose(0, 2, 1), hessian,
-        )  # fmt: skip
-
-
-def _fill(rows: Array, count: int) -> Array:
-    """So many rows: these, again and again."""
-    return np.resize(rows, (count, rows.shape[1]))
-
-
-def _blocks(arrays: Sequence[Array], most: int) -> list[list[Array]]:
-    """The arrays' rows, so many at a time; one block where there are none."""
-    firsts = range(0, max(len(arrays[0]), 1), most)
-    return [[one[first : first + most] for one in arrays] for first in firsts]
+        found = self._derivatives(inputs)
+        energy, arrival, limited, gradient, arrival_jacobian = found[:5]
+        limited_jacobian, left, right = map(by_coefficient, found[5:8])
+        hessian = left @ right.swapaxes(1, 2)
+        if found[8].size:
+            hessian += found[8].reshape(rows, size, size)
+        return Derivatives(
+            energy=energy[:, 0],
+            arrival=arrival,
+            limited=limited,
+            gradient=gradient,
+            arrival_jacobian=arrival_jacobian.reshape(rows, -1, size),
+            limited_jacobian=limited_jacobian.swapaxes(1, 2),
+            hessian=hessian,
+        )
 
 
 @lru_cache(maxsize=32)

@@ -107,7 +107,8 @@ class Peak(Constraint):
 
     def pull_back(self, rows: Index, multipliers: Array, onto: Multipliers) -> None:
         """As of `Constraint`."""
-        self._of.pull_back(rows, sum(np.split(multipliers, 2, axis=1)), onto)
+        below, above = np.split(multipliers, 2, axis=1)
+        self._of.pull_back(rows, below + above, onto)
 
     def largest(self, rows: Index, motions: Derivatives, x: Array) -> Array:
         """The peaks, shape (rows,)."""

@@ -195,9 +195,9 @@ class _Differentiated:
         energy_pp: list[list[ca.MX]],
         of_outputs: list[list[ca.MX]],
         of_forcing: list[list[ca.MX]],
-    ) -> tuple[list[ca.MX], list[ca.MX]]:
+    ) -> tuple[list[ca.MX], list[Any]]:
         """Sensitivities, and what second derivatives make of them: their product is the Hessian."""
-        left, right = list[ca.MX](), list[ca.MX]()
+        left, right = list[ca.MX](), list[Any]()
         for j in range(NODES):
             l_vv = self.node.hessian(self.points[j], [*of_forcing[j], *of_outputs[j]])
             turned = product(repeat_table(l_vv, self.size), self.v_a[j], self.point)

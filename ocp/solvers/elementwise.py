@@ -8,6 +8,7 @@ without those that are zero whatever the symbols.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import casadi as ca
 
@@ -35,7 +36,7 @@ def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
     }
 
 
-def hessian(expression: ca.MX, by: Sequence[ca.MX]) -> Table:
+def hessian(expression: Any, by: Sequence[ca.MX]) -> Table:
     """Second derivatives of an expression."""
     gradient = jacobian([expression], by)
     upper = {

@@ -45,7 +45,7 @@ def energy_with_derivatives(
 
 def power_derivatives(
     power: Sequence[ca.MX], least_slope: ca.MX
-) -> tuple[list[ca.MX], list[list[ca.MX]]]:
+) -> tuple[list[Any], list[list[Any]]]:
     """Derivatives by the power at its nodes of the mean of |power| on a step.
 
     The gradient is that with the zeros held fixed, since the power is zero there, and continuous.

@@ -11,11 +11,17 @@ from numpy.typing import NDArray
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import after_arrival
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Derivatives, batch
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 ENERGY, RESIDUAL = "energy", "residual"
+_LEAST_STEPS, _LIMITED_STEPS, _STEPS_A_TERM = 48, 80, 8
+"""Steps that resolve a profile: more with more terms, since the power changes sign more often, but
+within the first two; with limits the second, since limits hold only at the nodes."""
+MOST_STEPS = 3200
+"""The solver's steps are doubled up to this many."""
 STILL, STILL_SHARE = 1e-8, 1e-7
 """A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
 the plain cycloid's residual, whichever is larger."""
@@ -47,6 +53,13 @@ class Transcription:
         self.batch = batch(
             task.plant, profile, steps, tuple(task.limits), task.error_names, task.energy
         )
+
+    @classmethod
+    def of(
+        cls, task: PointToPoint, profile: JointProfile, steps: int | None = None
+    ) -> Transcription:
+        """On so many steps, or on as many as the task and the profile take to begin with."""
+        return cls(task, profile, steps or first_steps(task, profile))
 
     @cached_property
     def tip_rows(self) -> list[Array]:
@@ -100,6 +113,19 @@ class Transcription:
     def peak(self, of: Derivatives, name: str) -> float:
         """The peak of a limited quantity of the nominal plant [SI unit]."""
         return float(np.abs(of.limited[0, self.batch.places[name]]).max())
+
+
+def first_steps(task: PointToPoint, profile: JointProfile) -> int:
+    """Steps of the solver to begin with; ValueError where the move is too long for it."""
+    fewest = _LIMITED_STEPS if task.limits else _LEAST_STEPS
+    least = min(max(fewest, _STEPS_A_TERM * (profile.size - 2)), _LIMITED_STEPS)
+    steps = default_steps(task, least=least)
+    if steps > MOST_STEPS:
+        raise ValueError(
+            f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
+            f"mode; the solver resolves up to {MOST_STEPS // 2}: give a shorter duration"
+        )
+    return steps
 
 
 def evaluate(transcriptions: Sequence[Transcription], coefficients: Array) -> list[Derivatives]:

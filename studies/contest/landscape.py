@@ -59,7 +59,7 @@ def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:
     )
     box = problem.profile.box(problem.bound)
     starts = random.uniform(*box, (STARTS, problem.profile.size))
-    found = curve.solver.solve([curve.problem(LEVEL)] * STARTS, starts)
+    found = curve.solver.solve([curve.problem(LEVEL)] * STARTS, list(starts))
     solved = [one for one in found if one.status.solved]
     if not solved:
         raise QuietarmError(f"none of {STARTS} random starts ended at a minimum")

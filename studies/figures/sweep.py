@@ -104,7 +104,7 @@ def draw_savings(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
         The axes, energy saved [%] against residual, on the same scale as `draw_polish`.
     """
     ax = axes_or_new(ax)
-    gains = [(1e3 * gain.residual, 100 * gain.share) for gain in polish.gains if gain.tried]
+    gains = [(1e3 * gain.residual, 100 * gain.share) for gain in polish.gains]
     ax.plot(*np.reshape(gains, (-1, 2)).T, "o", color=BLUE, markersize=3)
     ax.set(xlabel="residual F1 [mm]", ylabel="energy saved [%]")
     ax.set_ylim(bottom=0)

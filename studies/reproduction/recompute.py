@@ -15,7 +15,6 @@ from quietarm.metaheuristics.sharing.pieces import (
     Listener,
     Piece,
     Say,
-    to_the_end,
 )
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import HERE, Workers
@@ -122,7 +121,7 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
 def _solved(
     case: Case, profile: JointProfile, settings: Mapping[str, Any], earlier: Done, say: Say
 ) -> Plan:
-    return to_the_end(plan_move(case.task, profile, **settings))
+    return plan_move(case.task, profile, **settings)
 
 
 def _solved_robustly(case: Case, earlier: Done, say: Say) -> Plan | str:
@@ -132,7 +131,7 @@ def _solved_robustly(case: Case, earlier: Done, say: Say) -> Plan | str:
     try:
         limit = tolerated_residual(case.task)
         task = replace(case.task, uncertainty=uncertainty)
-        return to_the_end(plan_move(task, profile, residual_limit=limit))
+        return plan_move(task, profile, residual_limit=limit)
     except SolverFailedError as none:
         return str(none)
 
@@ -140,11 +139,11 @@ def _solved_robustly(case: Case, earlier: Done, say: Say) -> Plan | str:
 def _checked(case: Case, earlier: Done, say: Say) -> CrossCheck:
     """Points of the exact front in the paper's box, by both solvers of the gradient."""
     profile = CycloidPolynomial(COMPARED_TERMS)
-    return cross_check(to_the_end(epsilon_front(case.task, profile, bound=case.bound)))
+    return cross_check(epsilon_front(case.task, profile, bound=case.bound))
 
 
 def _floor(case: Case, earlier: Done, say: Say) -> Floor:
-    return to_the_end(energy_floor(case.task))
+    return energy_floor(case.task)
 
 
 def _systems(case: Case, seeds: int, earlier: Done, say: Say) -> tuple[System, ...]:

@@ -19,7 +19,6 @@ from quietarm.metaheuristics.sharing.pieces import (
     NotTriedError,
     Piece,
     Say,
-    to_the_end,
 )
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
@@ -129,7 +128,7 @@ def _swept(key: Key, settings: StudySettings, earlier: Done, say: Say) -> Front:
         if isinstance(error, InfeasibleTaskError) and isinstance(other, Key):
             raise NotTriedError(f"not tried, as {other.name} found no motion within the limits")
     sweep, case = METHODS[key.name].sweep, key.case
-    return to_the_end(sweep(case.task, settings.profile, bound=case.bound, points=settings.points))
+    return sweep(case.task, settings.profile, bound=case.bound, points=settings.points)
 
 
 def _polished(method: Method, keys: Sequence[Key], searches: Done, say: Say) -> Polish:
@@ -137,11 +136,11 @@ def _polished(method: Method, keys: Sequence[Key], searches: Done, say: Say) -> 
     first = next((front for front in found if front.points), None)
     if first is None:
         raise NotTriedError(f"not tried, as {method.name} found no front to start from")
-    return to_the_end(polish_front(first))
+    return polish_front(first)
 
 
 def _floor(case: Case, earlier: Done, say: Say) -> Floor:
-    return to_the_end(energy_floor(case.task))
+    return energy_floor(case.task)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,6 @@ from quietarm.metaheuristics.sharing.pieces import (
     Listener,
     Piece,
     Say,
-    to_the_end,
 )
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
@@ -133,10 +132,10 @@ def _not_above_cold(
 
 def _plans(sweep: Sweep, tasks: list[PointToPoint], starts: int) -> list[_Cell]:
     settings = sweep.settings
-    moves = to_the_end(plan_moves(
+    moves = plan_moves(
         tasks, sweep.profile, residual_limit=settings.residual_limit, bound=settings.bound,
         starts=starts, seed=settings.seed, solver=settings.solver,
-    ))  # fmt: skip
+    )  # fmt: skip
     columns = {"energy": moves.energy, "residual": moves.residual, "iterations": moves.iterations}
     columns |= {f"peak_{name}": values for name, values in moves.peaks.items()}
 
@@ -155,11 +154,11 @@ def _robust_plans(sweep: Sweep, tasks: Sequence[PointToPoint], starts: int) -> l
     settings, guess, cells = sweep.settings, None, list[_Cell]()
     for task in tasks:
         try:
-            plan = to_the_end(plan_move(
+            plan = plan_move(
                 task, sweep.profile, residual_limit=settings.residual_limit or None,
                 bound=settings.bound, starts=starts, seed=settings.seed, solver=settings.solver,
                 guess=guess if starts == 1 else None,
-            ))  # fmt: skip
+            )  # fmt: skip
         except QuietarmError as error:
             infeasible = isinstance(error, InfeasibleTaskError)
             cells.append(
@@ -180,10 +179,10 @@ def _add_front(sweep: Sweep, task: PointToPoint, rows: Mapping[str, Array]) -> N
     """Fill in the front of a move, as far as it has points; one without a range has none."""
     settings = sweep.settings
     try:
-        front = to_the_end(epsilon_front(
+        front = epsilon_front(
             task, sweep.profile, bound=settings.bound, points=sweep.front,
             starts=max(settings.starts, 2), seed=settings.seed, solver=settings.solver,
-        ))  # fmt: skip
+        )  # fmt: skip
     except QuietarmError:
         return
     for k, point in enumerate(front.points):

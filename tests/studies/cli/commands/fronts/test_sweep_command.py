@@ -61,22 +61,17 @@ def test_the_other_solver_checks_the_front(call):
     assert float(share) <= 1e-6
 
 
-def test_ctrl_c_keeps_and_writes_what_was_found(folder, at_a_terminal, ctrl_c):
+def test_ctrl_c_ends_a_front_and_writes_nothing(folder, at_a_terminal, ctrl_c):
     # far more points than are found before the signal comes
     line = f"front {MOVE} --method epsilon --points 10000 --output f.json --figure f.png"
     process = at_a_terminal(line)
     found = 0
     while found < 2:  # the ends of the front
-        found, total, *_ = map(int, re.findall(r"\d+", process.stderr.readline()))
-        assert total in {10000, 10003}  # 0.1, 1 and 5 mm as well, once the ends are known
+        found, *_ = map(int, re.findall(r"\d+", process.stderr.readline()))
     out, err = ctrl_c(process)
-    assert process.returncode == 1
-    assert err.splitlines()[-1] == "quietarm: interrupted; what was found until then is kept"
-    assert "(interrupted: what was found until then)" in out
-    assert out.splitlines()[-2:] == ["wrote f.json", "wrote f.png"]
-    found = Front.load("f.json")
-    assert not found.complete
-    assert 2 <= len(found.points) < 10000
+    assert (process.returncode, out) == (1, "")
+    assert err.splitlines()[-1] == "quietarm: interrupted; what was written until then is kept"
+    assert not list(folder.glob("f.*"))
 
 
 # The picture

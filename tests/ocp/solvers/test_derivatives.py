@@ -1,0 +1,121 @@
+"""Every derivative of the fast solver against CasADi's own, of the same symbolic rollout."""
+
+import casadi as ca
+import numpy as np
+import pytest
+from quietarm.ocp.energy import ABSOLUTE_POWER, CopperLoss
+from quietarm.ocp.simulation.objective import integrated, resolved_energy
+from quietarm.ocp.simulation.rollout import symbolic_rollout
+from quietarm.ocp.solvers.batch import Multipliers, batch
+from quietarm.ocp.task import QUANTITIES
+
+import quietarm as qa
+
+STEPS = 10
+MOVE = [0.1, 1.3, 0.8]
+PROFILES = {
+    "polynomial": qa.CycloidPolynomial(4),
+    "spline": qa.CycloidSpline(5),
+    "gaussians": qa.CycloidGaussians(2),
+    "network": qa.CycloidNetwork(2),
+}
+ENERGIES = {"absolute": ABSOLUTE_POWER, "mixed": 0.5 * ABSOLUTE_POWER + CopperLoss(0.3)}
+CASES = [
+    ("single link", "polynomial", "absolute"),
+    ("arm", "polynomial", "mixed"),
+    ("arm", "gaussians", "absolute"),
+    ("arm", "spline", "mixed"),
+    ("two links", "network", "absolute"),
+    ("two links", "polynomial", "absolute"),
+]
+
+
+@pytest.fixture(params=CASES, ids=" ".join)
+def case(request, plants):
+    """A batch, and energy, arrival and limited quantities as CasADi differentiates them."""
+    plant, profile, energy = request.param
+    plant, profile, energy = plants[plant], PROFILES[profile], ENERGIES[energy]
+    names = tuple(QUANTITIES)
+    a, width = ca.MX.sym("a", profile.size), ca.MX.sym("width")
+    rollout = symbolic_rollout(plant, profile, ca.vertsplit(a), MOVE, STEPS, jerk=True)
+    speeds = [joint.speed for joint in rollout.joints]
+    smooth = integrated(
+        [energy.smooth(*node) for node in zip(rollout.torque, speeds, strict=True)], rollout.h
+    )
+    rounded = integrated([ca.sqrt(p * p + width**2) for p in rollout.power], rollout.h)
+    # the fast solver's steps do not ask their neighbours
+    sharp = resolved_energy(rollout.power, rollout.h)
+    values = ca.veccat(*(
+        ca.MX.zeros(1, STEPS) + value
+        for name in names
+        for i in range(QUANTITIES[name].rows(plant))
+        for value in (
+            QUANTITIES[name].of(joint, plant.tip_displacements(state.W), torque)[i]
+            for joint, state, torque in zip(
+                rollout.joints, rollout.states, rollout.torque, strict=True
+            )
+        )
+    ))  # fmt: skip
+    made = batch(plant, profile, STEPS, names, energy=energy)
+    symbols = {
+        "a": a,
+        "width": width,
+        "sharp": energy.absolute * sharp + smooth,
+        "rounded": energy.absolute * rounded + smooth,
+        "arrival": rollout.arrival.T,
+        "limited": values,
+    }
+    return made, symbols
+
+
+@pytest.fixture
+def candidate(case):
+    made, _ = case
+    random = np.random.default_rng(0)
+    return made.kind.profile.plain + random.uniform(-0.3, 0.3, made.kind.profile.size)
+
+
+def _found(made, candidate, width, multipliers=None):
+    modes = 2 * made.kind.plant.modes
+    move = np.array([[*MOVE, *np.zeros(modes)]])
+    return made.derivatives(candidate[None], move, np.zeros((1, 0)), np.array([width]), multipliers)
+
+
+def _expected(symbols, expressions, candidate, width):
+    function = ca.Function("expected", [symbols["a"], symbols["width"]], expressions)
+    return [part.full() for part in function.call([candidate, width])]
+
+
+@pytest.mark.parametrize(("name", "width"), [("sharp", 0.0), ("rounded", 0.3)])
+def test_values_and_first_derivatives(case, candidate, name, width):
+    made, symbols = case
+    found, a = _found(made, candidate, width), symbols["a"]
+    outputs = [symbols[name], symbols["arrival"], symbols["limited"]]
+    expected = _expected(
+        symbols, [*outputs, *(ca.jacobian(one, a) for one in outputs)], candidate, width
+    )
+    energy, arrival, limited, gradient, arrival_jacobian, limited_jacobian = expected
+    for one, other in (
+        (found.energy, energy),
+        (found.arrival, arrival),
+        (found.limited, limited),
+        (found.gradient, gradient),
+        (found.arrival_jacobian, arrival_jacobian),
+        (found.limited_jacobian, limited_jacobian),
+    ):
+        scale = np.abs(other).max()
+        assert one.ravel() == pytest.approx(other.ravel(), rel=1e-9, abs=1e-10 * scale)
+
+
+def test_the_hessian_of_the_lagrangian(case, candidate):
+    # rounded off: of the sharp energy CasADi's second derivatives have no bound where zeros meet
+    made, symbols = case
+    random, a, width = np.random.default_rng(3), symbols["a"], 0.3
+    weights = {name: random.normal(size=symbols[name].numel()) for name in ("arrival", "limited")}
+    multipliers = Multipliers(np.ones(1), weights["arrival"][None], weights["limited"][None])
+    lagrangian = symbols["rounded"] + sum(
+        ca.dot(ca.DM(weight), symbols[name]) for name, weight in weights.items()
+    )
+    (expected,) = _expected(symbols, [ca.hessian(lagrangian, a)[0]], candidate, width)
+    found = _found(made, candidate, width, multipliers).hessian[0]
+    assert found == pytest.approx(expected, rel=1e-8, abs=1e-9 * np.abs(expected).max())
