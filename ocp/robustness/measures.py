@@ -56,11 +56,6 @@ class Sweep:
     insensitivity: tuple[float, float] | None
 
     @property
-    def width(self) -> float:
-        """Width of the insensitivity range, 0 where there is none."""
-        return 0.0 if self.insensitivity is None else float(np.ptp(self.insensitivity))
-
-    @property
     def open_ends(self) -> tuple[bool, bool]:
         """Whether the range reaches the lower, the upper end of the sweep."""
         low, high = self.insensitivity or (0.0, 0.0)
@@ -136,8 +131,10 @@ def evaluate_robustness(
 
     Parameters
     ----------
-    task, profile, coefficients
-        The motion; of an uncertain task the nominal plant counts.
+    task : PointToPoint
+        The move; of an uncertain task the nominal plant counts.
+    profile : JointProfile
+        How the joint moves, with these `coefficients`.
     ranges : mapping of str to float
         Largest relative errors by name, as of `Uncertainty`.
     samples, seed : int
