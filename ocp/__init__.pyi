@@ -25,7 +25,6 @@ from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
 from .front.weighted import weighted_front as weighted_front
-from .modal_state import ModalState as ModalState
 from .planning.fastest import Fastest as Fastest
 from .planning.fastest import fastest_move as fastest_move
 from .planning.many import Moves as Moves
@@ -34,12 +33,12 @@ from .planning.plan import Plan as Plan
 from .planning.plan import evaluate_coefficients as evaluate_coefficients
 from .planning.plan_move import plan_move as plan_move
 from .planning.shaping import shaped_cycloid as shaped_cycloid
+from .profiles.cycloid import MAX_TERMS as MAX_TERMS
+from .profiles.cycloid import CycloidPolynomial as CycloidPolynomial
 from .profiles.joint_profile import JointPath as JointPath
 from .profiles.joint_profile import JointProfile as JointProfile
 from .profiles.networks import CycloidGaussians as CycloidGaussians
 from .profiles.networks import CycloidNetwork as CycloidNetwork
-from .profiles.polynomial import MAX_TERMS as MAX_TERMS
-from .profiles.polynomial import CycloidPolynomial as CycloidPolynomial
 from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
 from .profiles.spline import CycloidSpline as CycloidSpline
 from .record import SolveSettings as SolveSettings
@@ -54,6 +53,7 @@ from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .simulation.trajectory import Trajectory as Trajectory
+from .task import ModalState as ModalState
 from .task import PointToPoint as PointToPoint
 from .uncertainty import Uncertainty as Uncertainty
 from .uncertainty import perturb_plant as perturb_plant

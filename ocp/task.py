@@ -6,8 +6,6 @@ import math
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,10 +14,42 @@ from quietarm.models.validation import check_along
 from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
-from quietarm.ocp.modal_state import ModalState
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, perturbed_plants
 
 _JERK = 3
+
+
+@dataclass(frozen=True)
+class ModalState:
+    """Modal amplitudes and their rates at one time.
+
+    Parameters
+    ----------
+    W : sequence of float
+        Amplitudes [m], one for each mode of the plant; a tip is displaced as the plant's
+        `tip_displacements` say, by phi W on the single link.
+    dW : sequence of float
+        Their rates W' [m/s], as many.
+
+    Raises
+    ------
+    ValueError
+        When a number is not finite, or the rates do not match the amplitudes.
+    """
+
+    W: tuple[float, ...]
+    dW: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        for name, unit in (("W", "m"), ("dW", "m/s")):
+            given = enumerate(getattr(self, name), start=1)
+            checked = tuple(finite(f"{name} of mode {i}", value, unit) for i, value in given)
+            object.__setattr__(self, name, checked)
+        if len(self.W) != len(self.dW):
+            raise ValueError(
+                f"the state has {len(self.W)} amplitudes and {len(self.dW)} rates; give one of "
+                "each for every mode"
+            )
 
 
 @dataclass(frozen=True)
@@ -28,12 +58,8 @@ class Quantity:
 
     Attributes
     ----------
-    name : str
-        Its name; ``torque`` has the limit `torque_limit` and the peak `peak_torque`.
-    unit : str
-        SI unit.
-    label : str
-        What it is, in words.
+    name, unit, label : str
+        Its name, SI unit, and what it is in words.
     of : callable
         (joint's motion, tip displacements, joint torque) -> its values, of any kind that casadi or
         NumPy computes with.
@@ -67,7 +93,7 @@ def _of_joint(name: str, unit: str, label: str, derivative: int) -> Quantity:
     return Quantity(name, unit, label, lambda joint, tips, torque: [joint[derivative]], derivative)
 
 
-QUANTITIES: Mapping[str, Quantity] = MappingProxyType({
+QUANTITIES: Mapping[str, Quantity] = {
     quantity.name: quantity
     for quantity in (
         Quantity("torque", "N m", "joint torque", lambda joint, tips, torque: [torque]),
@@ -76,7 +102,7 @@ QUANTITIES: Mapping[str, Quantity] = MappingProxyType({
         _of_joint("jerk", "rad/s^3", "joint jerk", _JERK),
         Quantity("deflection", "m", "tip displacement", lambda joint, tips, torque: tips),
     )
-})  # fmt: skip
+}
 """Every quantity by its name; each has fields for its limit below and for its peak in `Motion`."""
 
 
@@ -87,6 +113,7 @@ def ask_for_jerk(names: Iterable[str]) -> bool:
 
 LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANTITIES.values()}
 """The limits that a task may set, with their units."""
+_UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual_window": "s"}
 MOST_ANGLE, LEAST_DURATION, MOST_DURATION = 1e6, 1e-6, 1e6
 """Beyond these [rad, s, s] no joint moves, and double precision does not follow."""
 LEAST_MOVE = 1e-6
@@ -101,25 +128,16 @@ class PointToPoint:
     ----------
     plant : Plant
         What moves.
-    target : float
-        Joint angle at the end, theta_E [rad].
-    duration : float
-        Travelling time, T_E [s].
-    start : float, optional
-        Joint angle at the beginning, theta_S [rad].
-    torque_limit, speed_limit, acceleration_limit : float, optional
-        Largest absolute joint torque [N m], speed [rad/s], acceleration [rad/s^2] on the way.
-    deflection_limit : float, optional
-        Largest absolute tip displacement on the way [m].
+    target, duration, start : float
+        Joint angle at the end [rad], travelling time [s], joint angle at the beginning [rad].
+    torque_limit, speed_limit, acceleration_limit, deflection_limit, jerk_limit : float, optional
+        Largest absolute joint torque [N m], speed [rad/s], acceleration [rad/s^2], tip displacement
+        [m] and rate of change of the joint's acceleration [rad/s^3] on the way.
     residual_window : float, optional
         How long after arrival the residual vibration is watched [s]; eq (11) has 1 s.
-    jerk_limit : float, optional
-        Largest absolute rate of change of the joint's acceleration on the way [rad/s^3].
-    initial : ModalState, optional
-        What rings already at the start, in every scenario; at rest by default.
-    final : ModalState, optional
-        What is wanted on arrival; at rest by default. The residual is the largest displacement of
-        a tip from the free vibration that begins with it.
+    initial, final : ModalState, optional
+        What rings already at the start, in every scenario, and what is wanted on arrival; at rest
+        by default. The residual is how far a tip is from the free vibration that begins with it.
     energy : Energy, optional
         What counts as F2; the paper's absolute power by default.
     uncertainty : Uncertainty, optional
@@ -152,13 +170,17 @@ class PointToPoint:
     uncertainty: Uncertainty | None = None
 
     @one_at_a_time
+    @keep_interrupts()  # casadi loses a Ctrl-C
     def __post_init__(self) -> None:
-        with keep_interrupts():  # casadi loses a Ctrl-C
-            self.plant.validate()
-            if self.uncertainty is not None:
-                self.uncertainty.check(self.plant)
-        for name in ("start", "target"):
-            angle = finite(name, getattr(self, name), "rad")
+        self.plant.validate()
+        if self.uncertainty is not None:
+            self.uncertainty.check(self.plant)
+        limits = {name: unit for name, unit in LIMITS.items() if getattr(self, name) is not None}
+        for name, unit in (_UNITS | limits).items():
+            check = finite if unit == "rad" else positive
+            number = check(name.replace("_", " "), getattr(self, name), unit)
+            object.__setattr__(self, name, number)
+        for name, angle in (("start", self.start), ("target", self.target)):
             if abs(angle) > MOST_ANGLE:
                 raise ValueError(
                     f"{name} is {angle:g} rad; give an angle within {MOST_ANGLE:g} rad"
@@ -167,39 +189,24 @@ class PointToPoint:
                 warnings.warn(
                     f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
                     f"numpy.radians({angle:g})",
-                    stacklevel=4,
+                    stacklevel=5,
                 )
-            self._keep(name, angle)
-        with keep_interrupts():
-            for plant in self.perturbed_plants:
-                check_along(plant, self.start, self.target)
-        for name in ("duration", "residual_window"):
-            self._keep(name, positive(name.replace("_", " "), getattr(self, name), "s"))
-        for name, unit in LIMITS.items():
-            if getattr(self, name) is not None:
-                self._keep(name, positive(name.replace("_", " "), getattr(self, name), unit))
-        for name in ("initial", "final"):
-            state, modes = getattr(self, name), self.plant.modes
-            if state is not None and len(state.W) != modes:
-                raise ValueError(
-                    f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
-                    "give W and W' of each"
-                )
-        if not LEAST_DURATION <= self.duration <= MOST_DURATION:
-            raise ValueError(
-                f"duration is {self.duration:g} s; give {LEAST_DURATION:g} to {MOST_DURATION:g} s"
-            )
-        if self.target == self.start:
-            raise ValueError(
-                f"target equals start ({self.target:g} rad): there is no move; change one of them"
-            )
         if abs(self.span) < LEAST_MOVE:
             raise ValueError(
                 f"target - start is {self.span:g} rad; give a move of at least {LEAST_MOVE:g} rad"
             )
-
-    def _keep(self, name: str, value: Any) -> None:
-        object.__setattr__(self, name, value)
+        if not LEAST_DURATION <= self.duration <= MOST_DURATION:
+            raise ValueError(
+                f"duration is {self.duration:g} s; give {LEAST_DURATION:g} to {MOST_DURATION:g} s"
+            )
+        for state in (self.initial, self.final):
+            if state is not None and len(state.W) != self.plant.modes:
+                raise ValueError(
+                    f"a modal state has {len(state.W)} modes and {self.plant.name} has "
+                    f"{self.plant.modes}; give W and W' of each"
+                )
+        for plant in self.perturbed_plants:
+            check_along(plant, self.start, self.target)
 
     @property
     def span(self) -> float:
@@ -219,15 +226,15 @@ class PointToPoint:
     @property
     def initial_state(self) -> tuple[float, ...]:
         """W [m], then W' [m/s] at the start."""
-        return self._modes_of(self.initial)
-
-    def _modes_of(self, state: ModalState | None) -> tuple[float, ...]:
-        return (0.0,) * (2 * self.plant.modes) if state is None else (*state.W, *state.dW)
+        return self._numbers_of(self.initial)
 
     @property
     def final_state(self) -> tuple[float, ...]:
         """The same as wanted on arrival."""
-        return self._modes_of(self.final)
+        return self._numbers_of(self.final)
+
+    def _numbers_of(self, state: ModalState | None) -> tuple[float, ...]:
+        return (0.0,) * (2 * self.plant.modes) if state is None else (*state.W, *state.dW)
 
     def missed(self, arrival: ArrayLike) -> NDArray[np.float64]:
         """What states on arrival miss of the wanted one: what vibrates on where rest is wanted."""
@@ -261,9 +268,7 @@ class PointToPoint:
 
     def with_samples(self, samples: Iterable[Sequence[float]]) -> PointToPoint:
         """The move with these samples of its uncertainty."""
-        assert self.uncertainty is not None
-        one = replace(self.uncertainty, samples=tuple(map(tuple, samples)))
-        return replace(self, uncertainty=one)
+        return replace(self, uncertainty=Uncertainty(self.ranges, tuple(map(tuple, samples))))
 
     @property
     def limits(self) -> dict[str, float]:

@@ -15,7 +15,6 @@ from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes
 from quietarm.models.validation import check_contract, outputs_of
 from quietarm.ocp.checks import finite, has_no, positive
-from quietarm.ocp.interrupts import keep_interrupts
 
 FREQUENCY, DAMPING = "frequency", "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
@@ -31,12 +30,10 @@ Scenario = tuple[float, ...]
 class ScaledModes(Plant):
     """A plant whose natural frequencies and damping ratios are multiples of the assumed ones.
 
-    With the joint at rest at an angle, a plant's modes obey W'' = -D W' - K W. Here they obey
-    W'' = -s d D W' - s^2 K W: as if time ran s times as fast, so that every frequency is exactly s
-    times the assumed one, with the same damping ratio; and d scales the damping, exactly where the
-    modes are damped each on its own. What the moving joint adds stays as it is. The equations are
-    affine and the structure stays at rest with the joint, so -K W is W'' at rest without rates,
-    and -D W' without amplitudes.
+    At rest a plant's modes obey W'' = -D W' - K W. Here they obey W'' = -s d D W' - s^2 K W, as if
+    time ran s times as fast: every frequency is exactly s times the assumed one at the same damping
+    ratio, and d scales the damping. What the moving joint adds stays as it is. As the equations are
+    affine, -K W is W'' at rest without rates, and -D W' without amplitudes.
     """
 
     plant: Plant
@@ -86,30 +83,27 @@ def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     Returns
     -------
     Plant
-        A plant with parameters 1 + error times the assumed ones; of symbols where they are symbols.
+        A plant with 1 + error times the assumed parameters, of symbols where they are symbols.
 
     Raises
     ------
     ValueError
         When there is no such parameter, or a number makes the frequency 0 or the damping negative.
     """
-    if not errors:
-        return plant
     refuse_unknown(plant, errors)
-    for name in _OF_MODES:
-        if isinstance(error := errors.get(name, 0.0), Real):
-            _refuse_beyond(name, finite(f"an error of the {name}", error))
     values = {
         name: getattr(plant, name) * (1 + error)
         for name, error in errors.items()
         if name not in _OF_MODES
     }
-    if all(isinstance(value, Real) for value in values.values()):
-        changed = replace(plant, **values) if values else plant
-    else:
-        changed = with_values(plant, values)
-    factors = [1 + errors.get(name, 0.0) for name in _OF_MODES]
-    return ScaledModes(changed, *factors) if any(name in errors for name in _OF_MODES) else changed
+    numbers = all(isinstance(value, Real) for value in values.values())
+    changed = replace(plant, **values) if numbers else with_values(plant, values)
+    of_modes = {name: errors[name] for name in _OF_MODES if name in errors}
+    for name, error in of_modes.items():
+        if isinstance(error, Real):
+            _refuse_beyond(name, finite(f"an error of the {name}", error))
+    factors = {name: 1 + error for name, error in of_modes.items()}
+    return ScaledModes(changed, **factors) if factors else changed
 
 
 def with_values(plant: Plant, values: Mapping[str, Expression]) -> Plant:
@@ -120,57 +114,7 @@ def with_values(plant: Plant, values: Mapping[str, Expression]) -> Plant:
     return changed
 
 
-def check_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
-    """The errors that a plant may have, each from minus to plus its range."""
-    _refuse_no_errors(ranges)
-    return {name: _checked_range(plant, name, size) for name, size in ranges.items()}
-
-
-def _refuse_no_errors(ranges: Mapping[str, float]) -> None:
-    if not ranges:
-        raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
-
-
-def _size_of(name: str, size: float) -> float:
-    """A range as a number; ValueError where it turns a sign."""
-    size = positive(f"range of {name}", size)
-    _refuse_beyond(name, -size)
-    return size
-
-
-@lru_cache(maxsize=256, typed=True)  # a robust plan asks again for every error that it adds
-@keep_interrupts()  # casadi loses a Ctrl-C
-def _checked_range(plant: Plant, name: str, size: float) -> float:
-    refuse_unknown(plant, [name])
-    size = _size_of(name, size)
-    if name not in _OF_MODES and getattr(plant, name) == 0:
-        raise ValueError(
-            f"parameter {name} of {plant.name} is 0: a share of it is no error; leave it out"
-        )
-    for error in (-size, size):
-        try:
-            check_contract(perturb_plant(plant, {name: error}))
-        except ValueError as problem:
-            side = "lower" if error < 0 else "higher"
-            raise ValueError(f"with {name} {100 * size:g} % {side}, {problem}") from None
-        _check_symbols(plant, name, error)
-    return size
-
-
-def _refuse_beyond(name: str, error: float) -> None:
-    """Refuse an error that turns a sign, or leaves nothing of anything but the damping."""
-    if error < -1 or (error == -1 and name != DAMPING):
-        becomes = "negative" if error < -1 else "0"
-        least = "100 % or less" if name == DAMPING else "less than 100 %"
-        raise ValueError(
-            f"an error of {100 * error:g} % makes the {name} {becomes}; give {least}, as 0.1 for "
-            "10 %"
-        )
-
-
-def refuse_unknown(
-    plant: Plant, names: Iterable[str], also: Sequence[str] = (FREQUENCY, DAMPING)
-) -> None:
+def refuse_unknown(plant: Plant, names: Iterable[str], also: Sequence[str] = _OF_MODES) -> None:
     """Refuse names that are no parameter of a plant; ValueError suggests the nearest."""
     known = [*also, *plant.measured]
     for name in names:
@@ -178,11 +122,50 @@ def refuse_unknown(
             raise ValueError(has_no(plant.name, "parameter", name, known))
 
 
-def _check_symbols(plant: Plant, name: str, error: float) -> None:
-    """Whether the equations take a symbol for a parameter, and read it from nowhere else."""
-    if name in _OF_MODES:
-        return
-    value, symbol = getattr(plant, name) * (1 + error), ca.SX.sym(name)
+def _refuse_beyond(name: str, error: float) -> None:
+    """Refuse an error that turns a sign, or leaves nothing of anything but the damping."""
+    if error < -1 or (error == -1 and name != DAMPING):
+        least = "100 % or less" if name == DAMPING else "less than 100 %"
+        raise ValueError(
+            f"an error of {100 * error:g} % is too large for the {name}; give {least}, as 0.1 for "
+            "10 %"
+        )
+
+
+def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
+    """Ranges as numbers; ValueError where there are none, or one turns a sign."""
+    if not ranges:
+        raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
+    sizes = {name: positive(f"range of {name}", size) for name, size in ranges.items()}
+    for name, size in sizes.items():
+        _refuse_beyond(name, -size)
+    return sizes
+
+
+def check_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
+    """Ranges as numbers; ValueError unless the plant keeps its contract at the ends of each."""
+    sizes = _sizes(ranges)
+    for name, size in sizes.items():
+        _check_range(plant, name, size)
+    return sizes
+
+
+@lru_cache(maxsize=256, typed=True)  # a robust plan asks again for every error that it adds
+def _check_range(plant: Plant, name: str, size: float) -> None:
+    for error in (-size, size):
+        try:
+            check_contract(perturb_plant(plant, {name: error}))
+        except ValueError as problem:
+            raise ValueError(f"with an error of {100 * error:g} % of {name}, {problem}") from None
+    if name not in _OF_MODES:
+        _check_symbols(plant, name, getattr(plant, name) * (1 + size))
+
+
+def _check_symbols(plant: Plant, name: str, value: float) -> None:
+    """Refuse equations that read a parameter elsewhere, or take no symbol for it."""
+    if value == 0:
+        raise ValueError(f"parameter {name} of {plant.name} is 0, which has no share; leave it out")
+    symbol = ca.SX.sym(name)
     motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 2 * plant.modes).tolist()
     expressions = outputs_of(with_values(plant, {name: symbol}), motion)
     found = ca.Function("found", [symbol], [ca.vertcat(*expressions)])(value).full().ravel()
@@ -220,15 +203,18 @@ class Uncertainty:
     samples: tuple[Scenario, ...] = ()
 
     def __post_init__(self) -> None:
-        _refuse_no_errors(self.ranges)
-        ranges = {name: _size_of(name, size) for name, size in self.ranges.items()}
+        ranges = _sizes(self.ranges)
         if len(ranges) > MOST_RANGES:
             raise ValueError(
                 f"{len(ranges)} errors at once have {2 ** len(ranges)} corners at which the "
                 f"residual is held; give at most {MOST_RANGES}"
             )
         corners = product(*((-size, size) for size in ranges.values()))
-        samples = tuple(_sample(one, ranges) for one in self.samples or corners)
+        samples = tuple(tuple(map(float, sample)) for sample in self.samples or corners)
+        most = (1 + _SAME) * np.array(list(ranges.values()))
+        for sample in samples:
+            if len(sample) != len(most) or not np.all(np.abs(sample) <= most):
+                raise ValueError(f"sample {sample} is no error within each of the ranges {ranges}")
         object.__setattr__(self, "ranges", ranges)
         object.__setattr__(self, "samples", samples)
 
@@ -249,14 +235,3 @@ def perturbed_plants(
     """The plant with the errors of every scenario; itself where there are none."""
     named = (dict(zip(names, errors, strict=True)) for errors in scenarios)
     return tuple(perturb_plant(plant, one) if any(one.values()) else plant for one in named)
-
-
-def _sample(errors: Sequence[float], ranges: Mapping[str, float]) -> Scenario:
-    if len(errors) != len(ranges):
-        raise ValueError(f"sample {tuple(errors)} has {len(errors)} errors; give {len(ranges)}")
-    for error, (name, most) in zip(errors, ranges.items(), strict=True):
-        if abs(finite(f"error of {name} in a sample", error)) > most * (1 + _SAME):
-            raise ValueError(
-                f"error of {name} in a sample is {error:g}; give one within +-{most:g}, its range"
-            )
-    return tuple(map(float, errors))

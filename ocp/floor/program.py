@@ -13,9 +13,9 @@ from quietarm.models import Expression, Plant
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, Step, step
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import march

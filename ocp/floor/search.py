@@ -17,8 +17,8 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.certify import refuse_exceeded, tighten
 from quietarm.ocp.planning.feasibility import keeps, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.plan_move import plan_move
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Provenance, Verification
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion

@@ -16,8 +16,8 @@ from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import SolveSettings, digits, number_of_points
 from quietarm.ocp.solvers.choice import SolverName
 from quietarm.ocp.solvers.solution import Solution

@@ -22,8 +22,8 @@ from quietarm.ocp.front.points import (
     table_of,
 )
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Setting, settings_given, versions
 from quietarm.ocp.saved import Saved
 from quietarm.ocp.task import PointToPoint

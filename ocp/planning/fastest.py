@@ -12,8 +12,8 @@ from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_move import plan_move
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import LEAST_DURATION, LIMITS, PointToPoint
 

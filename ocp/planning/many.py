@@ -23,8 +23,8 @@ from quietarm.ocp.planning.certify import (
     finer_values,
     judge,
 )
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_of_moves
 from quietarm.ocp.solvers.batch import Values

@@ -18,8 +18,8 @@ from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import Provenance, Setting, SolveSettings, Verification
 from quietarm.ocp.robustness.perturbed import Sensitivity, Worst, sensitivities, worst_of
 from quietarm.ocp.saved import MotionAnswer
@@ -196,7 +196,7 @@ def evaluate_coefficients(
     """
     began, settings = time.perf_counter(), {} if settings is None else settings
     if profile is None:
-        profile = CycloidPolynomial.of_size(numbers_of(coefficients).size)
+        profile = CycloidPolynomial.of_size(np.size(coefficients))
     checked = profile.checked(coefficients)
     motion = Candidate.of_profile(task, profile, checked).motion
     return Plan(

@@ -10,8 +10,8 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.feasibility import UNITS
 from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
 from quietarm.ocp.planning.robust import plan_robustly
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.choice import SolverName
 from quietarm.ocp.solvers.transcription import RESIDUAL, STILL

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import PointToPoint

@@ -1,41 +1,42 @@
-"""The cycloid of an input U(t), eqs (1)-(3) of the paper: what its shaped inputs have in common."""
+"""The cycloid of an input U(t), eqs (1)-(7) of the paper: of any input, and of a polynomial."""
 
 from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import casadi as ca
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.checks import whole
-from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
 Input = tuple[Expression, Expression, Expression]
 """U, and its first two derivatives by the fraction of the duration."""
+
+MAX_TERMS = 32
+"""Most terms: the condition number of the powers of T on [-1, 1] grows like (1 + sqrt 2)^N, and at
+4e11 double precision leaves four digits of a coefficient."""
 
 
 @dataclass(frozen=True)
 class Cycloid(JointProfile):
     """A cycloid whose input U goes from 0 to 1 in a way that the coefficients shape.
 
-    Whatever the coefficients, U is 0 at the start
-    and 1 on arrival, so the joint is at its ends there, with speed and acceleration zero, eq (5).
+    So the joint is at its ends there, with speed and acceleration zero, eq (5).
     """
 
     term: ClassVar[str] = "term"
     least_terms: ClassVar[int] = 1
-    most_terms: ClassVar[int] = 32
-    why_no_more: ClassVar[str] = ""
     constants: ClassVar[int] = 0
     each: ClassVar[int] = 1
     """Coefficients that every member has, and those of each term."""
     terms: int = 6
 
     def __post_init__(self) -> None:
-        terms = whole("terms", self.terms, self.least_terms, self.most_terms, self.why_no_more)
+        why = "beyond that double precision no longer tells the terms apart"
+        terms = whole("terms", self.terms, self.least_terms, MAX_TERMS, why)
         object.__setattr__(self, "terms", terms)
 
     @property
@@ -43,22 +44,14 @@ class Cycloid(JointProfile):
         """As 6 terms."""
         return f"{self.terms} {self.term}{'s' if self.terms != 1 else ''}"
 
-    @property
-    def label(self) -> str:
-        """The family and its size."""
-        return f"{self.name} of {self.amount}"
-
     @classmethod
     def of_size(cls, size: int) -> Self:
         """The family's member that has so many coefficients; ValueError where none has."""
         terms, rest = divmod(size - cls.constants, cls.each)
-        if rest or not cls.least_terms <= terms <= cls.most_terms:
-            least, most = (cls.constants + cls.each * n for n in (cls.least_terms, cls.most_terms))
-            step = f" in steps of {cls.each}" if cls.each > 1 else ""
-            why = f": {cls.why_no_more}" if size > most and cls.why_no_more else ""
+        if rest:
             raise ValueError(
-                f"got {size} coefficients; {cls.name} has {least} to {most}{step}{why}; give so "
-                "many numbers"
+                f"got {size} coefficients; {cls.name} has {cls.constants}, and {cls.each} for "
+                f"every {cls.term}; give so many numbers"
             )
         return cls(terms)
 
@@ -68,28 +61,18 @@ class Cycloid(JointProfile):
         return self.constants + self.each * self.terms
 
     @abstractmethod
-    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
+    def input(self, coefficients: Values, fraction: Expression) -> Input:
         """U, 0 and 1 at the ends, and its first two derivatives by the fraction."""
 
-    def derivatives(
-        self,
-        coefficients: Sequence[Expression],
-        fraction: Expression,
-        start: Expression,
-        target: Expression,
-        duration: Expression,
-    ) -> tuple[Expression, ...]:
+    def derivatives(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
         """Theta by eq (1), theta' by eq (2), theta'' by eq (3) mended."""
-        return self.outer(self.input(coefficients, fraction), start, target, duration)[:3]
+        return self.outer(self.input(coefficients, fraction), *move)[:3]
 
-    def inner(
-        self, coefficients: Sequence[Expression], fraction: Expression, *move: Expression
-    ) -> Sequence[Expression]:
+    def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
         """U and its derivatives by the fraction, which do not depend on the move."""
-        del move
         return self.input(coefficients, fraction)
 
-    def outer(self, inner: Sequence[Expression], *move: Expression) -> JointMotion:
+    def outer(self, inner: Values, *move: Expression) -> JointMotion:
         """The cycloid of U: eqs (1), (2) and (3), the latter mended."""
         start, target, duration = move
         U, dU, ddU = inner[0], inner[1] / duration, inner[2] / duration**2
@@ -111,3 +94,27 @@ def with_bump(fraction: Expression, p: Expression, dp: Expression, ddp: Expressi
         1 + 2 * (bump * dp - 2 * T * p),
         4 * (bump * ddp - 4 * T * dp - 2 * p),
     )
+
+
+@dataclass(frozen=True)
+class CycloidPolynomial(Cycloid):
+    """A cycloid whose input is a polynomial, eqs (1)-(7), with eq (3) mended.
+
+    Parameters
+    ----------
+    terms : int
+        N of eq (6), 0 (the plain cycloid) to `MAX_TERMS`; as many coefficients, a_1 to a_N.
+    """
+
+    name: ClassVar[str] = "cycloid-polynomial"
+    least_terms: ClassVar[int] = 0
+
+    def input(self, coefficients: Values, fraction: Expression) -> Input:
+        """U of eq (6) and its derivatives: linear in the coefficients."""
+        T = 2 * fraction - 1  # eq (7)
+        p = dp = ddp = 0 * T
+        for a in reversed(coefficients):  # Horner's rule, differentiated as it goes
+            ddp = ddp * T + 2 * dp
+            dp = dp * T + p
+            p = p * T + a
+        return with_bump(fraction, p, dp, ddp)

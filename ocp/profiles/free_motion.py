@@ -30,11 +30,8 @@ class FreeMotion:
     ----------
     times : ndarray, shape (steps + 1,)
         The grid, from 0 to the duration [s].
-    acceleration : ndarray, shape (steps,)
-        Joint acceleration at the beginning of every interval [rad/s^2].
-    jerk : ndarray, shape (steps,)
-        Its rate of change on the interval [rad/s^3]: 0 where the acceleration is constant on
-        every interval.
+    acceleration, jerk : ndarray, shape (steps,)
+        Joint acceleration when an interval begins [rad/s^2], and its rate of change [rad/s^3].
     """
 
     times: NDArray[np.float64]
@@ -44,22 +41,18 @@ class FreeMotion:
     def __post_init__(self) -> None:
         for name, values in vars(self).items():
             array = np.array(values, dtype=float)
-            if array.ndim != 1 or not np.all(np.isfinite(array)):
-                raise ValueError(f"{name} is no list of finite numbers")
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        if not len(self.acceleration) == len(self.jerk) == len(self.times) - 1 > 0:
+        fit = self.acceleration.shape == self.jerk.shape == (len(self.times) - 1,) != (0,)
+        if not fit or self.times[0] != 0 or not np.all(np.diff(self.times) > 0):
             raise ValueError(
-                f"{len(self.times)} times do not fit {len(self.acceleration)} accelerations and "
-                f"{len(self.jerk)} jerks; give one of each for every interval"
+                "the times do not increase from 0, with an acceleration and a jerk on each interval"
             )
-        if self.times[0] != 0 or np.any(np.diff(self.times) <= 0):
-            raise ValueError("the times do not increase from 0")
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, FreeMotion):
-            return NotImplemented
-        return all(np.array_equal(a, vars(other)[name]) for name, a in vars(self).items())
+        return isinstance(other, FreeMotion) and all(
+            np.array_equal(a, vars(other)[name]) for name, a in vars(self).items()
+        )
 
     def __hash__(self) -> int:
         return hash(tuple(array.tobytes() for array in vars(self).values()))
@@ -88,9 +81,8 @@ class FreeMotion:
 
     def intervals(self, start: float) -> NDArray[np.float64]:
         """Arguments of `joint_after` and length [s] of every interval, shape (5, steps)."""
-        return np.vstack(
-            [self.boundaries(start)[:, :-1], self.acceleration, self.jerk, self.lengths]
-        )
+        begins = self.boundaries(start)[:, :-1]
+        return np.vstack([begins, self.acceleration, self.jerk, self.lengths])
 
     def split(self, parts: NDArray[np.int_]) -> FreeMotion:
         """The same motion on a finer grid: interval k in `parts[k]` equal parts."""

@@ -12,6 +12,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion
+from quietarm.ocp.checks import finite
+
+Values = Sequence[Expression]
+"""The coefficients, or what follows from them."""
 
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
@@ -20,22 +24,20 @@ UNBOUNDED_SPREAD = 0.2
 class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
-    A new family is one subclass, a frozen dataclass: it says how many coefficients it has and gives
-    theta and its first two time derivatives, in operations that work element by element. casadi
-    derives the jerk.
+    A new family is one subclass, a frozen dataclass with a `size` and `derivatives`, in operations
+    that work element by element. casadi derives the jerk.
     """
 
     name: ClassVar[str]
     """The name by which files know the family."""
-
     term: ClassVar[str] = "coefficient"
     """What there is more of in a larger profile."""
-
     default_bound: ClassVar[float | None] = None
     """Bound of a search where the user gives none; None where one must be given."""
-
     sharp: ClassVar[bool] = False
     """Whether a motion may turn within a hundredth of the move without a break."""
+    random_starts: ClassVar[int] = 1
+    """The gradient's random starts for each that is asked for, several where minima are many."""
 
     _known: ClassVar[dict[str, type[JointProfile]]] = {}
 
@@ -57,7 +59,7 @@ class JointProfile(ABC):
     @property
     def label(self) -> str:
         """What the profile is called in a message."""
-        return f"{self.name} profile"
+        return f"{self.name} of {self.amount}"
 
     def refuse_no_choice(self) -> None:
         """ValueError where the profile has a single motion, and so nothing to choose."""
@@ -72,30 +74,15 @@ class JointProfile(ABC):
         """The shortest duration for which the profile has a motion [s]; 0 where any will do."""
         return 0.0
 
-    random_starts: ClassVar[int] = 1
-    """The gradient's random starts for each that is asked for, several where minima are many."""
-
-    # Where coefficients are looked for, in this one place: for coefficients that are not all of one
-    # kind, such as weights and widths, a family says its own.
-
     @property
     def plain(self) -> NDArray[np.float64]:
         """Coefficients of the first start, shape (size,), a motion like the plain cycloid."""
         return np.zeros(self.size)
 
     def box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Where the coefficients may lie, for searches and the gradient alike.
+        """Least and largest coefficients, each of shape (size,), infinite without a bound.
 
-        Parameters
-        ----------
-        bound : float or None
-            What a user gives as the bound: the largest absolute value of every coefficient, or of
-            the kind of them that it makes sense for; None where nothing is asked.
-
-        Returns
-        -------
-        tuple of ndarray, each of shape (size,)
-            Least and largest values, infinite where nothing bounds them.
+        `bound` is the largest absolute value, of the kind of coefficients that it makes sense for.
         """
         largest = np.full(self.size, np.inf if bound is None else bound)
         return -largest, largest
@@ -106,18 +93,18 @@ class JointProfile(ABC):
 
     def breaks(self, duration: float) -> tuple[float, ...]:
         """Fractions of the duration, rising between 0 and 1, at which the motion is not smooth."""
-        del duration
         return ()
 
     @abstractmethod
     def derivatives(
         self,
-        coefficients: Sequence[Expression],
+        coefficients: Values,
         fraction: Expression,
         start: Expression,
         target: Expression,
         duration: Expression,
-    ) -> tuple[Expression, ...]:
+        /,
+    ) -> Values:
         """Joint angle and its first two time derivatives.
 
         Parameters
@@ -133,74 +120,44 @@ class JointProfile(ABC):
 
         Returns
         -------
-        tuple of Expression
+        sequence of Expression
             theta [rad], theta' [rad/s], theta'' [rad/s^2]; what follows them is not read.
         """
 
-    def inner(
-        self, coefficients: Sequence[Expression], fraction: Expression, *move: Expression
-    ) -> Sequence[Expression]:
-        """The values that the coefficients enter; `outer` makes the joint's motion of these three.
+    def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
+        """Three values that the coefficients enter; `outer` makes the joint's motion of them.
 
         A profile whose coefficients enter linearly somewhere on the way to the joint says so by
-        these two methods; the gradient is then several times cheaper. By default it is the motion
-        itself. The move is start, target and duration, as in `derivatives`.
+        these two; the gradient is then several times cheaper. The move is as in `derivatives`.
         """
         return self.derivatives(coefficients, fraction, *move)[:3]
 
-    def outer(self, inner: Sequence[Expression], *move: Expression) -> JointMotion:
+    def outer(self, inner: Values, *move: Expression) -> JointMotion:
         """Angle, speed and acceleration of the joint from the values of `inner`."""
-        del move
         return JointMotion(*inner)
 
     def motion(
-        self,
-        coefficients: Sequence[Expression],
-        fraction: Expression,
-        *move: Expression,
-        jerk: bool = False,
+        self, coefficients: Values, fraction: Expression, *move: Expression, jerk: bool = False
     ) -> JointMotion:
         """Angle, speed and acceleration of the joint, and its jerk where it is asked for."""
         if not jerk:
-            angle, speed, acceleration = self.derivatives(coefficients, fraction, *move)[:3]
-            return JointMotion(angle, speed, acceleration)
+            return JointMotion(*self.derivatives(coefficients, fraction, *move)[:3])
         # casadi differentiates by symbols only: the fraction is one first, replaced afterwards
         kinds = {type(one) for one in (*coefficients, fraction, *move)}
         kind: Any = ca.SX if ca.SX in kinds else ca.MX
         place = kind(fraction)
-        at = kind.sym("t", *place.shape)
+        at, ones = kind.sym("t", *place.shape), kind.ones(*place.shape)
         values = [kind(value) for value in self.derivatives(coefficients, at, *move)[:3]]
-        ones = kind.ones(*at.shape)
         rate = ca.jtimes(values[2], at, ones) * ones / move[-1]
         motion: Any = ca.substitute([*values, rate], [at], [place])
-        if kinds.isdisjoint({ca.SX, ca.MX}):
-            motion = map(ca.evalf, motion)
-        return JointMotion(*motion)
+        return JointMotion(*(motion if kinds & {ca.SX, ca.MX} else map(ca.evalf, motion)))
 
     def path(
         self, coefficients: ArrayLike, start: float, target: float, duration: float
     ) -> JointPath:
-        """One member of the family, as a callable of time and derivative order.
+        """One member of the family, from start to target [rad] in the duration [s].
 
-        Parameters
-        ----------
-        coefficients : array_like, shape (size,)
-            The coefficients.
-        start, target : float
-            Joint angles at the ends [rad].
-        duration : float
-            Travelling time [s].
-
-        Returns
-        -------
-        JointPath
-            The callable.
-
-        Raises
-        ------
-        ValueError
-            When a coefficient is missing, superfluous or not finite, or the duration is below
-            `least_duration`.
+        ValueError where `checked` refuses the coefficients or the duration.
         """
         return JointPath(self, self.checked(coefficients, duration), start, target, duration)
 
@@ -212,29 +169,15 @@ class JointProfile(ABC):
         if duration is not None and duration < self.least_duration:
             raise ValueError(
                 f"duration is {duration:g} s, too short for the {self.label}; give "
-                f"{_rounded_up(self.least_duration):.4g} s or more"
+                f"{math.ceil(1e4 * self.least_duration) / 1e4:g} s or more"
             )
-        values = numbers_of(coefficients)
+        values = np.atleast_1d(np.asarray(coefficients, dtype=float))
         if values.shape != (self.size,):
             raise ValueError(
                 f"got {values.size} coefficients for a profile of {self.size}; "
                 f"give {self.size} numbers"
             )
-        if not np.all(np.isfinite(values)):
-            bad = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise ValueError(f"coefficient {bad + 1} is {values[bad]}; give a finite number")
-        return tuple(float(value) for value in values)
-
-
-def numbers_of(coefficients: ArrayLike) -> NDArray[np.float64]:
-    """Coefficients as an array of one axis."""
-    return np.atleast_1d(np.asarray(coefficients, dtype=float))
-
-
-def _rounded_up(value: float, digits: int = 4) -> float:
-    """A positive value rounded up to this many digits."""
-    unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
-    return math.ceil(value / unit) * unit
+        return tuple(finite(f"coefficient {i}", value) for i, value in enumerate(values, 1))
 
 
 def known_profiles() -> dict[str, type[JointProfile]]:
@@ -248,14 +191,10 @@ class JointPath:
 
     Attributes
     ----------
-    profile : JointProfile
-        The family.
-    coefficients : tuple of float
-        Its member.
-    start, target : float
-        Joint angles at the ends [rad].
-    duration : float
-        Travelling time [s].
+    profile, coefficients
+        The family and its member.
+    start, target, duration : float
+        Joint angles at the ends [rad], and travelling time [s].
     """
 
     profile: JointProfile
@@ -278,20 +217,13 @@ class JointPath:
         -------
         ndarray
             theta [rad] or its derivative [rad/s^order], in the shape of `time`.
-
-        Raises
-        ------
-        ValueError
-            When `order` is not 0, 1, 2 or 3, or a time is not finite.
         """
         if order not in range(4):
             raise ValueError(f"derivative order is {order!r}; give 0, 1, 2 or 3")
         t = np.asarray(time, dtype=float)
-        if not np.all(np.isfinite(t)):
-            raise ValueError("a time is not finite; give times in seconds")
         fraction: Any = ca.DM(np.clip(t.ravel() / self.duration, 0.0, 1.0))
         arguments = self.coefficients, fraction, self.start, self.target, self.duration
         motion = self.profile.motion(*arguments, jerk=order == 3)
-        result = motion[order].full().reshape(t.shape)
+        values = motion[order].full().reshape(t.shape)
         outside = (t < 0) | (t > self.duration)
-        return np.where(outside, 0.0, result) if order else result
+        return np.where(outside, 0.0, values) if order else values

@@ -1,12 +1,8 @@
-"""Cycloids whose input is a weighted sum of units with parameters of their own.
-
-Radial basis functions and hidden nodes, as this project reads the paper's comparators.
-"""
+"""Cycloids of a weighted sum of radial basis functions or hidden nodes, the paper's comparators."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -15,67 +11,55 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression
 from quietarm.ocp.profiles.cycloid import Cycloid, Input, with_bump
+from quietarm.ocp.profiles.joint_profile import Values
 
 REACH = 1.25
-"""At first the units lie in even cells of T between plus and minus this: the outermost have their
-middle beyond the ends of the move, where they act most."""
+"""First units lie in even cells of T between plus and minus this, the outermost beyond the ends."""
+_WEIGHT = 0.5
+"""Largest weight where no bound is given."""
 _LIGHT = 0.1
-"""Random starts have weights within this share of their bound: with large ones the joint swings
-back and forth, and IPOPT runs out of iterations."""
-
+"""Random starts have weights within this share of their bound: larger ones swing the joint."""
 SHARPEST = 200.0
-"""Largest inverse width or gain. CVODES has the energy of such a unit within 0.1 %; one that is ten
-times as sharp can lie between its steps, as it can between the fixed steps, which then agree."""
+"""Largest inverse width or gain: CVODES has the energy of such a unit within 0.1 %; one that is ten
+times as sharp can lie between all integrators' steps."""
 
 
 class Range(NamedTuple):
-    """Values of one kind of parameter, one for each unit, each of shape (units,).
+    """One kind of the units' parameters: first values, spread of starts, least and largest values.
 
-    Attributes
-    ----------
-    first : ndarray
-        Where the first start has them.
-    spread : ndarray
-        Random starts lie within this of the first.
-    least, most : ndarray
-        Where they must stay.
+    Each is of shape (units,), or one number for all of them.
     """
 
-    first: NDArray[np.float64]
-    spread: NDArray[np.float64]
-    least: NDArray[np.float64]
-    most: NDArray[np.float64]
+    first: NDArray[np.float64] | float
+    spread: NDArray[np.float64] | float
+    least: NDArray[np.float64] | float
+    most: NDArray[np.float64] | float
 
 
 @dataclass(frozen=True)
 class CycloidOfUnits(Cycloid):
     """U = t/TE + (1 - T^2) (v_0 + sum_j v_j g(x_j, y_j, T)), T = -1 + 2 t/TE.
 
-    The coefficients are v_0 to v_n, then x_1 to x_n, then y_1 to y_n: 1 + 3 n of them. A bound is
-    for the weights v, x and y have `ranges` of their own; all are numbers of order one.
-
-    Units can swap places, or almost cancel each other with ever larger weights. So weights are
-    always bounded, by `default_bound` where no bound is given, and starts are near the plain
-    cycloid, with the units side by side.
+    The coefficients are v_0 to v_n, then x_1 to x_n, then y_1 to y_n. A bound is for the weights v;
+    x and y have `ranges`. Units can swap places, or almost cancel each other with ever larger
+    weights: so weights are always bounded, and starts have the units side by side.
     """
 
-    default_bound: ClassVar[float | None] = 0.5
+    default_bound: ClassVar[float | None] = _WEIGHT
     sharp: ClassVar[bool] = True
     random_starts: ClassVar[int] = 4
     constants: ClassVar[int] = 1
     each: ClassVar[int] = 3
-    sharpness: ClassVar[str]
-    """What y is called in a message."""
+    terms: int = 5
 
     def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
         """As every profile's; ValueError, too, where a unit is sharper than `SHARPEST`."""
         values = super().checked(coefficients, duration)
-        for place, value in enumerate(values[1 + 2 * self.terms :], start=2 + 2 * self.terms):
-            if abs(value) > SHARPEST:
-                raise ValueError(
-                    f"coefficient {place} is {value:g}, {self.sharpness}; give at most "
-                    f"{SHARPEST:g}: a sharper one acts between the integrators' steps"
-                )
+        if (largest := max(map(abs, values[1 + 2 * self.terms :]))) > SHARPEST:
+            raise ValueError(
+                f"the inverse width or gain of a {self.term} is {largest:g}; give at most "
+                f"{SHARPEST:g}: a sharper one acts between the integrators' steps"
+            )
         return values
 
     @property
@@ -88,27 +72,33 @@ class CycloidOfUnits(Cycloid):
     def unit(x: Expression, y: Expression, T: Expression) -> Input:
         """One unit g and its first two derivatives by T; finite for all x and y."""
 
+    def _every(self, weight: float, kind: str) -> NDArray[np.float64]:
+        """Numbers for all coefficients: one for the weights, and one field of the ranges."""
+        own = [np.broadcast_to(getattr(of, kind), self.terms) for of in self.ranges]
+        return np.concatenate([np.full(1 + self.terms, weight), *own])
+
     @property
     def plain(self) -> NDArray[np.float64]:
         """No weight, and the units side by side."""
-        return np.concatenate([np.zeros(1 + self.terms), *(kind.first for kind in self.ranges)])
+        return self._every(0.0, "first")
 
     def box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """`bound` for the weights, `ranges` for the rest."""
-        weights = np.full(1 + self.terms, self.default_bound if bound is None else bound)
-        return (
-            np.concatenate([-weights, *(kind.least for kind in self.ranges)]),
-            np.concatenate([weights, *(kind.most for kind in self.ranges)]),
-        )
+        weight = _WEIGHT if bound is None else bound
+        return self._every(-weight, "least"), self._every(weight, "most")
 
     def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Small weights, and the units nearly in their even cells."""
         lower, upper = self.box(bound)
-        weights = _LIGHT * upper[: 1 + self.terms]
-        around = np.concatenate([weights, *(kind.spread for kind in self.ranges)])
+        around = self._every(_LIGHT * upper[0], "spread")
         return np.maximum(lower, self.plain - around), np.minimum(upper, self.plain + around)
 
-    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
+    @property
+    def cells(self) -> NDArray[np.float64]:
+        """Middles of even cells between plus and minus `REACH`, one for each unit."""
+        return REACH * (2 * np.arange(self.terms) + 1 - self.terms) / self.terms
+
+    def input(self, coefficients: Values, fraction: Expression) -> Input:
         """U and its derivatives; the weights alone enter linearly."""
         n, T = self.terms, 2 * fraction - 1  # eq (7)
         constant, *weights = coefficients[: 1 + n]
@@ -120,49 +110,29 @@ class CycloidOfUnits(Cycloid):
         return with_bump(fraction, p, dp, ddp)
 
 
-def side_by_side(units: int) -> NDArray[np.float64]:
-    """Middles of even cells between -1 and 1, shape (units,)."""
-    return (2 * np.arange(units) + 1 - units) / units
-
-
-_WIDEST, _SHARPEST = 0.3, 3.0
-"""Inverse widths: from nearly a parabola over the whole move to a sixth of it."""
-
-
 @dataclass(frozen=True)
 class CycloidGaussians(CycloidOfUnits):
     """A cycloid whose input is a sum of Gaussians: ref. [24], as this project reads it.
 
     U = t/TE + (1 - T^2) (w_0 + sum_j w_j exp(-(k_j (T - c_j))^2)), T = -1 + 2 t/TE. The
-    coefficients are w_0 to w_n, the centres c_1 to c_n, and the inverse widths k_1 to k_n, which
-    may be any number up to 200 either way, also zero. Every centre keeps to a cell of its own, so
-    that no two Gaussians can change places.
+    coefficients are w_0 to w_n, the centres c_1 to c_n, each in a cell of its own, and the inverse
+    widths k_1 to k_n, up to 200 either way, also zero.
 
     Parameters
     ----------
     terms : int
         How many Gaussians, n, 1 to 32; the profile has 1 + 3 n coefficients.
-
-    Raises
-    ------
-    ValueError
-        When `terms` is not a whole number in that range.
     """
 
     name: ClassVar[str] = "cycloid-gaussians"
     term: ClassVar[str] = "Gaussian"
-    sharpness: ClassVar[str] = "the inverse width of a Gaussian"
-    terms: int = 5
 
     @property
     def ranges(self) -> tuple[Range, Range]:
-        """Centres, then inverse widths."""
-        one = np.ones(self.terms)
-        middle, half = REACH * side_by_side(self.terms), REACH / self.terms * one
-        return (
-            Range(middle, half, middle - half, middle + half),
-            Range(2.0 * one, 0.25 * one, _WIDEST * one, _SHARPEST * one),
-        )
+        """Centres; inverse widths, from nearly a parabola over the move to a sixth of it."""
+        half = REACH / self.terms
+        centres = Range(self.cells, half, self.cells - half, self.cells + half)
+        return centres, Range(2.0, 0.25, 0.3, 3.0)
 
     @staticmethod
     def unit(x: Expression, y: Expression, T: Expression) -> Input:
@@ -172,44 +142,29 @@ class CycloidGaussians(CycloidOfUnits):
         return g, -2 * y * z * g, y * y * (4 * z * z - 2) * g
 
 
-_STRAIGHTEST, _STEEPEST = 0.3, 4.0
-"""Gains: from nearly a straight line over the whole move to a step that takes a quarter of it."""
-_FIRST_GAIN = 1.5
-
-
 @dataclass(frozen=True)
 class CycloidNetwork(CycloidOfUnits):
     """A cycloid whose input is a network of one hidden layer: ref. [23], as this project reads it.
 
     U = t/TE + (1 - T^2) (v_0 + sum_j v_j tanh(b_j + k_j T)), T = -1 + 2 t/TE. The coefficients are
-    v_0 to v_n, the biases b_1 to b_n, and the gains k_1 to k_n. Gains are positive: a negative one
-    is the same as other signs of its weight and bias. They may be up to 200.
+    v_0 to v_n, the biases b_1 to b_n, and the gains k_1 to k_n, up to 200; a negative gain is the
+    same as other signs of its weight and bias.
 
     Parameters
     ----------
     terms : int
         How many hidden nodes, n, 1 to 32; the profile has 1 + 3 n coefficients.
-
-    Raises
-    ------
-    ValueError
-        When `terms` is not a whole number in that range.
     """
 
     name: ClassVar[str] = "cycloid-network"
     term: ClassVar[str] = "node"
-    sharpness: ClassVar[str] = "the gain of a hidden node"
-    terms: int = 5
 
     @property
     def ranges(self) -> tuple[Range, Range]:
-        """Biases, then gains."""
-        one = np.ones(self.terms)
-        biases = _FIRST_GAIN * REACH * side_by_side(self.terms)
-        return (
-            Range(biases, 0.5 * one, -_STEEPEST * one, _STEEPEST * one),
-            Range(_FIRST_GAIN * one, 0.5 * one, _STRAIGHTEST * one, _STEEPEST * one),
-        )
+        """Biases; gains, from nearly a straight line to a step that takes a quarter of the move."""
+        gain, steepest = 1.5, 4.0
+        biases = Range(gain * self.cells, 0.5, -steepest, steepest)
+        return biases, Range(gain, 0.5, 0.3, steepest)
 
     @staticmethod
     def unit(x: Expression, y: Expression, T: Expression) -> Input:

@@ -1,37 +1,148 @@
-"""The cycloid through an input shaper, the usual remedy in practice."""
+"""Input shapers, impulses whose convolution with a motion leaves a vibration out, and the cycloid.
+
+Formulas and their sources: docs/physics.md, 'Input shaping'.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import ClassVar
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import ClassVar, NamedTuple
 
 import casadi as ca
 from quietarm.models import Expression
 from quietarm.ocp.checks import finite, positive
-from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.shapers import SHAPERS, Impulses, convolved
+from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
+TOLERATED = 0.05
+"""Share of the unshaped vibration that EI leaves at the frequency that it is made for."""
+_LEAST_DECAY_OF_EI = math.sqrt(TOLERATED / (2 - TOLERATED))
+"""K at which EI's weight V' reaches 1, so that its middle impulse 2 (1 - V') K vanishes."""
+MOST_DAMPING_OF_EI = 1 / math.hypot(1, math.pi / math.log(_LEAST_DECAY_OF_EI))
+"""The damping ratio of that decay, about 0.504."""
 LEAST_SHARE = 0.05
-"""Least share of the duration that is left for the cycloid: a shorter one would be a jolt between
-the integrators' steps."""
+"""Least share of the duration for the cycloid: a shorter one would be a jolt between steps."""
 MOST_IMPULSES = 243
 """Five modes of three impulses; the motion has a cycloid for every impulse."""
+
+
+class Impulses(NamedTuple):
+    """A shaper: shares of the motion that sum to one, and when each begins [s], in order from 0."""
+
+    amplitudes: tuple[float, ...]
+    times: tuple[float, ...]
+
+
+def _decay(damping_ratio: float) -> float:
+    """K: what is left of an amplitude after half a damped period."""
+    return math.exp(-math.pi * damping_ratio / math.sqrt(1 - damping_ratio**2))
+
+
+def _apart(
+    halves: float, undamped: Sequence[float], frequency: float, damping_ratio: float
+) -> Impulses:
+    """Impulses for an undamped mode so many half periods apart, later ones less as it decays."""
+    decay = _decay(damping_ratio) ** halves
+    gap = halves * math.pi / (frequency * math.sqrt(1 - damping_ratio**2))
+    weights = [weight * decay**i for i, weight in enumerate(undamped)]
+    return Impulses(
+        tuple(weight / sum(weights) for weight in weights),
+        tuple(gap * i for i in range(len(undamped))),
+    )
+
+
+def _refuse_damping(name: str, damping_ratio: float, most: float) -> None:
+    if damping_ratio > most:
+        raise ValueError(
+            f"damping ratio is {damping_ratio:g}; the {name} shaper goes up to {most:.4g}: take zv "
+            "or zvd"
+        )
+
+
+def _fitted(
+    name: str,
+    most: float,
+    times: Sequence[Sequence[float]],
+    amplitudes: Sequence[Sequence[float]],
+    frequency: float,
+    damping_ratio: float,
+) -> Impulses:
+    """Klipper's fits of September 2025: times over the period and amplitudes by powers of damping.
+
+    They leave `TOLERATED` or less over a wider range than EI.
+    """
+    _refuse_damping(name, damping_ratio, most)
+
+    def at(powers: Sequence[float]) -> float:
+        return sum(one * damping_ratio**k for k, one in enumerate(powers))
+
+    total, period = sum(map(at, amplitudes)), 2 * math.pi / frequency
+    return Impulses(
+        tuple(at(one) / total for one in amplitudes), tuple(at(one) * period for one in times)
+    )
+
+
+def _ei(frequency: float, damping_ratio: float) -> Impulses:
+    """Extra insensitive: `TOLERATED` of the vibration is left."""
+    _refuse_damping("ei", damping_ratio, MOST_DAMPING_OF_EI)
+    decay = _decay(damping_ratio)
+    # So that TOLERATED is left at the frequency itself whatever the damping; undamped V = TOLERATED
+    V = TOLERATED * (1 + decay) ** 2 / (4 * decay**2 - TOLERATED * (1 - decay) ** 2)
+    return _apart(1.0, [1 + V, 2 * (1 - V), 1 + V], frequency, damping_ratio)
+
+
+_OUTER = 1 - math.sqrt(0.5)
+SHAPERS: Mapping[str, Callable[[float, float], Impulses]] = {
+    "zv": partial(_apart, 1.0, [1.0, 1.0]),
+    "mzv": partial(_apart, 0.75, [_OUTER, 1 - 2 * _OUTER, _OUTER]),
+    "zvd": partial(_apart, 1.0, [1.0, 2.0, 1.0]),
+    "ei": _ei,
+    "2hump-ei": partial(
+        _fitted, "2hump-ei", 0.3,
+        ((0.0, 0.0, 0.0, 0.0), (0.49890, 0.16270, -0.54262, 6.16180),
+         (0.99748, 0.18382, -1.58270, 8.17120), (1.49920, -0.09297, -0.28338, 1.85710)),
+        ((0.16054, 0.76699, 2.26560, -1.22750), (0.33911, 0.45081, -2.58080, 1.73650),
+         (0.34089, -0.61533, -0.68765, 0.42261), (0.15997, -0.60246, 1.00280, -0.93145)),
+    ),
+    "3hump-ei": partial(
+        _fitted, "3hump-ei", 0.2,
+        ((0.0, 0.0, 0.0, 0.0), (0.49974, 0.23834, 0.44559, 12.4720),
+         (0.99849, 0.29808, -2.36460, 23.3990), (1.49870, 0.10306, -2.01390, 17.0320),
+         (1.99960, -0.28231, 0.61536, 5.40450)),
+        ((0.11275, 0.76632, 3.29160, -1.44380), (0.23698, 0.61164, -2.57850, 4.85220),
+         (0.30008, -0.19062, -2.14560, 0.13744), (0.23775, -0.73297, 0.46885, -2.08650),
+         (0.11244, -0.45439, 0.96382, -1.46000)),
+    ),
+}  # fmt: skip
+"""Every shaper by its name: from frequency [rad/s] and damping ratio to impulses."""
+
+
+def convolved(shapers: Sequence[Impulses]) -> Impulses:
+    """Several shapers one after another as a single one, as for several modes."""
+    impulses = [(0.0, 1.0)]
+    for shaper in shapers:
+        impulses = [
+            (time + later, amplitude * share)
+            for time, amplitude in impulses
+            for share, later in zip(*shaper, strict=True)
+        ]
+    times, amplitudes = zip(*sorted(impulses), strict=True)
+    return Impulses(amplitudes, times)
 
 
 @dataclass(frozen=True)
 class ShapedCycloid(JointProfile):
     """The plain cycloid convolved with an input shaper; it has no coefficients.
 
-    Every impulse of the shaper begins a cycloid of its share of the move. The cycloids are shorter
-    than the duration by the shaper's length, so that the whole takes the duration.
+    Every impulse begins a cycloid of its share of the move, shorter than the duration by the
+    shaper's length.
 
     Parameters
     ----------
     shaper : str
-        ``"zv"``, ``"zvd"`` or ``"ei"``.
+        A name of `SHAPERS`, such as ``"zv"``.
     frequencies : sequence of float
         Undamped angular frequencies of the modes to leave out [rad/s], one or more.
     damping_ratios : sequence of float
@@ -40,14 +151,15 @@ class ShapedCycloid(JointProfile):
     Raises
     ------
     ValueError
-        When the shaper is not known, a number is out of range, the numbers do not match, or the
-        shaper would have a negative impulse.
+        When the shaper is not known or not for such damping, or a number is out of range.
     """
 
     name: ClassVar[str] = "shaped-cycloid"
     shaper: str
     frequencies: tuple[float, ...]
     damping_ratios: tuple[float, ...]
+    impulses: Impulses = field(init=False, repr=False, compare=False)
+    """One shaper for all modes."""
 
     def __post_init__(self) -> None:
         if self.shaper not in SHAPERS:
@@ -65,20 +177,15 @@ class ShapedCycloid(JointProfile):
                     f"damping ratio is {zeta:g}; give one between -1 and 1: other modes do not "
                     "vibrate"
                 )
-        impulses = len(SHAPERS[self.shaper](1.0, 0.0).times) ** len(frequencies)
-        if impulses > MOST_IMPULSES:
+        each = [SHAPERS[self.shaper](*mode) for mode in zip(frequencies, damping, strict=True)]
+        if (count := math.prod(len(one.times) for one in each)) > MOST_IMPULSES:
             raise ValueError(
-                f"{self.shaper} for {len(frequencies)} modes has {impulses} impulses; quietarm "
-                f"goes up to {MOST_IMPULSES}: give the slowest modes only"
+                f"{self.shaper} for {len(frequencies)} modes has {count} impulses; quietarm goes "
+                f"up to {MOST_IMPULSES}: give the slowest modes only"
             )
         object.__setattr__(self, "frequencies", frequencies)
         object.__setattr__(self, "damping_ratios", damping)
-        _impulses(self.shaper, frequencies, damping)  # which refuses what the shaper is not for
-
-    @property
-    def impulses(self) -> Impulses:
-        """One shaper for all modes."""
-        return _impulses(self.shaper, self.frequencies, self.damping_ratios)
+        object.__setattr__(self, "impulses", convolved(each))
 
     @property
     def length(self) -> float:
@@ -107,16 +214,9 @@ class ShapedCycloid(JointProfile):
         ends = (begin + duration - self.length for begin in begins)
         return tuple(sorted({at / duration for at in (*begins, *ends) if 0 < at < duration}))
 
-    def derivatives(
-        self,
-        coefficients: Sequence[Expression],
-        fraction: Expression,
-        start: Expression,
-        target: Expression,
-        duration: Expression,
-    ) -> tuple[Expression, ...]:
+    def derivatives(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
         """Sum of the cycloids, each at rest before it begins and after it ends."""
-        del coefficients
+        start, target, duration = move
         cycloid, turn = duration - self.length, 2 * math.pi
         angle = speed = acceleration = 0 * fraction
         for share, begin in zip(*self.impulses, strict=True):
@@ -129,8 +229,3 @@ class ShapedCycloid(JointProfile):
             acceleration += share * turn * sine / cycloid**2
         span = target - start
         return start + span * angle, span * speed, span * acceleration
-
-
-@lru_cache(maxsize=64)
-def _impulses(shaper: str, frequencies: Sequence[float], damping: Sequence[float]) -> Impulses:
-    return convolved([SHAPERS[shaper](*mode) for mode in zip(frequencies, damping, strict=True)])

@@ -9,10 +9,11 @@ from typing import ClassVar
 
 from quietarm.models import Expression
 from quietarm.ocp.profiles.cycloid import Cycloid, Input
+from quietarm.ocp.profiles.joint_profile import Values
 
 DEGREE = 5
-"""Quintic: the joint's jerk is continuous, and the integrators' fixed steps keep their order where
-pieces meet. With a cubic they miss the residual of a move at rest by 1e-5 m."""
+"""Quintic, so that fixed steps keep their order where pieces meet; with a cubic they miss the
+residual of a move at rest by 1e-5 m."""
 
 
 @dataclass(frozen=True)
@@ -27,11 +28,6 @@ class CycloidSpline(Cycloid):
     ----------
     terms : int
         How many control points may move, 4 to 32; as many coefficients.
-
-    Raises
-    ------
-    ValueError
-        When `terms` is not a whole number in that range.
     """
 
     name: ClassVar[str] = "cycloid-spline"
@@ -39,24 +35,17 @@ class CycloidSpline(Cycloid):
     default_bound: ClassVar[float | None] = 0.5
     least_terms: ClassVar[int] = DEGREE - 1
 
-    @property
-    def knots(self) -> list[float]:
-        """Where the pieces meet, as fractions of the duration; the ends with their multiplicity."""
+    def input(self, coefficients: Values, fraction: Expression) -> Input:
+        """U and its derivatives: linear in the coefficients."""
         pieces = self.terms + 2 - DEGREE
-        return [0.0] * DEGREE + [i / pieces for i in range(pieces + 1)] + [1.0] * DEGREE
-
-    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
-        """U and its derivatives: linear in the coefficients.
-
-        The derivative of a spline is one of a degree less, whose control points are the differences
-        of neighbours over the length that their B-splines share.
-        """
-        knots, points = self.knots, [0.0, *coefficients, 0.0]
+        knots = [0.0] * DEGREE + [i / pieces for i in range(pieces + 1)] + [1.0] * DEGREE
+        points = [0.0, *coefficients, 0.0]
         found: list[Expression] = []
         for degree in range(DEGREE, DEGREE - 3, -1):
             basis = b_splines(knots, degree, fraction)
             found.append(sum(p * B for p, B in zip(points, basis, strict=True)))
             knots = knots[1:-1]
+            # its derivative's: differences over the length that neighbouring B-splines share
             points = [
                 degree * (after - before) / (knots[i + degree] - knots[i])
                 for i, (before, after) in enumerate(pairwise(points))
@@ -67,18 +56,17 @@ class CycloidSpline(Cycloid):
 def b_splines(knots: Sequence[float], degree: int, at: Expression) -> list[Expression]:
     """Every B-spline of a degree on clamped knots, by de Boor's recursion."""
     last = len(knots) - degree - 2
-    row: dict[int, Expression] = {}
+    row: list[Expression] = [0 * at] * (len(knots) - 1)
     for i in range(degree, last + 1):  # degree 0: in which piece it is, the ends included
         after = at >= knots[i] if i > degree else 1
         row[i] = after * (at < knots[i + 1] if i < last else 1) + 0 * at
     for d in range(1, degree + 1):
-        nothing = 0 * at
-        row = {
-            i: row.get(i, nothing) * _share(at, knots[i], knots[i + d])
-            + row.get(i + 1, nothing) * (1 - _share(at, knots[i + 1], knots[i + d + 1]))
-            for i in range(degree - d, last + 1)
-        }
-    return list(row.values())
+        row = [
+            left * _share(at, knots[i], knots[i + d])
+            + right * (1 - _share(at, knots[i + 1], knots[i + d + 1]))
+            for i, (left, right) in enumerate(pairwise(row))
+        ]
+    return row
 
 
 def _share(at: Expression, begin: float, end: float) -> Expression:

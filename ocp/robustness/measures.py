@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import whole
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.profiles.shapers import TOLERATED
+from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.robustness.perturbed import Report, perturbed_figures
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import check_ranges

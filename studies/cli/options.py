@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 from click.core import ParameterSource
-from quietarm.ocp.profiles.shapers import SHAPERS
+from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.cli.quantities import literal, once
 from quietarm.studies.cli.types import METHOD_SETTING, OUTPUT, WHOLE, Named, Parsed

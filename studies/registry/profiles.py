@@ -8,7 +8,7 @@ from pkgutil import iter_modules
 
 from quietarm.ocp import JointProfile, PointToPoint, profiles, shaped_cycloid
 from quietarm.ocp.profiles.cycloid import Cycloid
-from quietarm.ocp.profiles.shapers import SHAPERS
+from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 
 POLYNOMIAL = "polynomial"
 

@@ -21,7 +21,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.checks import install
 from quietarm.ocp.profiles.free_motion import FreeMotion
-from quietarm.ocp.profiles.shapers import SHAPERS, Impulses, convolved
+from quietarm.ocp.profiles.shaped_cycloid import SHAPERS, Impulses, convolved
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 
 _ALONG = {1: 41, 2: 9}

@@ -11,8 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from quietarm.ocp import CycloidPolynomial, ShapedCycloid
-from quietarm.ocp.profiles.shaped_cycloid import LEAST_SHARE
-from quietarm.ocp.profiles.shapers import SHAPERS, convolved
+from quietarm.ocp.profiles.shaped_cycloid import LEAST_SHARE, SHAPERS, convolved
 
 pi = math.pi
 names = pytest.mark.parametrize("shaper", ["zv", "zvd", "ei", "mzv"])

@@ -9,7 +9,7 @@ import pytest
 from quietarm.models import FlexibleBeam
 from quietarm.ocp import CycloidPolynomial, PointToPoint, Uncertainty
 from quietarm.ocp.profiles.free_motion import FreeMotion
-from quietarm.ocp.profiles.shapers import SHAPERS
+from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies.versus.rivals import rivals, ruckig_motion, shaped
 
 BEAM = FlexibleBeam(omega=2 * pi * 3.2, zeta=0.01)
