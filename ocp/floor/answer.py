@@ -19,9 +19,8 @@ from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.task import PointToPoint
 
 _FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
-"""Ratios of successive falls of the energy. The first is that of an error proportional to the
-intervals' length, as where speed or torque jumps within one; ratios above the second are not taken
-for a converging series."""
+"""Ratios of successive falls of the energy: where the error is proportional to the intervals'
+length (1/4 to its square), and above which they are not taken for a converging series."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +33,7 @@ class Level:
 
 @dataclass(frozen=True)
 class FloorSettings:
-    """What was asked of the search beyond the task; see `energy_floor` for the meanings.
-
-    Raises
-    ------
-    ValueError
-        When a setting is out of range.
-    """
+    """What was asked of `energy_floor` beyond the task; ValueError where it is out of range."""
 
     smooth: bool
     starts: int
@@ -62,8 +55,6 @@ class Floor(MotionAnswer):
 
     Attributes
     ----------
-    task : PointToPoint
-        The move.
     free : FreeMotion
         How the joint moves.
     motion : Motion
@@ -73,12 +64,6 @@ class Floor(MotionAnswer):
         way, of a coarser one that needs less.
     starts : tuple of float
         Energy [J] at which each solved start ended, all on the second grid.
-    status : SolveStatus
-        How the last solve ended.
-    verification : Verification
-        Distance between the two integrators.
-    provenance : Provenance
-        Method, settings, versions, time.
     """
 
     kind: ClassVar[str] = "floor"
@@ -117,10 +102,7 @@ class Floor(MotionAnswer):
 
     @property
     def ratio(self) -> float | None:
-        """The last fall of the energy over the one before; None where two falls are not known.
-
-        1/2 means an error proportional to the intervals' length, 1/4 to its square.
-        """
+        """The last fall of the energy over the one before; None where two falls are not known."""
         falls = [one.energy - other.energy for one, other in pairwise(self.levels)][-2:]
         return falls[1] / falls[0] if len(falls) == 2 and min(falls) > 0 else None
 

@@ -131,8 +131,8 @@ class FloorProgram:
         energy = task.energy.absolute * np.abs(power) + np.abs(rest)
         self._measures = np.array([np.abs(of).max() or 1.0 for of in (energy, *limited)])
 
-    def _build(self, steps: int, warm: bool) -> ca.Function:
-        """IPOPT, from anywhere or from a coarser grid's solution.
+    def _build(self, steps: int, warm: bool) -> tuple[ca.Function, Array]:
+        """IPOPT, from anywhere or from a coarser grid's solution, and upper bounds of constraints.
 
         Parameters are the intervals' lengths, and the weights of the energy and of each quantity.
         """
@@ -147,23 +147,24 @@ class FloorProgram:
         )
         arrived = ca.DM(self._resting(self.task.target, self.task.final_state))
         spent = rest / of_energy
-        constraints = [
+        equal = [
             after / scale[:states, :] - ca.horzcat(columns[:states, 1:], arrived),
             equations / scale[states + 1 :, :],
         ]
         if parts:
             spent += self.task.energy.absolute * (forward + backward)
-            constraints.append(forward - backward - power / of_energy)
-        for peak, value, measure in zip(ca.vertsplit(peaks), values, measures, strict=True):
-            constraints += [peak - value / measure, peak + value / measure]
+            equal.append(forward - backward - power / of_energy)
+        scaled = zip(ca.vertsplit(peaks), values, measures, strict=True)
+        positive = [peak + sign * value / of for peak, value, of in scaled for sign in (-1, 1)]
         mean = ca.dot(lengths, (ca.DM(GAUSS_WEIGHTS).T @ spent).T) / ca.sum1(lengths)
         problem = {
             "x": ca.vertcat(peaks, ca.vec(x)),
             "p": ca.vertcat(lengths, weights),
             "f": ca.dot(weights, ca.vertcat(mean, peaks)),
-            "g": ca.vertcat(*map(ca.vec, constraints)),
+            "g": ca.vertcat(*map(ca.vec, [*equal, *positive])),
         }
-        return compile_nlp(problem, _WARM if warm else COLD)
+        counts = [sum(rows.numel() for rows in kind) for kind in (equal, positive)]
+        return compile_nlp(problem, _WARM if warm else COLD), np.repeat([0.0, np.inf], counts)
 
     def along(self, path: JointPath, fractions: Array) -> FreeMotion:
         """A motion of this kind on a grid whose speed at the grid is that of a path."""
@@ -184,25 +185,23 @@ class FloorProgram:
         warm: bool = False,
     ) -> FreeSolution:
         """Run the solver from one motion, on its grid."""
-        task, names, steps = self.task, self._names, free.steps
-        solver, units = self._solver(steps, warm), np.eye(1 + len(names))
-        equations = steps * (self._states + NODES * task.plant.modes + self._parts)
-        largest = np.where(np.arange(solver.size1_in("ubg")) < equations, 0.0, np.inf)
+        names, units = self._names, np.eye(1 + len(self._names))
+        solver, upper = self._solver(free.steps, warm)
         stop = run_ipopt(
             solver,
             self._guess(free),
-            self._bounds(limits, steps),
-            (np.zeros(len(largest)), largest),
+            self._bounds(limits, free.steps),
+            (np.zeros(len(upper)), upper),
             np.append(free.lengths, units[[ENERGY, *names].index(minimise)]),
         )
         mean = solver.get_function("nlp_f")(stop.unknowns, np.append(free.lengths, units[0]))
         peaks, found = np.split(stop.unknowns, [len(names)])
-        columns = found.reshape(steps, -1).T[: len(self._scale)] * self._scale[:, None]
+        columns = found.reshape(free.steps, -1).T[: len(self._scale)] * self._scale[:, None]
         last = columns[self._states]
-        acceleration, jerk = (columns[2], last) if self.smooth else (last, np.zeros(steps))
+        acceleration, jerk = (columns[2], last) if self.smooth else (last, np.zeros(free.steps))
         return FreeSolution(
             free=FreeMotion(free.times, acceleration, jerk),
-            energy=float(mean * task.duration * self._measures[0]),
+            energy=float(mean * self.task.duration * self._measures[0]),
             peaks=dict(zip(names, (peaks * self._measures[1:]).tolist(), strict=True)),
             status=SolveStatus.from_ipopt(stop.return_status),
             iterations=stop.iterations,

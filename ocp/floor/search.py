@@ -49,26 +49,20 @@ def energy_floor(
 ) -> Floor:
     """Find the least energy with which any joint motion does a move and arrives at rest.
 
-    The acceleration of the joint is free on every interval of a grid (piecewise constant), or its
-    jerk for a smooth motion (acceleration continuous, and zero at both ends). The grid is refined
-    until the energy changes by less than the tolerance, or until the solver fails.
-
-    Without an acceleration limit the least energy is approached by motions whose speed jumps: there
-    the grid is finer, and `Floor.left` says how far off the limit is. A smooth motion approaches
-    the same limit.
+    The acceleration of the joint is free on every interval of a grid, or its jerk for a smooth
+    motion. Without an acceleration limit the least energy is approached by motions whose speed
+    jumps: there the grid is finer, and `Floor.left` says how far off the limit is.
 
     Parameters
     ----------
     task : PointToPoint
         The move and its limits.
     smooth : bool
-        Whether the acceleration is continuous.
-    starts : int
-        How many starts: the plain cycloid, the plan of six terms, then random motions.
-    seed : int
-        Seed of the random starts.
+        Whether the acceleration is continuous, and zero at both ends.
+    starts, seed : int
+        How many starts: the plain cycloid, the plan of six terms, then random motions of the seed.
     tolerance : float
-        Relative change of the energy at which the refinement stops.
+        Relative change of the energy at which the grid is refined no more.
 
     Returns
     -------

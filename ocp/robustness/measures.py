@@ -69,19 +69,11 @@ class Robustness:
     Attributes
     ----------
     ranges : dict of str to float
-        Largest relative errors by name.
+        Largest relative errors by name; there is one of the `sweeps` for each.
     cycloid : float
-        Residual of the plain cycloid of the same duration on the assumed plant [m].
-    assumed : Figures
-        The motion on the assumed plant, one entry.
-    sweeps : tuple of Sweep
-        One for every name.
+        Residual of the plain cycloid of the same duration on the `assumed` plant [m].
     errors : ndarray, shape (samples, names)
-        Errors of the Monte Carlo samples, all at once, uniform within the ranges.
-    samples : Figures
-        What the motion leaves and costs at each.
-    seed : int
-        Of the samples.
+        Errors of the Monte Carlo `samples`, all at once, uniform within the ranges.
     """
 
     ranges: Mapping[str, float]

@@ -18,7 +18,7 @@ from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import FreeVibration, after_arrival
 from quietarm.ocp.simulation.grid import ROLLOUT_STEPS, default_steps
-from quietarm.ocp.solvers.batch import batch
+from quietarm.ocp.solvers.batch import Values, batch
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import DAMPING, FREQUENCY, perturb_plant
 
@@ -34,6 +34,7 @@ _ZOOMS, _BESIDE = 3, (-1.0, -0.5, 0.0, 0.5, 1.0)
 
 Array = NDArray[np.float64]
 Report = Callable[[int, int], object]
+Simulated = Candidate | Values
 
 
 @keep_interrupts()  # casadi loses a Ctrl-C
@@ -71,15 +72,7 @@ def perturbed_figures(
 
 @dataclass(frozen=True)
 class Worst:
-    """The errors within an uncertain plant's ranges at which a motion leaves most.
-
-    Attributes
-    ----------
-    errors : dict of str to float
-        Relative errors by name.
-    residual : float
-        F1 there [m], by CVODES.
-    """
+    """The errors within a task's ranges at which a motion leaves most, and its F1 there [m]."""
 
     errors: Mapping[str, float] = field(hash=False)
     residual: NotNegative
@@ -136,16 +129,16 @@ def _is_peak(values: Array) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What changes with a parameter of the plant, the joint moving as planned.
+    """What changes with a small relative error of a parameter, over that error.
 
     Attributes
     ----------
     parameter : str
         Its name; ``"frequency"`` and ``"damping"`` are those of all modes alike.
     energy : float
-        Derivative of F2 by the parameter's relative error [J].
+        Change of F2 [J].
     residual : float
-        F1 of the change of the state on arrival, over a small relative error [m].
+        F1 of the change of the state on arrival [m].
     """
 
     parameter: str
@@ -163,8 +156,8 @@ def sensitivities(
 
     def of(name: str) -> Sensitivity:
         above, below = (candidate.perturbed({name: error}) for error in (_STEP, -_STEP))
-        residual = vibration.peak(_slope(above.arrival[0], below.arrival[0]))
-        return Sensitivity(name, _slope(above.energy, below.energy), float(residual))
+        energy, residual = _slopes(above, below, vibration)
+        return Sensitivity(name, float(energy), float(residual[0]))
 
     known = (name for name, value in task.plant.measured.items() if value)
     names = dict.fromkeys([*OF_MODES, *known])
@@ -181,14 +174,15 @@ def sensitivities_of_moves(
     targets = [task.target for task in tasks]
     vibrations = FreeVibration(one.plant, targets, one.residual_window)
 
-    def slopes(error: Array) -> tuple[Array, Array]:
+    def of(error: Array) -> tuple[Array, Array]:
         errors = np.tile(_STEP * error, (len(tasks), 1))
         above, below = (rows.values(coefficients, moves, each) for each in (errors, -errors))
-        arrival = _slope(above.arrival, below.arrival)
-        return _slope(above.energy, below.energy), vibrations.peak(arrival)
+        return _slopes(above, below, vibrations)
 
-    return dict(zip(OF_MODES, map(slopes, np.eye(2)), strict=True))
+    return dict(zip(OF_MODES, map(of, np.eye(2)), strict=True))
 
 
-def _slope(above: Any, below: Any) -> Any:
-    return (above - below) / (2 * _STEP)
+def _slopes(above: Simulated, below: Simulated, vibration: FreeVibration) -> tuple[Any, Array]:
+    """Change of the energy, and F1 of that of the state on arrival, by a relative error of 1."""
+    arrival = (above.arrival - below.arrival) / (2 * _STEP)
+    return (above.energy - below.energy) / (2 * _STEP), vibration.peak(arrival)
