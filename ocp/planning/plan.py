@@ -21,8 +21,7 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import Provenance, Setting, SolveSettings, Verification
-from quietarm.ocp.robustness.sensitivity import Sensitivity, sensitivities
-from quietarm.ocp.robustness.worst import Worst, worst_of
+from quietarm.ocp.robustness.perturbed import Sensitivity, Worst, sensitivities, worst_of
 from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps

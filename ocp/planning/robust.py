@@ -20,7 +20,7 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, SolveSettings
 from quietarm.ocp.robustness.measures import quiet_residual
-from quietarm.ocp.robustness.worst import peaks_between, worst_of
+from quietarm.ocp.robustness.perturbed import peaks_between, worst_of
 from quietarm.ocp.solvers.choice import solver_of
 from quietarm.ocp.solvers.problem import Problem, Scalarization
 from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
