@@ -134,12 +134,14 @@ def _correct_arrivals(rows: list[_Row], solver: Solver) -> tuple[list[_Row], Val
     at_rest = np.array([problem.scalarization.at_rest for _, problem, _ in rows])
     by_steps = np.array([solution.arrival[0] for _, _, solution in rows])
     wanted = np.array([task.final_state for task in tasks])
-    for rounds in range(_ROUNDS + 1):
+    rounds = 0
+    while True:
         values = _finer_values(rows)
         residual = vibrations.peak(values.arrival - wanted)
         again = np.flatnonzero(at_rest & (residual > AT_REST * STILL))
         if not again.size or rounds == _ROUNDS:
-            break
+            return rows, values, residual
+        rounds += 1
         offset = values.arrival - by_steps
         problems = [
             Problem(one.transcription, one.scalarization._replace(offset=offset[k]))
@@ -150,7 +152,6 @@ def _correct_arrivals(rows: list[_Row], solver: Solver) -> tuple[list[_Row], Val
         for k, problem, solution in zip(again, problems, found, strict=True):
             rows[k] = (rows[k][0], problem, solution)
             by_steps[k] = solution.arrival[0] - offset[k]
-    return rows, values, residual
 
 
 def _finer_values(rows: Sequence[_Row]) -> Values:
