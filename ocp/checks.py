@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import operator
-from collections.abc import Iterable
+from collections.abc import Collection
 from typing import Annotated, Any
 
 from msgspec import Meta
@@ -23,11 +23,13 @@ def finite(name: str, value: Any, unit: str = "") -> float:
     return number
 
 
-def positive(name: str, value: Any, unit: str = "") -> float:
+def positive(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
     """A positive finite number as a float."""
     number = finite(name, value, unit)
     if number <= 0:
         raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
+    if number > most:
+        raise ValueError(f"{name} is {number:g}; give at most {most:g}{why and f' ({why})'}")
     return number
 
 
@@ -58,35 +60,27 @@ _PART = 3
 """So many letters of a longer name are enough."""
 
 
-def unknown(what: str, name: str, known: Iterable[str], also: str = "") -> str:
+def unknown(what: str, name: str, known: Collection[str], also: str = "") -> str:
     """The message about a name that is not known."""
-    known = list(known)
-    return f"unknown {what} {name!r}{_question(name, known)} (known: {', '.join(known)}{also})"
+    return f"unknown {what} {name!r}{nearest(name, known)} (known: {', '.join(known)}{also})"
 
 
-def has_no(owner: str, what: str, name: str, known: Iterable[str]) -> str:
+def has_no(owner: str, what: str, name: str, known: Collection[str]) -> str:
     """The message about a name that something does not have."""
-    known = list(known)
     listed = ", ".join(known) or "none"
-    return f"{owner} has no {what} {name!r}{_question(name, known)} (it has: {listed})"
+    return f"{owner} has no {what} {name!r}{nearest(name, known)} (it has: {listed})"
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
+def nearest(name: str, known: Collection[str]) -> str:
     """A question for a message, with the known name that is most like an unknown one."""
-    known = list(known)
     part = [other for other in known if len(name) >= _PART and name.lower() in other.lower()]
-    near = part or difflib.get_close_matches(name.lower(), known, n=1, cutoff=_ALIKE)
-    return f"did you mean {near[0]!r}? " if near else ""
+    near = part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=_ALIKE)
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def install(extra: str) -> str:
     """How to install what an extra of this project holds."""
     return f"install it: pip install 'quietarm[{extra}]', or '.[{extra}]' in a clone"
-
-
-def _question(name: str, known: list[str]) -> str:
-    question = nearest(name, known).rstrip()
-    return f"; {question}" if question else ""
 
 
 NotNegative = Annotated[float, Meta(ge=0)]

@@ -24,6 +24,8 @@ class Energy(ABC):
 
     name: ClassVar[str]
     """The name by which files and the command line know the energy."""
+    absolute: float = 0.0
+    """Weight of the absolute power, 0 or more; its sign changes are found."""
 
     _known: ClassVar[dict[str, type[Energy]]] = {}
 
@@ -32,25 +34,13 @@ class Energy(ABC):
         if "name" in cls.__dict__:
             Energy._known[cls.name] = cls
 
-    @property
-    def absolute(self) -> float:
-        """Weight of the absolute power, 0 or more; its sign changes are found."""
-        return 0.0
-
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
-        """What else is spent at one time, in smooth operations that work element by element.
+        """Power [W] that is spent beside, in smooth operations that work element by element.
 
         Parameters
         ----------
-        torque : Expression
-            Joint torque [N m].
-        speed : Expression
-            Joint speed [rad/s].
-
-        Returns
-        -------
-        Expression
-            Power [W].
+        torque, speed : Expression
+            Joint torque [N m] and speed [rad/s].
         """
         return 0.0
 
@@ -80,11 +70,7 @@ class AbsolutePower(Energy):
     """Integral of abs(torque * speed), eqs (11) and (16): braking costs as much as driving."""
 
     name = "absolute"
-
-    @property
-    def absolute(self) -> float:
-        """As of `Energy`."""
-        return 1.0
+    absolute = 1.0
 
 
 ABSOLUTE_POWER = AbsolutePower()
@@ -95,14 +81,10 @@ class PositivePower(Energy):
     """Integral of torque * speed where it is positive: braking costs nothing and gives nothing."""
 
     name = "positive"
-
-    @property
-    def absolute(self) -> float:
-        """As of `Energy`."""
-        return 0.5
+    absolute = 0.5
 
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
-        """As of `Energy`."""
+        """Half the power: with half its absolute value the positive part."""
         return power_of(torque, speed) / 2
 
 
@@ -113,12 +95,8 @@ class CopperLoss(Energy):
     Parameters
     ----------
     motor_constant : float
-        Torque at the joint by the root of the loss [N m/W^0.5]: the motor's, times the gear ratio.
-
-    Raises
-    ------
-    ValueError
-        When it is not positive.
+        Torque at the joint by the root of the loss, positive [N m/W^0.5]: the motor's, times the
+        gear ratio.
     """
 
     name = "copper"
@@ -129,7 +107,7 @@ class CopperLoss(Energy):
         object.__setattr__(self, "motor_constant", constant)
 
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
-        """As of `Energy`."""
+        """The loss at one time."""
         return torque * torque / self.motor_constant**2
 
 
@@ -140,12 +118,7 @@ class Mix(Energy):
     Parameters
     ----------
     parts : tuple of (float, Energy)
-        Weights and energies.
-
-    Raises
-    ------
-    ValueError
-        When a weight is not positive.
+        Weights, positive, and energies.
     """
 
     name = "mix"
@@ -154,19 +127,15 @@ class Mix(Energy):
     def __post_init__(self) -> None:
         parts = tuple((positive("weight", weight), part) for weight, part in self.parts)
         object.__setattr__(self, "parts", parts)
-
-    @property
-    def absolute(self) -> float:
-        """As of `Energy`."""
-        return sum(weight * part.absolute for weight, part in self.parts)
+        object.__setattr__(self, "absolute", sum(weight * part.absolute for weight, part in parts))
 
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
-        """As of `Energy`."""
+        """The weighted sum of the parts'."""
         return sum(weight * part.smooth(torque, speed) for weight, part in self.parts)
 
     @property
     def label(self) -> str:
-        """As of `Energy`."""
+        """As it is typed: the parts' labels with their weights."""
         weights = ("" if weight == 1 else f"{weight:.12g}*" for weight, _ in self.parts)
         labels = (part.label for _, part in self.parts)
         return "+".join(map("".join, zip(weights, labels, strict=True)))

@@ -45,23 +45,7 @@ class SolveStatus(Enum):
 
     @classmethod
     def from_ipopt(cls, return_status: str) -> SolveStatus:
-        """Translate IPOPT's own status.
-
-        Parameters
-        ----------
-        return_status : str
-            ``stats()["return_status"]`` of the solver.
-
-        Returns
-        -------
-        SolveStatus
-            The status.
-
-        Raises
-        ------
-        KeyboardInterrupt
-            When the user stopped the solve.
-        """
+        """Translate IPOPT's own status; KeyboardInterrupt when the user stopped the solve."""
         if return_status == "User_Requested_Stop":
             raise KeyboardInterrupt
         return _FROM_IPOPT.get(return_status, cls.NUMERICAL_TROUBLE)
@@ -77,8 +61,7 @@ _TEXTS = {
     "or a bound on the coefficients.",
     SolveStatus.NUMERICAL_TROUBLE: "The solver failed numerically; try another seed, fewer terms "
     "or a bound on the coefficients.",
-    SolveStatus.SUPERSEDED: "The solver left this start, since others had led to the same motion "
-    "or a lower one.",
+    SolveStatus.SUPERSEDED: "The solver left this start: another led to as low a motion.",
     SolveStatus.NOT_CERTIFIED: "The motion breaks a limit by CVODES although limits were "
     "tightened; bound the coefficients or use fewer terms.",
     SolveStatus.NOT_OPTIMISED: "The motion was given, not optimised.",

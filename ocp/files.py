@@ -6,90 +6,42 @@ import errno
 import os
 import shutil
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
 from uuid import uuid4
 
 from quietarm.ocp.errors import FileFormatError
 
-MOST_BYTES = 100_000_000
-"""Forty times a front of ten thousand points."""
-
 
 def read_bytes(path: str | Path) -> bytes:
-    """The content of an ordinary file; FileFormatError where it cannot be read.
-
-    A pipe or a device is not read: it may never end, and does not come again.
-    """
-    _refuse_no_name(path)
+    """The content of an ordinary file; FileFormatError where it cannot be read."""
     place = Path(path)
     try:
-        if place.exists() and not (place.is_file() or place.is_dir()):
+        if place.exists() and not place.is_file():  # a pipe may never end, and does not come again
             raise FileFormatError(f"{path} is no ordinary file; save it as one and give its name")
-        if place.is_file() and place.stat().st_size > MOST_BYTES:
-            raise FileFormatError(
-                f"{path} is larger than {MOST_BYTES / 1e6:g} MB, as no file of quietarm is; give "
-                "another"
-            )
         return place.read_bytes()
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise FileFormatError(f"{path} cannot be read: {reason}; give another file") from None
 
 
-def _refuse_no_name(path: str | Path) -> None:
-    if not str(path):
-        raise FileFormatError("the name of the file is empty; give one")
-
-
 def check_writable(path: str | Path) -> Path:
     """Make sure that a file can be written, before a solve rather than after it."""
-    _refuse_no_name(path)
     target = Path(path)
     try:
         # a link may lead to another folder
         folder = target.resolve().parent if target.is_symlink() else target.parent
-        there = target.exists()
         if target.is_dir():
             raise ValueError(f"{target} is a folder; give the name of a file in it")
-        if there and not target.is_file():
+        if target.exists() and not target.is_file():
             raise ValueError(f"{target} is no ordinary file; give the name of one")
-        if folder.is_file():
-            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
-        if not folder.is_dir():
+        if not folder.exists():
             raise ValueError(f"folder {folder} does not exist; make it first")
-        if not os.access(folder, os.W_OK) or (there and not os.access(target, os.W_OK)):
-            raise ValueError(f"{target} cannot be written; choose another place")
-        # even with permission it may fail, as in /proc
-        tempfile.TemporaryFile(dir=folder).close()
+        if target.exists() and not os.access(target, os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+        tempfile.TemporaryFile(dir=folder).close()  # else the system says what is wrong
     except OSError as error:
         raise unwritable(target, error) from None
     return target
-
-
-def check_folder(path: str | Path) -> Path:
-    """Make sure that files can be written in a folder, or that it can be made."""
-    folder = Path(path)
-    if folder.is_dir():
-        check_writable(folder / "any")
-    elif folder.exists():
-        raise ValueError(f"{folder} is a file; give a folder")
-    else:
-        check_writable(folder)
-    return folder
-
-
-def check_inside(folder: Path, places: Sequence[Path]) -> None:
-    """Make sure that files can be written at several places inside a folder, deep ones too."""
-    on_the_way = dict.fromkeys(
-        folder / part for place in places for part in reversed(place.relative_to(folder).parents)
-    )
-    for inner in (folder, *on_the_way):
-        if os.path.lexists(inner):
-            check_folder(inner)
-    for place in places:
-        if os.path.lexists(place):
-            check_writable(place)
 
 
 def unwritable(target: Path, error: OSError) -> ValueError:
@@ -104,23 +56,16 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
     A file that was there keeps its permissions.
     """
     target = check_writable(path).resolve()  # a link stays a link, to the new content
-    data = content.encode() if isinstance(content, str) else content
-    try:
-        _replace(target, data)
-    except OSError as error:
-        raise unwritable(target, error) from error
-
-
-def _replace(target: Path, data: bytes) -> None:
     temporary = target.parent / f".quietarm-{uuid4().hex}"
     try:
         with open(temporary, "xb") as file:
-            file.write(data)
+            file.write(content.encode() if isinstance(content, str) else content)
             file.flush()
             os.fsync(file.fileno())
         if target.exists():
             shutil.copymode(target, temporary)
         os.replace(temporary, target)
-    except BaseException:
+    except OSError as error:
+        raise unwritable(target, error) from error
+    finally:
         temporary.unlink(missing_ok=True)
-        raise

@@ -6,7 +6,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, redirect_stderr
 from functools import wraps
 from threading import RLock, get_ident
 from types import FrameType
@@ -18,17 +18,19 @@ _signals = [signal.SIGINT]
 """What stops the work."""
 
 
+def _in_main() -> bool:
+    """Whether this is the thread that may change handlers."""
+    return threading.current_thread() is threading.main_thread()
+
+
 @contextmanager
 def as_ctrl_c() -> Iterator[None]:
     """Let SIGTERM and SIGHUP stop the block as Ctrl-C does.
 
-    For a program that is a process of its own. Both raise KeyboardInterrupt in the block, unless
-    they are handled or ignored already.
+    For a program that is a process of its own. Signals that are handled or ignored stay so.
     """
-    wanted = [getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP")]
-    taken = [one for one in wanted if one and signal.getsignal(one) is signal.SIG_DFL]
-    if threading.current_thread() is not threading.main_thread():
-        taken = []
+    others = [one for one in signal.Signals if one.name in ("SIGTERM", "SIGHUP")]
+    taken = [one for one in others if _in_main() and signal.getsignal(one) is signal.SIG_DFL]
     for one in taken:
         signal.signal(one, signal.default_int_handler)
     _signals.extend(taken)
@@ -44,8 +46,7 @@ def as_ctrl_c() -> Iterator[None]:
 def keep_interrupts() -> Iterator[None]:
     """Raise KeyboardInterrupt after the block when Ctrl-C came during it.
 
-    casadi's solver stops at Ctrl-C, but returns as if the solve had merely failed; where Ctrl-C
-    comes while casadi takes an array, a value is missing afterwards and any error may follow.
+    casadi loses it: a solve seems to have failed, or a value is missing and any error follows.
     """
     with _noting(at_once=True) as came:
         try:
@@ -60,10 +61,7 @@ def keep_interrupts() -> Iterator[None]:
 
 @contextmanager
 def note_interrupts() -> Iterator[list[int]]:
-    """Let the block run to its end when Ctrl-C comes during it; the block can see that it came.
-
-    Yields the interrupts until now; the caller decides whether to stop.
-    """
+    """List the interrupts during the block, which runs to its end; the caller decides what then."""
     global _deferring
     outer, _deferring = _deferring, True
     try:
@@ -75,10 +73,10 @@ def note_interrupts() -> Iterator[list[int]]:
 
 @contextmanager
 def hear_interrupts() -> Iterator[list[int]]:
-    """List the interrupts during the block, including those that the work inside handles itself.
+    """List the interrupts during the block, those too that work inside keeps to itself.
 
-    An interrupt still acts as it would without this block. Work that keeps what it found may return
-    an answer all the same; the list then tells the caller that the user wants to stop.
+    They act as without it. Work that keeps what it found returns an answer all the same; the list
+    then tells that the user wants to stop.
     """
     with _noting(at_once=True) as came:
         _listeners.append(came)
@@ -92,11 +90,9 @@ def hear_interrupts() -> Iterator[list[int]]:
 def _noting(at_once: bool) -> Iterator[list[int]]:
     """Note the interrupts that come during the block; `at_once` they act as before, too."""
     came: list[int] = []
-    before: dict[int, Any] = {}
-    alone = threading.current_thread() is threading.main_thread()  # only it may change handlers
-    if alone and not (at_once and _deferring):
-        handlers = {number: signal.getsignal(number) for number in _signals}
-        before = {number: handler for number, handler in handlers.items() if callable(handler)}
+    mine = _signals if _in_main() and not (at_once and _deferring) else []
+    handlers: dict[int, Any] = {number: signal.getsignal(number) for number in mine}
+    before = {number: handler for number, handler in handlers.items() if callable(handler)}
 
     def note(number: int, frame: FrameType | None) -> None:
         came.append(number)
@@ -125,9 +121,8 @@ _TURN = RLock()
 def one_at_a_time(function: Callable[P, T]) -> Callable[P, T]:
     """Let one thread at a time into all the functions that have this decorator.
 
-    casadi is not made for several: two threads that build or solve at once end the process. A
-    function that is called from inside another goes on; a thread that it started itself would wait
-    for ever.
+    Two threads that build or solve with casadi at once end the process. A thread that such a
+    function started itself would wait for ever.
     """
 
     @wraps(function)
@@ -138,15 +133,10 @@ def one_at_a_time(function: Callable[P, T]) -> Callable[P, T]:
     return in_turn
 
 
-@contextmanager
-def silent_errors() -> Iterator[None]:
+def silent_errors() -> AbstractContextManager[Any]:
     """Drop what this thread writes to standard error in the block; progress in others goes on."""
-    everybody = sys.stderr
-    sys.stderr = _Muted(everybody)
-    try:
-        yield
-    finally:
-        sys.stderr = everybody
+    muted: Any = _Muted(sys.stderr)
+    return redirect_stderr(muted)
 
 
 class _Muted:

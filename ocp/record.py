@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import platform
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Generic, Literal, TypeVar
+from typing import Any, Generic, Literal, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -38,13 +38,7 @@ def versions() -> dict[str, str]:
 
 @dataclass(frozen=True)
 class SolveSettings:
-    """What was asked of the solver beyond the task; see `quietarm.ocp.plan_move` for the meanings.
-
-    Raises
-    ------
-    ValueError
-        When a setting is out of range.
-    """
+    """What was asked of the solver beyond the task, as `quietarm.ocp.plan_move` takes it."""
 
     residual_limit: float = 0.0
     bound: float | None = None
@@ -56,19 +50,22 @@ class SolveSettings:
     print_level: int = field(default=0, compare=False)
 
     def __post_init__(self) -> None:
-        limit = not_negative("residual limit", self.residual_limit, "m")
-        object.__setattr__(self, "residual_limit", limit)
-        if self.bound is not None:
-            object.__setattr__(self, "bound", coefficient_bound(self.bound))
-        object.__setattr__(self, "starts", number_of_starts(self.starts))
-        object.__setattr__(self, "seed", whole("seed", self.seed, 0))
         if self.solver not in ("sqp", "ipopt"):
             raise ValueError(f"solver is {self.solver!r}; give 'sqp' or 'ipopt'")
+        checked: dict[str, Any] = {
+            "residual_limit": not_negative("residual limit", self.residual_limit, "m"),
+            "starts": number_of_starts(self.starts),
+            "seed": whole("seed", self.seed, 0),
+        }
+        if self.bound is not None:
+            checked["bound"] = coefficient_bound(self.bound)
         if self.steps is not None:
-            steps = whole("steps", self.steps, 2, MOST_STEPS, "finer ones differ by rounding alone")
-            object.__setattr__(self, "steps", steps)
+            finer = "finer ones differ by rounding alone"
+            checked["steps"] = whole("steps", self.steps, 2, MOST_STEPS, finer)
         if self.guess is not None:
-            object.__setattr__(self, "guess", tuple(finite("guess", a) for a in self.guess))
+            checked["guess"] = tuple(finite("guess", a) for a in self.guess)
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
 
 def digits(number: float) -> str:
@@ -85,24 +82,18 @@ def settings_given(settings: Mapping[str, Setting]) -> dict[str, Setting]:
 
 
 def number_of_starts(value: object) -> int:
-    """A number of starts as an int; ValueError when it is out of range."""
+    """A number of starts as an int."""
     return whole("starts", value, 1, MOST_STARTS, "each is a solve of a twentieth of a second")
 
 
 def number_of_points(value: object) -> int:
-    """How many points a front is to have as an int; ValueError when it is out of range."""
+    """How many points a front is to have as an int."""
     return whole("points", value, 2, MOST_POINTS, "50 show a front, and each takes some solves")
 
 
 def coefficient_bound(value: object) -> float:
-    """A bound on the coefficients as a float; ValueError when it is out of range."""
-    bound = positive("bound on the coefficients", value)
-    if bound > MOST_BOUND:
-        raise ValueError(
-            f"bound on the coefficients is {bound:g}; give at most {MOST_BOUND:g} (a few tenths "
-            "are usual)"
-        )
-    return bound
+    """A bound on the coefficients as a float."""
+    return positive("bound on the coefficients", value, "", MOST_BOUND, "a few tenths are usual")
 
 
 @dataclass(frozen=True)
@@ -113,10 +104,8 @@ class Verification:
     ----------
     steps : int
         Fixed steps.
-    fixed_step_energy, fixed_step_residual : float
-        F2 [J] and F1 [m] by the fixed steps.
-    energy_difference, residual_difference : float
-        Those less the independent integrator's [J, m].
+    fixed_step_energy, fixed_step_residual, energy_difference, residual_difference : float
+        F2 [J] and F1 [m] by the fixed steps, and those less the independent integrator's.
     """
 
     steps: CountFromOne
@@ -128,10 +117,8 @@ class Verification:
     @property
     def energy_share(self) -> float:
         """How far the energies differ, as a share of the independent integrator's."""
-        energy = self.fixed_step_energy - self.energy_difference
-        if energy:
-            return abs(self.energy_difference / energy)
-        return math.inf if self.energy_difference else 0.0  # so far apart that it is lost beside it
+        energy = abs(self.fixed_step_energy - self.energy_difference)
+        return abs(self.energy_difference) / max(energy, sys.float_info.min)
 
     @property
     def agrees(self) -> bool:
@@ -156,11 +143,9 @@ class Provenance(Generic[S]):
         ``"sqp"``, ``"ipopt"``, ``"given coefficients"``, ``"evaluated"`` (the only motion of a
         profile) or the name of a metaheuristic.
     settings : dataclass or None
-        What was asked of the gradient's solver, the seed included; None where it was not used.
-    search : dict
-        Settings of the search that the coefficients come from; empty where there was none.
-    versions : dict of str to str
-        Versions of quietarm, casadi, numpy and Python.
+        What was asked of the gradient's solver; None where it was not used.
+    search, versions : dict
+        Settings of the search that the coefficients come from, if any; versions of the software.
     seconds : float
         How long it took; not compared.
     """

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import re
 from codecs import BOM_UTF8
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from enum import Enum
 from pathlib import Path
 from typing import Any, ClassVar, Self, TypeVar
@@ -23,6 +21,12 @@ from quietarm.ocp.record import Provenance
 from quietarm.ocp.simulation.objective import Motion
 
 T = TypeVar("T")
+_FAMILIES: Mapping[Any, tuple[str, Callable[[], Mapping[str, type[Any]]]]] = {
+    Plant: ("plant", known_plants),
+    JointProfile: ("profile", known_profiles),
+    Energy: ("energy", known_energies),
+}
+"""What is saved with its name, and the classes that a name may mean."""
 PLANT_FILE = "plant_file"
 """Entry of a plant: the file it was loaded from."""
 _SHOWN = 12
@@ -32,16 +36,8 @@ _SHOWN = 12
 def plain(value: Any) -> Any:
     """A value in JSON's types, SI units and radians."""
     match value:
-        case Plant():
-            file = file_of_plant(type(value))
-            origin = (
-                {} if file is None else {PLANT_FILE: {"path": file.path, "sha256": file.digest}}
-            )
-            return {"name": _name_of(value, known_plants()), **origin, **_entries(value)}
-        case JointProfile():
-            return {"name": _name_of(value, known_profiles()), **_entries(value)}
-        case Energy():
-            return {"name": _name_of(value, known_energies()), **_entries(value)}
+        case Plant() | JointProfile() | Energy():
+            return _named(value) | _entries(value)
         case Enum():
             return value.value
         case Mapping():
@@ -55,6 +51,25 @@ def plain(value: Any) -> Any:
     return value
 
 
+def _entries(value: Any) -> dict[str, Any]:
+    fields = dataclasses.fields(value)
+    return {entry.name: plain(getattr(value, entry.name)) for entry in fields if entry.init}
+
+
+def _named(value: Any) -> dict[str, Any]:
+    """The name by which a value's class is found again, and the file that a plant is of."""
+    (known,) = (known for family, (_, known) in _FAMILIES.items() if isinstance(value, family))
+    own = type(value)
+    if known().get(value.name) is not own:
+        raise ValueError(
+            f"{own.__name__} has no name of its own, and {value.name!r} would load as another "
+            "class; set `name` in the class"
+        )
+    file = file_of_plant(own) if isinstance(value, Plant) else None
+    origin = {PLANT_FILE: {"path": file.path, "sha256": file.digest}} if file else {}
+    return {"name": value.name} | origin
+
+
 def typed(document: Any, kind: type[T]) -> T:
     """The value of a document; ValueError where an entry is missing, unknown or not of its kind."""
     try:
@@ -66,6 +81,42 @@ def typed(document: Any, kind: type[T]) -> T:
         odd = ", ".join(sorted(document.keys() ^ wanted.keys()))
         raise ValueError(f"entries that are missing, or not known here: {odd}")
     return value
+
+
+def _known_here(kind: Any, entry: Any) -> Any:
+    """What msgspec does not know: plants, profiles and energies by their name, arrays."""
+    if kind not in _FAMILIES:
+        return np.array(msgspec.convert(entry, list[float]))
+    if not isinstance(entry, dict) or "name" not in entry:
+        raise ValueError(f"{kind.__name__} is {entry!r}; give a table with its name")
+    if entry["name"] == Mix.name:
+        return typed(entry, Mix)
+    (what, known), table = _FAMILIES[kind], dict(entry)
+    name, file = table.pop("name"), table.pop(PLANT_FILE, None)
+    if file is not None:
+        _check_file(name, file["path"], file["sha256"])
+    if name not in known():
+        by_file = ", or name it by --plant-file" if kind is Plant else ""
+        raise ValueError(
+            f"its {what} {name!r} is not known here (known: {', '.join(sorted(known()))}); import "
+            f"the file that defines it first{by_file}"
+        )
+    try:
+        return known()[name](**table)
+    except TypeError as error:  # an entry too many or too few
+        raise ValueError(f"its {what} {name!r}: {error}") from None
+
+
+def _check_file(name: str, path: str, sha256: str) -> None:
+    """Refuse a plant that is here of another file, or none: only what the user named is run."""
+    plant = known_plants().get(name)
+    mine = None if plant is None else file_of_plant(plant)
+    if mine is None or mine.digest != sha256:
+        here = "nowhere" if mine is None else f"of {mine.digest[:_SHOWN]!r} in {mine.path!r}"
+        raise ValueError(
+            f"its plant {name!r} is of file {path!r} with SHA-256 {sha256[:_SHOWN]!r}, and here "
+            f"{here}; give the file as it was, by --plant-file or load_plant_file, or compute anew"
+        )
 
 
 def content_of(path: str | Path, document: Any, name: str, version: int) -> dict[str, Any]:
@@ -84,90 +135,8 @@ def content_of(path: str | Path, document: Any, name: str, version: int) -> dict
     return content
 
 
-@contextmanager
-def reading(path: str | Path, name: str) -> Iterator[None]:
-    """Say of a wrong entry met in the block which file it is in."""
-    try:
-        yield
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
-        # what is wrong and what to do about it are parted by a semicolon
-        remedy = "" if ";" in str(error) else f"; write the {name} again"
-        raise FileFormatError(f"{path} is not a valid {name}: {error}{remedy}") from None
-
-
-def _entries(value: Any) -> dict[str, Any]:
-    fields = dataclasses.fields(value)
-    return {entry.name: plain(getattr(value, entry.name)) for entry in fields if entry.init}
-
-
-def _name_of(value: Any, known: Mapping[str, type[Any]]) -> str:
-    own = type(value)
-    if known.get(value.name) is not own:
-        raise ValueError(
-            f"{own.__name__} has no name of its own, and {value.name!r} would load as another "
-            "class; set `name` in the class"
-        )
-    return value.name
-
-
-def _known_here(kind: Any, entry: Any) -> Any:
-    """What msgspec does not know: plants, profiles and energies by their name, arrays."""
-    if kind in (Plant, JointProfile, Energy):
-        if not isinstance(entry, dict) or "name" not in entry:
-            raise ValueError(f"{kind.__name__} is {entry!r}; give a table with its name")
-        table = dict(entry)
-        if kind is Energy:
-            mixed = table["name"] == Mix.name
-            return typed(table, Mix) if mixed else _named("energy", table, known_energies())
-        return _plant(table) if kind is Plant else _named("profile", table, known_profiles())
-    return np.array(msgspec.convert(entry, list[float]))
-
-
-def _plant(entry: dict[str, Any]) -> Plant:
-    """The plant of an entry, whose file is checked: nothing is run but what the user named."""
-    file = entry.pop(PLANT_FILE, None)
-    if file is not None:
-        _check_file(entry["name"], file["path"], file["sha256"])
-    return _named("plant", entry, known_plants())
-
-
-def _check_file(name: str, path: str, sha256: str) -> None:
-    """ValueError when the plant of that name here is of another file, or the file has changed."""
-    plant = known_plants().get(name)
-    mine = None if plant is None else file_of_plant(plant)
-    if mine is None:
-        raise ValueError(
-            f"its plant {name!r} is not the one of a file here; give its file {path!r} again, by "
-            "--plant-file or load_plant_file"
-        )
-    if mine.digest != sha256:
-        raise ValueError(
-            f"its plant {name!r} was in {path!r} with SHA-256 {sha256[:_SHOWN]!r}, and "
-            f"{mine.path!r} has {mine.digest[:_SHOWN]!r}: the equations may have changed; give the "
-            "file as it was, or compute anew"
-        )
-
-
-def _named(what: str, entry: dict[str, Any], known: Mapping[str, type[Any]]) -> Any:
-    name = entry.pop("name")
-    if name not in known:
-        by_file = ", or name it by --plant-file" if what == "plant" else ""
-        raise ValueError(
-            f"its {what} {name!r} is not known here (known: {', '.join(sorted(known))}); import "
-            f"the file that defines it first{by_file}"
-        )
-    try:
-        return known[name](**entry)
-    except TypeError as error:  # an entry too many or too few, in Python's words
-        said = re.sub(r"^.*__init__\(\) ", "", str(error))
-        raise ValueError(f"its {what} {name!r}: {said}") from None
-
-
 class Saved:
-    """An answer that has a file format: JSON, versioned, never executed.
-
-    A subclass is a dataclass; its file has its attributes.
-    """
+    """An answer that has a file of its attributes: JSON, versioned, never executed."""
 
     kind: ClassVar[str]
     """What it is, in a word; its format is named quietarm-<kind>."""
@@ -175,35 +144,13 @@ class Saved:
     """Version of its format; files of any other are refused."""
 
     def save(self, path: str | Path) -> None:
-        """Write the answer as JSON, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Raises
-        ------
-        ValueError
-            When the file cannot be written.
-        """
-        head = {"format": f"quietarm-{self.kind}", "version": self.version}
-        document = {**head, **plain(self)}
+        """Write the answer as JSON, whole or not at all; ValueError where that cannot be."""
+        document = {"format": f"quietarm-{self.kind}", "version": self.version, **plain(self)}
         write_whole(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """Read an answer that `save` wrote.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Self
-            A value equal to the one saved.
+        """Read an answer that `save` wrote, to a value equal to it.
 
         Raises
         ------
@@ -218,8 +165,12 @@ class Saved:
                 f"write the {cls.kind} again, or save it so"
             ) from None
         content = content_of(path, document, cls.kind, cls.version)
-        with reading(path, cls.kind):
+        try:
             return typed(content, cls)
+        except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
+            # what is wrong and what to do about it are parted by a semicolon
+            remedy = "" if ";" in str(error) else f"; write the {cls.kind} again"
+            raise FileFormatError(f"{path} is not a valid {cls.kind}: {error}{remedy}") from None
 
 
 class MotionAnswer(Saved):

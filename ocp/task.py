@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.models.validation import check_along
+from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
-from quietarm.ocp.uncertainty import Scenario, Uncertainty, perturbed_plants
+from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturbed_plants
 
 _JERK = 3
 
@@ -89,17 +89,13 @@ class Quantity:
         return len(self.of(still, plant.tip_displacements([0.0] * plant.modes), 0.0))
 
 
-def _of_joint(name: str, unit: str, label: str, derivative: int) -> Quantity:
-    return Quantity(name, unit, label, lambda joint, tips, torque: [joint[derivative]], derivative)
-
-
 QUANTITIES: Mapping[str, Quantity] = {
     quantity.name: quantity
     for quantity in (
         Quantity("torque", "N m", "joint torque", lambda joint, tips, torque: [torque]),
-        _of_joint("speed", "rad/s", "joint speed", 1),
-        _of_joint("acceleration", "rad/s^2", "joint acceleration", 2),
-        _of_joint("jerk", "rad/s^3", "joint jerk", _JERK),
+        Quantity("speed", "rad/s", "joint speed", lambda joint, *_: [joint[1]], 1),
+        Quantity("acceleration", "rad/s^2", "joint acceleration", lambda joint, *_: [joint[2]], 2),
+        Quantity("jerk", "rad/s^3", "joint jerk", lambda joint, *_: [joint[3]], _JERK),
         Quantity("deflection", "m", "tip displacement", lambda joint, tips, torque: tips),
     )
 }
@@ -174,7 +170,7 @@ class PointToPoint:
     def __post_init__(self) -> None:
         self.plant.validate()
         if self.uncertainty is not None:
-            self.uncertainty.check(self.plant)
+            check_ranges(self.plant, self.ranges)
         limits = {name: unit for name, unit in LIMITS.items() if getattr(self, name) is not None}
         for name, unit in (_UNITS | limits).items():
             check = finite if unit == "rad" else positive
@@ -199,13 +195,15 @@ class PointToPoint:
             raise ValueError(
                 f"duration is {self.duration:g} s; give {LEAST_DURATION:g} to {MOST_DURATION:g} s"
             )
-        for state in (self.initial, self.final):
-            if state is not None and len(state.W) != self.plant.modes:
+        modes = self.plant.modes
+        for name, state in (("initial", self.initial), ("final", self.final)):
+            if state is not None and len(state.W) != modes:
                 raise ValueError(
-                    f"a modal state has {len(state.W)} modes and {self.plant.name} has "
-                    f"{self.plant.modes}; give W and W' of each"
+                    f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
+                    "give W and W' of each"
                 )
         for plant in self.perturbed_plants:
+            check_contract(plant)
             check_along(plant, self.start, self.target)
 
     @property

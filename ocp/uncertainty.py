@@ -14,7 +14,7 @@ import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes
 from quietarm.models.validation import check_contract, outputs_of
-from quietarm.ocp.checks import finite, has_no, positive
+from quietarm.ocp.checks import has_no, positive
 
 FREQUENCY, DAMPING = "frequency", "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
@@ -30,10 +30,9 @@ Scenario = tuple[float, ...]
 class ScaledModes(Plant):
     """A plant whose natural frequencies and damping ratios are multiples of the assumed ones.
 
-    At rest a plant's modes obey W'' = -D W' - K W. Here they obey W'' = -s d D W' - s^2 K W, as if
-    time ran s times as fast: every frequency is exactly s times the assumed one at the same damping
-    ratio, and d scales the damping. What the moving joint adds stays as it is. As the equations are
-    affine, -K W is W'' at rest without rates, and -D W' without amplitudes.
+    With the joint at rest its modes obey W'' = -s d D W' - s^2 K W in place of -D W' - K W, as if
+    time ran s times as fast; what the moving joint adds stays. As the equations are affine, -K W is
+    W'' at rest without rates, and -D W' without amplitudes.
     """
 
     plant: Plant
@@ -77,13 +76,13 @@ def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     plant : Plant
         The assumed plant.
     errors : mapping of str to Expression
-        Relative errors: ``"frequency"`` and ``"damping"`` of all modes alike, else of the parameter
-        of that name. Numbers, or symbols that stand for many of them.
+        Relative errors, numbers or symbols: ``"frequency"`` and ``"damping"`` of all modes alike,
+        else of the parameter of that name.
 
     Returns
     -------
     Plant
-        A plant with 1 + error times the assumed parameters, of symbols where they are symbols.
+        A plant with 1 + error times the assumed parameters.
 
     Raises
     ------
@@ -91,18 +90,14 @@ def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
         When there is no such parameter, or a number makes the frequency 0 or the damping negative.
     """
     refuse_unknown(plant, errors)
-    values = {
-        name: getattr(plant, name) * (1 + error)
-        for name, error in errors.items()
-        if name not in _OF_MODES
-    }
+    own = (name for name in errors if name not in _OF_MODES)
+    values = {name: getattr(plant, name) * (1 + errors[name]) for name in own}
     numbers = all(isinstance(value, Real) for value in values.values())
     changed = replace(plant, **values) if numbers else with_values(plant, values)
-    of_modes = {name: errors[name] for name in _OF_MODES if name in errors}
-    for name, error in of_modes.items():
-        if isinstance(error, Real):
-            _refuse_beyond(name, finite(f"an error of the {name}", error))
-    factors = {name: 1 + error for name, error in of_modes.items()}
+    factors = {name: 1 + errors[name] for name in _OF_MODES if name in errors}
+    for name, factor in factors.items():
+        if isinstance(factor, Real):
+            _refuse_beyond(name, float(factor) - 1)
     return ScaledModes(changed, **factors) if factors else changed
 
 
@@ -125,9 +120,10 @@ def refuse_unknown(plant: Plant, names: Iterable[str], also: Sequence[str] = _OF
 def _refuse_beyond(name: str, error: float) -> None:
     """Refuse an error that turns a sign, or leaves nothing of anything but the damping."""
     if error < -1 or (error == -1 and name != DAMPING):
+        becomes = "negative" if error < -1 else "0"
         least = "100 % or less" if name == DAMPING else "less than 100 %"
         raise ValueError(
-            f"an error of {100 * error:g} % is too large for the {name}; give {least}, as 0.1 for "
+            f"an error of {100 * error:g} % makes the {name} {becomes}; give {least}, as 0.1 for "
             "10 %"
         )
 
@@ -144,6 +140,7 @@ def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
 
 def check_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
     """Ranges as numbers; ValueError unless the plant keeps its contract at the ends of each."""
+    refuse_unknown(plant, ranges)
     sizes = _sizes(ranges)
     for name, size in sizes.items():
         _check_range(plant, name, size)
@@ -187,11 +184,10 @@ class Uncertainty:
     Parameters
     ----------
     ranges : mapping of str to float
-        Largest relative errors by name, as 0.1 for 10 %: of ``"frequency"`` and ``"damping"``,
-        which all modes have alike, and of any parameter of the plant.
+        Largest relative errors by name, as 0.1 for 10 %: of ``"frequency"`` and ``"damping"``, of
+        all modes alike, and of any parameter of the plant.
     samples : sequence of sequence of float, optional
-        Errors of the scenarios beside the nominal plant, in the order of the ranges; the corners of
-        the ranges by default.
+        Errors of the scenarios beside the nominal plant, in that order; all corners by default.
 
     Raises
     ------
@@ -220,12 +216,6 @@ class Uncertainty:
 
     def __hash__(self) -> int:
         return hash((tuple(self.ranges.items()), self.samples))
-
-    def check(self, plant: Plant) -> None:
-        """ValueError where a plant has no such parameter, or breaks its contract in a scenario."""
-        check_ranges(plant, self.ranges)
-        for perturbed in perturbed_plants(plant, tuple(self.ranges), self.samples):
-            check_contract(perturbed)
 
 
 @lru_cache(maxsize=64)

@@ -54,7 +54,7 @@ def one_of(*choices: str) -> Callable[[str, object], str]:
     def check(name: str, value: object) -> str:
         if value not in choices:
             hint = nearest(str(value), choices)
-            raise ValueError(f"{name} is {value!r}; {hint}give one of {', '.join(choices)}")
+            raise ValueError(f"{name} is {value!r}; give one of {', '.join(choices)}{hint}")
         return str(value)
 
     return check

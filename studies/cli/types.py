@@ -11,7 +11,8 @@ from typing import Any
 import click
 from quietarm.models import load_plant_file
 from quietarm.ocp.checks import unknown
-from quietarm.ocp.files import check_folder, check_writable
+from quietarm.ocp.files import check_writable
+from quietarm.studies.cli.folders import check_folder
 from quietarm.studies.cli.plants import parse_error, parse_plant, parse_setting
 from quietarm.studies.cli.quantities import (
     parse_coefficients,

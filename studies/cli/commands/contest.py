@@ -129,8 +129,8 @@ def contest(
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics.sharing.workers import Workers
     from quietarm.ocp import QuietarmError
-    from quietarm.ocp.files import check_inside
     from quietarm.studies.cli.ending import Together, finish
+    from quietarm.studies.cli.folders import check_inside
     from quietarm.studies.contest.archives import coco_files, ioh_file
     from quietarm.studies.contest.asked import Contest
     from quietarm.studies.contest.conditions import conditions

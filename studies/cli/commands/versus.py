@@ -7,7 +7,6 @@ from pathlib import Path
 
 import click
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.interrupts import hear_interrupts
 from quietarm.ocp.planning.robust import limit_of
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option, terms_option
@@ -49,12 +48,10 @@ def versus(
     profile = profile_of(POLYNOMIAL, task, terms)
     with working("planning and shaping", Console(stderr=True), quiet=quiet):
         found, complete = list[Rival](), False
-        with suppress(KeyboardInterrupt), hear_interrupts() as came:
+        with suppress(KeyboardInterrupt):
             for rival in rivals(task, profile, residual_limit):
-                if came:  # what was stopped is no answer
-                    break
                 found.append(rival)
-            complete = not came
+            complete = True
     if not found:
         raise KeyboardInterrupt
     robust = any(rival.name == "robust plan" and rival.motion for rival in found)
