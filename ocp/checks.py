@@ -6,9 +6,11 @@ import difflib
 import math
 import operator
 from collections.abc import Collection
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from msgspec import Meta
+
+T = TypeVar("T")
 
 
 def finite(name: str, value: Any, unit: str = "") -> float:
@@ -76,6 +78,15 @@ def nearest(name: str, known: Collection[str]) -> str:
     part = [other for other in known if len(name) >= _PART and name.lower() in other.lower()]
     near = part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=_ALIKE)
     return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def known(family: type[T]) -> dict[str, type[T]]:
+    """The subclasses that have a name of their own, by it, those of the user's own files too."""
+    found: dict[str, type[T]] = {}
+    for kind in family.__subclasses__():
+        name = vars(kind).get("name")
+        found |= ({name: kind} if isinstance(name, str) else {}) | known(kind)
+    return found
 
 
 def install(extra: str) -> str:

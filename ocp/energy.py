@@ -27,13 +27,6 @@ class Energy(ABC):
     absolute: float = 0.0
     """Weight of the absolute power, 0 or more; its sign changes are found."""
 
-    _known: ClassVar[dict[str, type[Energy]]] = {}
-
-    def __init_subclass__(cls) -> None:
-        super().__init_subclass__()
-        if "name" in cls.__dict__:
-            Energy._known[cls.name] = cls
-
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
         """Power [W] that is spent beside, in smooth operations that work element by element.
 
@@ -58,11 +51,6 @@ class Energy(ABC):
         return Mix(tuple((weight * own, part) for own, part in _parts(self)))
 
     __rmul__ = __mul__
-
-
-def known_energies() -> dict[str, type[Energy]]:
-    """The energies that can be found by name, those of the user's own files included."""
-    return dict(Energy._known)
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,11 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, redirect_stderr
-from functools import wraps
 from threading import RLock, get_ident
 from types import FrameType
-from typing import Any, ParamSpec, TextIO, TypeVar
+from typing import Any, TextIO
 
 _deferring = False
 _listeners: list[list[int]] = []
@@ -112,25 +111,21 @@ def _noting(at_once: bool) -> Iterator[list[int]]:
                 signal.signal(number, handler)
 
 
-P = ParamSpec("P")
-T = TypeVar("T")
-
 _TURN = RLock()
 
 
-def one_at_a_time(function: Callable[P, T]) -> Callable[P, T]:
-    """Let one thread at a time into all the functions that have this decorator.
+@contextmanager
+def _in_turn() -> Iterator[None]:
+    with _TURN:
+        yield
 
-    Two threads that build or solve with casadi at once end the process. A thread that such a
-    function started itself would wait for ever.
-    """
 
-    @wraps(function)
-    def in_turn(*args: P.args, **kwargs: P.kwargs) -> T:
-        with _TURN:
-            return function(*args, **kwargs)
+one_at_a_time = _in_turn()
+"""Lets one thread at a time into all the functions that have this decorator.
 
-    return in_turn
+Two threads that build or solve with casadi at once end the process. A thread that such a function
+started itself would wait for ever.
+"""
 
 
 def silent_errors() -> AbstractContextManager[Any]:

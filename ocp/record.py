@@ -155,7 +155,3 @@ class Provenance(Generic[S]):
     search: Mapping[str, Setting] = field(default_factory=dict, hash=False)
     versions: Mapping[str, str] = field(default_factory=versions, hash=False)
     seconds: NotNegative = field(default=0.0, compare=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "search", settings_given(self.search))
-        object.__setattr__(self, "versions", dict(self.versions))

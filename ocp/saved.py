@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 from codecs import BOM_UTF8
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from enum import Enum
 from pathlib import Path
 from typing import Any, ClassVar, Self, TypeVar
@@ -13,20 +13,17 @@ from typing import Any, ClassVar, Self, TypeVar
 import msgspec
 import numpy as np
 from quietarm.models import Plant, file_of_plant, known_plants
-from quietarm.ocp.energy import Energy, Mix, known_energies
+from quietarm.ocp.checks import known
+from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.errors import FileFormatError
 from quietarm.ocp.files import read_bytes, write_whole
-from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
+from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Provenance
 from quietarm.ocp.simulation.objective import Motion
 
 T = TypeVar("T")
-_FAMILIES: Mapping[Any, tuple[str, Callable[[], Mapping[str, type[Any]]]]] = {
-    Plant: ("plant", known_plants),
-    JointProfile: ("profile", known_profiles),
-    Energy: ("energy", known_energies),
-}
-"""What is saved with its name, and the classes that a name may mean."""
+_FAMILIES: Mapping[Any, str] = {Plant: "plant", JointProfile: "profile", Energy: "energy"}
+"""What is saved with its name, by which its class is found again."""
 PLANT_FILE = "plant_file"
 """Entry of a plant: the file it was loaded from."""
 _SHOWN = 12
@@ -56,11 +53,15 @@ def _entries(value: Any) -> dict[str, Any]:
     return {entry.name: plain(getattr(value, entry.name)) for entry in fields if entry.init}
 
 
+def _known_of(family: type[Any]) -> Mapping[str, type[Any]]:
+    return known_plants() if family is Plant else known(family)
+
+
 def _named(value: Any) -> dict[str, Any]:
     """The name by which a value's class is found again, and the file that a plant is of."""
-    (known,) = (known for family, (_, known) in _FAMILIES.items() if isinstance(value, family))
+    (family,) = (family for family in _FAMILIES if isinstance(value, family))
     own = type(value)
-    if known().get(value.name) is not own:
+    if _known_of(family).get(value.name) is not own:
         raise ValueError(
             f"{own.__name__} has no name of its own, and {value.name!r} would load as another "
             "class; set `name` in the class"
@@ -91,18 +92,18 @@ def _known_here(kind: Any, entry: Any) -> Any:
         raise ValueError(f"{kind.__name__} is {entry!r}; give a table with its name")
     if entry["name"] == Mix.name:
         return typed(entry, Mix)
-    (what, known), table = _FAMILIES[kind], dict(entry)
+    what, classes, table = _FAMILIES[kind], _known_of(kind), dict(entry)
     name, file = table.pop("name"), table.pop(PLANT_FILE, None)
     if file is not None:
         _check_file(name, file["path"], file["sha256"])
-    if name not in known():
+    if name not in classes:
         by_file = ", or name it by --plant-file" if kind is Plant else ""
         raise ValueError(
-            f"its {what} {name!r} is not known here (known: {', '.join(sorted(known()))}); import "
+            f"its {what} {name!r} is not known here (known: {', '.join(sorted(classes))}); import "
             f"the file that defines it first{by_file}"
         )
     try:
-        return known()[name](**table)
+        return classes[name](**table)
     except TypeError as error:  # an entry too many or too few
         raise ValueError(f"its {what} {name!r}: {error}") from None
 

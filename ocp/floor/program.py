@@ -61,9 +61,8 @@ def finer(free: FreeMotion) -> FreeMotion:
 def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy) -> ca.Function:
     """(column, length) -> state after, collocation equations, power, smooth energy, quantities.
 
-    A column is the state before the interval (derivatives of the joint, W, W'), the last derivative
-    of the joint, and W'' at the nodes. Derivatives of the joint count where the interval begins,
-    all else at the nodes.
+    A column is the state before the interval (joint, W, W'), the last derivative of the joint, and
+    W'' at the nodes. Quantities of the joint count where the interval begins, all else at nodes.
     """
     modes, orders = plant.modes, 2 + smooth
     states = orders + 2 * modes
@@ -107,8 +106,7 @@ class FloorProgram:
     """A task, to be solved on any grid.
 
     Unknowns are the largest value of each limited quantity, and of every interval its column (see
-    `_interval`) and the positive and negative part of the power at the nodes. All are scaled by
-    what the plain cycloid reaches, so that the solver sees numbers of order one.
+    `_interval`) and both parts of the power at the nodes, scaled by what the plain cycloid reaches.
     """
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
@@ -132,10 +130,7 @@ class FloorProgram:
         self._measures = np.array([np.abs(of).max() or 1.0 for of in (energy, *limited)])
 
     def _build(self, steps: int, warm: bool) -> tuple[ca.Function, Array]:
-        """IPOPT, from anywhere or from a coarser grid's solution, and upper bounds of constraints.
-
-        Parameters are the intervals' lengths, and the weights of the energy and of each quantity.
-        """
+        """IPOPT, of lengths and weights of what is least, and its constraints' upper bounds."""
         rows, states, parts = len(self._scale), self._states, self._parts
         scale = ca.repmat(ca.DM(self._scale), 1, steps)
         of_energy, *measures = self._measures.tolist()

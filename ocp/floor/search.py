@@ -14,6 +14,7 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.floor.answer import Floor, FloorSettings, Level
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.planning.best_of_starts import SAME
 from quietarm.ocp.planning.certify import refuse_exceeded, tighten
 from quietarm.ocp.planning.feasibility import keeps, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.plan_move import plan_move
@@ -31,8 +32,6 @@ _MOST_COLD = 600
 """After a failed warm solve a cold one is tried on grids of up to this many intervals."""
 _LEAST_LEVELS = 3
 """Two falls of the energy at least, to see whether they become smaller, and how fast."""
-_SAME = 1e-5
-"""Solutions whose energies differ by less than this share are refined once."""
 _ROUNDS, _KEPT = 4, 1e-6
 """Rounds of tightening, and the share by which a verified peak may pass its limit without one."""
 _by_energy = attrgetter("energy")
@@ -50,8 +49,7 @@ def energy_floor(
     """Find the least energy with which any joint motion does a move and arrives at rest.
 
     The acceleration of the joint is free on every interval of a grid, or its jerk for a smooth
-    motion. Without an acceleration limit the least energy is approached by motions whose speed
-    jumps: there the grid is finer, and `Floor.left` says how far off the limit is.
+    motion. Where the speed would best jump, the grid is finer.
 
     Parameters
     ----------
@@ -148,7 +146,7 @@ def _refine_each(program: FloorProgram, solved: list[FreeSolution]) -> list[Free
     """Every solution on its next grid, or as it was; of equal energies one is solved."""
     refined = list[tuple[FreeSolution, FreeSolution]]()
     for found in solved:
-        equal = (new for old, new in refined if abs(old.energy / found.energy - 1) <= _SAME)
+        equal = (new for old, new in refined if abs(old.energy / found.energy - 1) <= SAME)
         after = next(equal, None) or _on_finer_grid(program, found)
         refined.append((found, after if after.status.solved else found))
     return [after for _, after in refined]

@@ -39,13 +39,6 @@ class JointProfile(ABC):
     random_starts: ClassVar[int] = 1
     """The gradient's random starts for each that is asked for, several where minima are many."""
 
-    _known: ClassVar[dict[str, type[JointProfile]]] = {}
-
-    def __init_subclass__(cls) -> None:
-        super().__init_subclass__()
-        if isinstance(cls.__dict__.get("name"), str):
-            JointProfile._known[cls.name] = cls
-
     @property
     @abstractmethod
     def size(self) -> int:
@@ -178,11 +171,6 @@ class JointProfile(ABC):
                 f"give {self.size} numbers"
             )
         return tuple(finite(f"coefficient {i}", value) for i, value in enumerate(values, 1))
-
-
-def known_profiles() -> dict[str, type[JointProfile]]:
-    """The families that can be found by name, those of the user's own files included."""
-    return dict(JointProfile._known)
 
 
 @dataclass(frozen=True)

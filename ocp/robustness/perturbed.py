@@ -79,17 +79,14 @@ class Worst:
 
 
 def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Worst | None:
-    """The largest of `peaks_between`; None where the plant is not uncertain."""
+    """The worst case of a motion; None where the task is certain."""
     return peaks_between(task, profile, coefficients)[0] if task.ranges else None
 
 
 def peaks_between(
     task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, most: int = 1
-) -> tuple[Worst, Array]:
-    """The worst case, and of every peak, the largest first, the residual [m] and errors.
-
-    Looked for by fixed steps, valued by CVODES.
-    """
+) -> list[Worst]:
+    """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first."""
     largest = np.array(list(task.ranges.values()))
     count, along = len(largest), _ALONG[len(largest)]
 
@@ -110,8 +107,7 @@ def peaks_between(
     values = residuals(shares)
     tops = np.flatnonzero(_is_peak(values.reshape([along] * count)))
     tops = tops[np.argsort(-values[tops])][:most]
-    found = sorted((zoom(shares[i]) for i in tops), key=lambda one: -one.residual)
-    return found[0], np.array([[one.residual, *one.errors.values()] for one in found])
+    return sorted((zoom(shares[i]) for i in tops), key=lambda one: -one.residual)
 
 
 def _grid(along: ArrayLike, ranges: int) -> Array:

@@ -11,8 +11,8 @@ from operator import add
 from typing import Any, TypeVar
 
 from quietarm.ocp import ModalState
-from quietarm.ocp.checks import finite, unknown
-from quietarm.ocp.energy import Energy, Mix, known_energies
+from quietarm.ocp.checks import finite, known, unknown
+from quietarm.ocp.energy import Energy, Mix
 
 T = TypeVar("T")
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
@@ -179,16 +179,16 @@ def parse_energy(text: str) -> Energy:
 def _part_of_energy(text: str) -> Energy:
     weight, times, form = text.rpartition("*")
     name, colon, numbers = (part.strip() for part in form.partition(":"))
-    known: dict[str, Any] = dict(known_energies())
-    del known[Mix.name]
-    if name not in known:
-        raise ValueError(unknown("energy", name, known))
-    wanted = [entry.name for entry in fields(known[name])]
+    energies: dict[str, Any] = known(Energy)
+    del energies[Mix.name]
+    if name not in energies:
+        raise ValueError(unknown("energy", name, energies))
+    wanted = [entry.name for entry in fields(energies[name])]
     given = numbers.split(",") if colon else []
     if len(given) != len(wanted):
         form = f"{name}:{','.join(wanted)}" if wanted else name
         raise ValueError(f"{text!r} has {len(given)} numbers of {len(wanted)}; give {form}")
-    energy = known[name](*map(finite, wanted, given))
+    energy = energies[name](*map(finite, wanted, given))
     return finite("weight", weight) * energy if times else energy
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fixed_steps import rollout
 from numpy.polynomial import Polynomial
-from quietarm.ocp.energy import known_energies
+from quietarm.ocp.checks import known
 from quietarm.ocp.simulation.collocation import GAUSS_NODES
 from quietarm.ocp.simulation.objective import spent
 from quietarm.ocp.solvers.batch import Multipliers, batch
@@ -146,7 +146,7 @@ def test_an_energy_that_is_not_known_is_refused(tasks, solved, tmp_path):
 
 def test_energies_are_values():
     a, b = qa.AbsolutePower(), qa.CopperLoss(0.12)
-    assert known_energies()["recovering"] is Recovering
+    assert known(qa.Energy)["recovering"] is Recovering
     assert 2 * (a + 0.5 * b) == qa.Mix(((2.0, a), (1.0, b)))
     assert (2 * (a + 3 * b)).label == "2*absolute+6*copper:0.12"
     assert hash(a + b) == hash(a + b)
