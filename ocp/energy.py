@@ -18,8 +18,7 @@ def power_of(torque: Any, speed: Any) -> Any:
 class Energy(ABC):
     """F2 of a move [J]: the integral of `absolute` * abs(torque * speed) + `smooth`.
 
-    A new energy is one subclass: a frozen dataclass whose fields are numbers, with a name. Energies
-    are added, and multiplied by weights.
+    A new energy is a frozen dataclass of numbers, with a name. They add, and take weights.
     """
 
     name: ClassVar[str]
@@ -28,12 +27,9 @@ class Energy(ABC):
     """Weight of the absolute power, 0 or more; its sign changes are found."""
 
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
-        """Power [W] that is spent beside, in smooth operations that work element by element.
+        """Power [W] that is spent beside, by joint torque [N m] and speed [rad/s].
 
-        Parameters
-        ----------
-        torque, speed : Expression
-            Joint torque [N m] and speed [rad/s].
+        Of smooth operations that work element by element.
         """
         return 0.0
 
@@ -83,8 +79,7 @@ class CopperLoss(Energy):
     Parameters
     ----------
     motor_constant : float
-        Torque at the joint by the root of the loss, positive [N m/W^0.5]: the motor's, times the
-        gear ratio.
+        Torque at the joint by the root of the loss [N m/W^0.5]: the motor's, times the gear ratio.
     """
 
     name = "copper"

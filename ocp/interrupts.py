@@ -11,10 +11,12 @@ from threading import RLock, get_ident
 from types import FrameType
 from typing import Any, TextIO
 
-_deferring = False
-_listeners: list[list[int]] = []
 _signals = [signal.SIGINT]
 """What stops the work."""
+_blocks: list[tuple[list[int], bool]] = []
+"""The blocks under way: what came during each, and whether it holds that back."""
+_before: dict[int, Any] = {}
+"""The handlers outside of them."""
 
 
 def _in_main() -> bool:
@@ -41,74 +43,69 @@ def as_ctrl_c() -> Iterator[None]:
             signal.signal(one, signal.SIG_DFL)
 
 
+def _held() -> bool:
+    return any(holds for _, holds in _blocks)
+
+
+def _note(number: int, frame: FrameType | None) -> None:
+    for came, _ in _blocks:
+        came.append(number)
+    if not _held():
+        _before[number](number, frame)
+
+
+@contextmanager
+def _block(holds: bool) -> Iterator[list[int]]:
+    """List the interrupts during the block; where no block holds them they act as outside, too."""
+    came: list[int] = []
+    if not _in_main():
+        yield came
+        return
+    depth = len(_blocks)
+    try:
+        _blocks.append((came, holds))
+        for number in _signals if depth == 0 else ():
+            handler = signal.getsignal(number)
+            if callable(handler) and handler is not _note:
+                _before[number] = handler
+                signal.signal(number, _note)
+        yield came
+    finally:
+        del _blocks[depth:]
+        for number, handler in _before.items() if depth == 0 else ():
+            if signal.getsignal(number) is _note:  # a handler may have set another
+                signal.signal(number, handler)
+
+
 @contextmanager
 def keep_interrupts() -> Iterator[None]:
     """Raise KeyboardInterrupt after the block when Ctrl-C came during it.
 
     casadi loses it: a solve seems to have failed, or a value is missing and any error follows.
     """
-    with _noting(at_once=True) as came:
+    with _block(holds=False) as came:
         try:
             yield
         except Exception as error:
-            if came:
+            if came and not _held():
                 raise KeyboardInterrupt from error
             raise
-    if came:
+    if came and not _held():
         raise KeyboardInterrupt
 
 
-@contextmanager
-def note_interrupts() -> Iterator[list[int]]:
+def note_interrupts() -> AbstractContextManager[list[int]]:
     """List the interrupts during the block, which runs to its end; the caller decides what then."""
-    global _deferring
-    outer, _deferring = _deferring, True
-    try:
-        with _noting(at_once=False) as came:
-            yield came
-    finally:
-        _deferring = outer
+    return _block(holds=True)
 
 
-@contextmanager
-def hear_interrupts() -> Iterator[list[int]]:
+def hear_interrupts() -> AbstractContextManager[list[int]]:
     """List the interrupts during the block, those too that work inside keeps to itself.
 
     They act as without it. Work that keeps what it found returns an answer all the same; the list
     then tells that the user wants to stop.
     """
-    with _noting(at_once=True) as came:
-        _listeners.append(came)
-        try:
-            yield came
-        finally:
-            _listeners.pop()
-
-
-@contextmanager
-def _noting(at_once: bool) -> Iterator[list[int]]:
-    """Note the interrupts that come during the block; `at_once` they act as before, too."""
-    came: list[int] = []
-    mine = _signals if _in_main() and not (at_once and _deferring) else []
-    handlers: dict[int, Any] = {number: signal.getsignal(number) for number in mine}
-    before = {number: handler for number, handler in handlers.items() if callable(handler)}
-
-    def note(number: int, frame: FrameType | None) -> None:
-        came.append(number)
-        if at_once:
-            before[number](number, frame)
-        else:  # swallowed here: no outer block would notice it
-            for heard in _listeners:
-                heard.append(number)
-
-    for number in before:
-        signal.signal(number, note)
-    try:
-        yield came
-    finally:
-        for number, handler in before.items():
-            if signal.getsignal(number) is note:  # a handler may have set another
-                signal.signal(number, handler)
+    return _block(holds=False)
 
 
 _TURN = RLock()

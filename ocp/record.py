@@ -21,8 +21,7 @@ S = TypeVar("S")
 MOST_BOUND = 1e6
 """With larger coefficients the figures of a motion are rounding noise, and soon overflow."""
 AGREEMENT, REST = 1e-3, 1e-6
-"""Largest difference between the two integrators for a figure to be called verified: as a share of
-the energy or residual, or [m] for a residual."""
+"""Largest difference between integrators for a verified figure: a share, or [m] of a residual."""
 MOST_STARTS, MOST_POINTS = 10_000, 10_000
 
 
@@ -143,11 +142,9 @@ class Provenance(Generic[S]):
         ``"sqp"``, ``"ipopt"``, ``"given coefficients"``, ``"evaluated"`` (the only motion of a
         profile) or the name of a metaheuristic.
     settings : dataclass or None
-        What was asked of the gradient's solver; None where it was not used.
-    search, versions : dict
-        Settings of the search that the coefficients come from, if any; versions of the software.
-    seconds : float
-        How long it took; not compared.
+        What was asked of the gradient's solver, if it was used.
+    search, versions, seconds
+        Settings of the search that was used, versions of the software, and how long it took.
     """
 
     method: str

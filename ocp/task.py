@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,8 +16,6 @@ from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturbed_plants
 
-_JERK = 3
-
 
 @dataclass(frozen=True)
 class ModalState:
@@ -25,11 +23,8 @@ class ModalState:
 
     Parameters
     ----------
-    W : sequence of float
-        Amplitudes [m], one for each mode of the plant; a tip is displaced as the plant's
-        `tip_displacements` say, by phi W on the single link.
-    dW : sequence of float
-        Their rates W' [m/s], as many.
+    W, dW : sequence of float
+        Amplitudes [m] and their rates W' [m/s], one for each mode of the plant.
 
     Raises
     ------
@@ -42,9 +37,8 @@ class ModalState:
 
     def __post_init__(self) -> None:
         for name, unit in (("W", "m"), ("dW", "m/s")):
-            given = enumerate(getattr(self, name), start=1)
-            checked = tuple(finite(f"{name} of mode {i}", value, unit) for i, value in given)
-            object.__setattr__(self, name, checked)
+            numbers = tuple(finite(f"a mode's {name}", one, unit) for one in getattr(self, name))
+            object.__setattr__(self, name, numbers)
         if len(self.W) != len(self.dW):
             raise ValueError(
                 f"the state has {len(self.W)} amplitudes and {len(self.dW)} rates; give one of "
@@ -61,8 +55,7 @@ class Quantity:
     name, unit, label : str
         Its name, SI unit, and what it is in words.
     of : callable
-        (joint's motion, tip displacements, joint torque) -> its values, of any kind that casadi or
-        NumPy computes with.
+        (joint's motion, tip displacements, joint torque) -> its values.
     derivative : int or None
         Which time derivative of the joint's angle it is; None where it follows from the modes.
     """
@@ -95,16 +88,16 @@ QUANTITIES: Mapping[str, Quantity] = {
         Quantity("torque", "N m", "joint torque", lambda joint, tips, torque: [torque]),
         Quantity("speed", "rad/s", "joint speed", lambda joint, *_: [joint[1]], 1),
         Quantity("acceleration", "rad/s^2", "joint acceleration", lambda joint, *_: [joint[2]], 2),
-        Quantity("jerk", "rad/s^3", "joint jerk", lambda joint, *_: [joint[3]], _JERK),
+        Quantity("jerk", "rad/s^3", "joint jerk", lambda joint, *_: [joint[3]], 3),
         Quantity("deflection", "m", "tip displacement", lambda joint, tips, torque: tips),
     )
 }
 """Every quantity by its name; each has fields for its limit below and for its peak in `Motion`."""
 
 
-def ask_for_jerk(names: Iterable[str]) -> bool:
+def ask_for_jerk(names: Container[str]) -> bool:
     """Whether any of these quantities follows from the joint's jerk, which no plant needs."""
-    return any(name in QUANTITIES and QUANTITIES[name].derivative == _JERK for name in names)
+    return "jerk" in names
 
 
 LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANTITIES.values()}

@@ -19,7 +19,7 @@ from quietarm.ocp.checks import has_no, positive
 FREQUENCY, DAMPING = "frequency", "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
 _SAME = 1e-9
-"""Share by which what the equations give may differ between two ways to change a parameter."""
+"""How far, as a share, equations may differ between two ways to change a parameter."""
 MOST_RANGES = 4
 """Errors at once: each of them doubles the corners at which a residual is held."""
 Scenario = tuple[float, ...]
@@ -178,8 +178,7 @@ def _check_symbols(plant: Plant, name: str, value: float) -> None:
 class Uncertainty:
     """How far the parameters of a task's plant may be wrong, and at which errors that counts.
 
-    Residual and deflection are then the largest of all scenarios; torque and energy are those of
-    the nominal plant.
+    Residual and deflection are then the largest of all scenarios, all else of the nominal plant.
 
     Parameters
     ----------

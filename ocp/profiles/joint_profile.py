@@ -24,8 +24,7 @@ UNBOUNDED_SPREAD = 0.2
 class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
-    A new family is one subclass, a frozen dataclass with a `size` and `derivatives`, in operations
-    that work element by element. casadi derives the jerk.
+    A new family is a frozen dataclass with a `size` and `derivatives`; casadi derives the jerk.
     """
 
     name: ClassVar[str]
@@ -114,7 +113,7 @@ class JointProfile(ABC):
         Returns
         -------
         sequence of Expression
-            theta [rad], theta' [rad/s], theta'' [rad/s^2]; what follows them is not read.
+            theta [rad], theta' [rad/s], theta'' [rad/s^2], by operations element by element.
         """
 
     def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
@@ -196,10 +195,8 @@ class JointPath:
 
         Parameters
         ----------
-        time : array_like
-            Times [s], any shape.
-        order : int
-            Derivative order, 0 (angle) to 3 (jerk).
+        time, order : array_like, int
+            Times [s], any shape, and derivative order, 0 (angle) to 3 (jerk).
 
         Returns
         -------

@@ -20,15 +20,11 @@ _WEIGHT = 0.5
 _LIGHT = 0.1
 """Random starts have weights within this share of their bound: larger ones swing the joint."""
 SHARPEST = 200.0
-"""Largest inverse width or gain: CVODES has the energy of such a unit within 0.1 %; one that is ten
-times as sharp can lie between all integrators' steps."""
+"""Largest inverse width or gain: one ten times as sharp can lie between all integrators' steps."""
 
 
 class Range(NamedTuple):
-    """One kind of the units' parameters: first values, spread of starts, least and largest values.
-
-    Each is of shape (units,), or one number for all of them.
-    """
+    """Of one kind of the units' parameters; of shape (units,), or one number for all of them."""
 
     first: NDArray[np.float64] | float
     spread: NDArray[np.float64] | float

@@ -12,8 +12,7 @@ from quietarm.ocp.profiles.cycloid import Cycloid, Input
 from quietarm.ocp.profiles.joint_profile import Values
 
 DEGREE = 5
-"""Quintic, so that fixed steps keep their order where pieces meet; with a cubic they miss the
-residual of a move at rest by 1e-5 m."""
+"""With a cubic, fixed steps miss the residual of a move at rest by 1e-5 m where pieces meet."""
 
 
 @dataclass(frozen=True)
