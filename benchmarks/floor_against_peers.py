@@ -49,8 +49,7 @@ from parts.measuring import console, forget_compiled, load_plugins, machine, tim
 from quietarm.models import ArmOnFlexibleLink, JointMotion
 from quietarm.ocp import CycloidPolynomial, PointToPoint, energy_floor
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.floor.program import FloorProgram, first_grid
-from quietarm.ocp.floor.transcription import _COLD
+from quietarm.ocp.floor.program import COLD, FloorProgram, first_grid
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.collocation import NODES
 from rich.table import Table
@@ -121,7 +120,7 @@ def by_rockit(steps: int) -> Answer:
             N=steps, degree=NODES, scheme="legendre", grid=FunctionGrid(lambda _: grid)
         )
     )
-    ocp.solver("ipopt", {"expand": True, "print_time": False, "ipopt": dict(_COLD)})
+    ocp.solver("ipopt", {"expand": True, "print_time": False, "ipopt": dict(COLD)})
     with redirect_stdout(io.StringIO()):  # it prints the constraints that it scales
         solution = ocp.solve()
     times, values = solution.sample(acceleration, grid="control")
@@ -185,7 +184,7 @@ def by_yapss(steps: int) -> Answer:
     problem.mesh.phase[0].fraction = tuple(np.diff(grid).tolist())
     problem.spectral_method = "lgl"
     problem.derivatives.method, problem.derivatives.order = "auto", "second"
-    for name, value in _COLD.items():
+    for name, value in COLD.items():
         setattr(problem.ipopt_options, name, value)
     solution = problem.solve()
     info = solution.nlp_info

@@ -43,12 +43,12 @@ from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
 from .profiles.spline import CycloidSpline as CycloidSpline
 from .record import SolveSettings as SolveSettings
 from .record import Verification as Verification
+from .robustness.measures import Figures as Figures
 from .robustness.measures import Robustness as Robustness
 from .robustness.measures import Sweep as Sweep
 from .robustness.measures import evaluate_robustness as evaluate_robustness
-from .robustness.population import Figures as Figures
-from .robustness.sensitivity import Sensitivity as Sensitivity
-from .robustness.worst import Worst as Worst
+from .robustness.perturbed import Sensitivity as Sensitivity
+from .robustness.perturbed import Worst as Worst
 from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
 from .simulation.rollout import symbolic_rollout as symbolic_rollout

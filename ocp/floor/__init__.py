@@ -1,4 +1,4 @@
 """The least energy over all joint motions: the search over grids, its program, the answer.
 
-May import `plan` and the rooms below it, but not `front`.
+May import `planning` and the rooms below it, but not `front`.
 """

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import ClassVar
 
 from quietarm.ocp.candidate import Candidate
@@ -18,9 +19,8 @@ from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.task import PointToPoint
 
 _FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
-"""Ratios of successive falls of the energy. The first is that of an error proportional to the
-intervals' length, as where speed or torque jumps within one; ratios above the second are not taken
-for a converging series."""
+"""Ratios of successive falls of the energy: where the error is proportional to the intervals'
+length (1/4 to its square), and above which they are not taken for a converging series."""
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,7 @@ class Level:
 
 @dataclass(frozen=True)
 class FloorSettings:
-    """What was asked of the search beyond the task; see `energy_floor` for the meanings.
-
-    Raises
-    ------
-    ValueError
-        When a setting is out of range.
-    """
+    """What was asked of `energy_floor` beyond the task; ValueError where it is out of range."""
 
     smooth: bool
     starts: int
@@ -47,7 +41,6 @@ class FloorSettings:
     tolerance: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "smooth", bool(self.smooth))
         object.__setattr__(self, "starts", number_of_starts(self.starts))
         object.__setattr__(self, "seed", whole("seed", self.seed, 0))
         object.__setattr__(self, "tolerance", positive("tolerance", self.tolerance))
@@ -62,23 +55,15 @@ class Floor(MotionAnswer):
 
     Attributes
     ----------
-    task : PointToPoint
-        The move.
     free : FreeMotion
         How the joint moves.
     motion : Motion
         Residual, energy and diagnostics, by the independent integrator.
     levels : tuple of Level
-        The grids, coarse to fine, with their energies. The motion is that of the last, or where
-        the energy rose on the way, of a coarser one that needs less.
+        The grids, coarse to fine. The motion is that of the last, or where the energy rose on the
+        way, of a coarser one that needs less.
     starts : tuple of float
         Energy [J] at which each solved start ended, all on the second grid.
-    status : SolveStatus
-        How the last solve ended.
-    verification : Verification
-        Distance between the two integrators.
-    provenance : Provenance
-        Method, settings, versions, time.
     """
 
     kind: ClassVar[str] = "floor"
@@ -117,35 +102,25 @@ class Floor(MotionAnswer):
 
     @property
     def ratio(self) -> float | None:
-        """The last fall of the energy over the one before; None where two falls are not known.
-
-        1/2 means an error proportional to the intervals' length, 1/4 to its square.
-        """
-        if len(self.levels) < 3:
-            return None
-        before = self.levels[-3].energy - self.levels[-2].energy
-        return self.change / before if before > 0 < self.change else None
+        """The last fall of the energy over the one before; None where two falls are not known."""
+        falls = [one.energy - other.energy for one, other in pairwise(self.levels)][-2:]
+        return falls[1] / falls[0] if len(falls) == 2 and min(falls) > 0 else None
 
     @property
     def left(self) -> float:
-        """Estimate of how far the energy would still fall with ever finer grids [J].
+        """Estimate of how far the energy would still fall with ever finer grids [J], no bound.
 
-        It continues the last fall as a geometric series, and adds what the solver's own quadrature
-        misses. The ratio of the series is that of the last two falls, but at least 1/2, since
-        coarse grids gain more at first than later ones do. It is an estimate, not a bound, and
-        leaves out that a jolt takes up to 4e-5 of the move on every grid, which costs about 1e-4 of
-        the energy.
-
-        Where a coarser grid needs less than the last, the falls are no series: the energy went to
-        another minimum, and a better one may be missed. Then the estimate is the larger of the fall
-        down to the lowest energy and the rise since, and says no more than the order of magnitude.
+        The last fall continued as a geometric series, by the ratio of the last two falls but at
+        least 1/2, and what the solver's own quadrature misses. A jolt takes up to 4e-5 of the move
+        on every grid, which costs about 1e-4 of the energy and is left out. Where a coarser grid
+        needs less than the last, the energy went to another minimum: then it is the larger of the
+        fall down to the lowest energy and the rise since, an order of magnitude.
         """
         energies = [level.energy for level in self.levels]
         lowest = energies.index(min(energies))
         missed = max(-self.verification.energy_difference, 0.0)
         if energies[lowest] < energies[-1]:
-            fall = energies[lowest - 1] - energies[lowest] if lowest else 0.0
-            return max(fall, max(energies[lowest:]) - energies[lowest]) + missed
+            return max(energies[max(lowest - 1, 0) :]) - energies[lowest] + missed
         ratio = min(max(self.ratio or 0.0, _FIRST_ORDER), _MOST_RATIO)
         return self.change * ratio / (1 - ratio) + missed
 

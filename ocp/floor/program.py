@@ -1,35 +1,25 @@
-"""A task over free motions: its grids, fine where the speed jumps, and what it gives on them."""
+"""A task over free motions as a sparse nonlinear program on a grid, which IPOPT solves."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+from quietarm.models import Expression, Plant
+from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.floor.transcription import (
-    POWER,
-    SMOOTH,
-    of_joint,
-    parts_of,
-    solver_of,
-    values_at_nodes,
-)
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
-from quietarm.ocp.simulation.collocation import (
-    GAUSS_NODES,
-    NODES,
-    step,
-)
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, Step, step
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import march
-from quietarm.ocp.solvers.nlp import run_ipopt
+from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.transcription import ENERGY
 from quietarm.ocp.task import QUANTITIES, PointToPoint, ask_for_jerk
 
@@ -40,14 +30,22 @@ _JOLT, _PARTS_OF_A_JOLT = 0.02, 4
 """An interval that changes the speed by more than this share of its largest is cut in four."""
 _SHORTEST = 4e-5
 """Intervals shorter than this share of the move are left alone."""
+_SCALE_STEPS = 40
+_ROOM = 1e-2
+"""How far the two parts of the power start inside their bounds, as a share of its peak."""
+COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400, "mumps_pivot_order": 0}
+"""The systems are sparse and have no dense columns: minimum degree makes them a quarter faster."""
+_WARM = {**COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 150}
+"""From a coarser grid's solution; with a larger barrier the solver would move away from it."""
+
+Array = NDArray[np.float64]
 
 
-def first_grid(steps: int) -> NDArray[np.float64]:
+def first_grid(steps: int) -> Array:
     """Boundaries of about `steps` intervals, as fractions of the move, finer at the ends."""
-    even = max(2, steps - 2 * _AT_AN_END)
-    boundaries = Grid(even).boundaries
-    cuts = boundaries[1] * _SHRINK ** -np.arange(_AT_AN_END, 0.0, -1)
-    return np.concatenate([[0.0], cuts, boundaries[1:-1], 1 - cuts[::-1], [1.0]])
+    even = Grid(max(2, steps - 2 * _AT_AN_END)).boundaries
+    cuts = even[1] * _SHRINK ** -np.arange(_AT_AN_END, 0.0, -1)
+    return np.concatenate([[0.0], cuts, even[1:-1], 1 - cuts[::-1], [1.0]])
 
 
 def finer(free: FreeMotion) -> FreeMotion:
@@ -60,10 +58,37 @@ def finer(free: FreeMotion) -> FreeMotion:
     return free.split(parts)
 
 
-Array = NDArray[np.float64]
-_SCALE_STEPS = 40
-_ROOM = 1e-2
-"""How far the two parts of the power start inside their bounds, as a share of its peak."""
+def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy) -> ca.Function:
+    """(column, length) -> state after, collocation equations, power, smooth energy, quantities.
+
+    A column is the state before the interval (joint, W, W'), the last derivative of the joint, and
+    W'' at the nodes. Quantities of the joint count where the interval begins, all else at nodes.
+    """
+    modes, orders = plant.modes, 2 + smooth
+    states = orders + 2 * modes
+    x, h = ca.SX.sym("x", states + 1 + NODES * modes), ca.SX.sym("h")
+    begun = [*ca.vertsplit(x[:orders]), x[states]]
+    modal = ca.vertcat(x[orders:states], x[states + 1 :])
+    W, dW, *ddW = map(ca.vertsplit, ca.vertsplit(modal, modes))
+    one = Step(h, [], modes)
+    equations, power, rest = list[Expression](), list[Expression](), list[Expression]()
+    derivatives = {name: QUANTITIES[name].derivative for name in names}
+    limited = {name: [] if of is None else [begun[of]] for name, of in derivatives.items()}
+    for share, node in zip(GAUSS_NODES, one.nodes(W, dW, ddW), strict=True):
+        joint = joint_after(begun, share * h)
+        by_plant = plant.modal_accelerations(joint, node.W, node.dW)
+        equations += [own - other for own, other in zip(node.ddW, by_plant, strict=True)]
+        torque = plant.torque(joint, node.W, node.dW, node.ddW)
+        power.append(power_of(torque, joint.speed))
+        rest.append(energy.smooth(torque, joint.speed))
+        tips = plant.tip_displacements(node.W)
+        for name in names:
+            if derivatives[name] is None:
+                limited[name] += QUANTITIES[name].of(joint, tips, torque)
+    W_after, dW_after = one.end(W, dW, ddW)
+    after = [*joint_after(begun, h)[:orders], *W_after, *dW_after]
+    outputs = [ca.vertcat(*rows) for rows in (after, equations, power, rest, *limited.values())]
+    return ca.Function("interval", [x, h], outputs, {"cse": True})
 
 
 @dataclass(frozen=True)
@@ -77,15 +102,12 @@ class FreeSolution:
     iterations: int
 
 
-class _Simulated(NamedTuple):
-    """A motion's unknowns but for the power, and what they give at the nodes."""
-
-    unknowns: Array  # (rows, intervals): state before, last derivative of the joint, W'' at nodes
-    values: dict[str, Array]  # (values at the nodes, intervals) of what `values_at_nodes` names
-
-
 class FloorProgram:
-    """A task, to be solved on any grid."""
+    """A task, to be solved on any grid.
+
+    Unknowns are the largest value of each limited quantity, and of every interval its column (see
+    `_interval`) and both parts of the power at the nodes, scaled by what the plain cycloid reaches.
+    """
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, task: PointToPoint, smooth: bool) -> None:
@@ -94,18 +116,50 @@ class FloorProgram:
                 f"jerk limit is {task.jerk_limit:g} rad/s^3 and the acceleration of this floor "
                 "jumps; ask for a smooth floor (smooth=True, or --smooth)"
             )
-        self.task, self.smooth, self.plant = task, smooth, task.plant
+        self.task, self.smooth, self._names = task, smooth, tuple(task.limits)
         self._states = 2 + smooth + 2 * task.plant.modes
-        path = CycloidPolynomial(0).path([], *task.move)
-        unknowns, values = self._simulated(self.along(path, first_grid(_SCALE_STEPS)))
-        # what the plain cycloid reaches, so that the solver sees numbers of order one
-        self._scale = np.abs(unknowns).max(axis=1)
+        self._parts = NODES if task.energy.absolute else 0
+        self._interval = _interval(task.plant, smooth, self._names, task.energy)
+        self._solver = lru_cache(maxsize=4)(self._build)
+        cycloid = self.along(CycloidPolynomial(0).path([], *task.move), first_grid(_SCALE_STEPS))
+        columns, (power, rest, *limited) = self._simulate(cycloid)
+        self._scale = np.abs(columns).max(axis=1)
         self._scale[0] = abs(task.span)
         self._scale[self._scale == 0] = 1.0
-        values[POWER] = task.energy.absolute * np.abs(values[POWER]) + np.abs(values.pop(SMOOTH))
-        self._peaks = {name: float(np.abs(of).max()) or 1.0 for name, of in values.items()}
-        for name, row in of_joint(task.limits, smooth, self._states).items():
-            self._peaks[name] = float(self._scale[row])
+        energy = task.energy.absolute * np.abs(power) + np.abs(rest)
+        self._measures = np.array([np.abs(of).max() or 1.0 for of in (energy, *limited)])
+
+    def _build(self, steps: int, warm: bool) -> tuple[ca.Function, Array]:
+        """IPOPT, of lengths and weights of what is least, and its constraints' upper bounds."""
+        rows, states, parts = len(self._scale), self._states, self._parts
+        scale = ca.repmat(ca.DM(self._scale), 1, steps)
+        of_energy, *measures = self._measures.tolist()
+        lengths, weights = ca.MX.sym("lengths", steps), ca.MX.sym("weights", 1 + len(measures))
+        peaks, x = ca.MX.sym("peaks", len(measures)), ca.MX.sym("x", rows + 2 * parts, steps)
+        columns, forward, backward = ca.vertsplit(x, [0, rows, rows + parts, rows + 2 * parts])
+        after, equations, power, rest, *values = self._interval.map(steps)(
+            columns * scale, lengths.T
+        )
+        arrived = ca.DM(self._resting(self.task.target, self.task.final_state))
+        spent = rest / of_energy
+        equal = [
+            after / scale[:states, :] - ca.horzcat(columns[:states, 1:], arrived),
+            equations / scale[states + 1 :, :],
+        ]
+        if parts:
+            spent += self.task.energy.absolute * (forward + backward)
+            equal.append(forward - backward - power / of_energy)
+        scaled = zip(ca.vertsplit(peaks), values, measures, strict=True)
+        positive = [peak + sign * value / of for peak, value, of in scaled for sign in (-1, 1)]
+        mean = ca.dot(lengths, (ca.DM(GAUSS_WEIGHTS).T @ spent).T) / ca.sum1(lengths)
+        problem = {
+            "x": ca.vertcat(peaks, ca.vec(x)),
+            "p": ca.vertcat(lengths, weights),
+            "f": ca.dot(weights, ca.vertcat(mean, peaks)),
+            "g": ca.vertcat(*map(ca.vec, [*equal, *positive])),
+        }
+        counts = [sum(rows.numel() for rows in kind) for kind in (equal, positive)]
+        return compile_nlp(problem, _WARM if warm else COLD), np.repeat([0.0, np.inf], counts)
 
     def along(self, path: JointPath, fractions: Array) -> FreeMotion:
         """A motion of this kind on a grid whose speed at the grid is that of a path."""
@@ -126,77 +180,61 @@ class FloorProgram:
         warm: bool = False,
     ) -> FreeSolution:
         """Run the solver from one motion, on its grid."""
-        names, lengths, scale = tuple(self.task.limits), free.lengths, self._scale
-        kind = self.plant, self.smooth, free.steps, names, self.task.energy
-        solver = solver_of(*kind, warm)
-        at = self._simulated(free)
-        power = at.values[POWER] / self._peaks[POWER]
-        parts = np.maximum(np.vstack([power, -power]), 0.0) + _ROOM
-        parts = parts[: parts_of(self.task.energy)]
-        peaks = [np.abs(self._of(name, at)).max() / self._peaks[name] for name in names]
-        start = _flat(peaks, np.vstack([at.unknowns / scale[:, None], parts]))
-        upper = np.full((len(scale) + len(parts), free.steps), np.inf)
-        lower = -upper
-        lower[len(scale) :] = 0.0
-        begun = self._state(self.task.start, self.task.initial_state)
-        lower[: self._states, 0] = upper[: self._states, 0] = begun
-        most = [limits.get(name, np.inf) / self._peaks[name] for name in names]
-        weights = [float(name == minimise) for name in (ENERGY, *names)]
-        measures = [self._peaks[name] for name in (POWER, *names)]
-        arrived = self._state(self.task.target, self.task.final_state)
-        count = (self._states + NODES * self.plant.modes + len(parts) // 2) * free.steps
-        of_constraints = np.zeros(solver.size1_in("lbg")), np.full(solver.size1_in("lbg"), np.inf)
-        of_constraints[1][:count] = 0.0
-        parameters = np.concatenate([lengths, scale, measures, arrived, weights])
-        bounds = _flat(np.zeros(len(names)), lower), _flat(most, upper)
-        stop = run_ipopt(solver, start, bounds, of_constraints, parameters)
-        found = stop.unknowns[len(names) :].reshape(free.steps, -1).T
-        rows = found[: len(scale)] * scale[:, None]
-        last = rows[self._states]
-        parameters[-len(weights) :] = np.eye(len(weights))[0]
-        mean = float(solver.get_function("nlp_f")(stop.unknowns, parameters))
-        reached = zip(names, stop.unknowns, strict=False)
+        names, units = self._names, np.eye(1 + len(self._names))
+        solver, upper = self._solver(free.steps, warm)
+        stop = run_ipopt(
+            solver,
+            self._guess(free),
+            self._bounds(limits, free.steps),
+            (np.zeros(len(upper)), upper),
+            np.append(free.lengths, units[[ENERGY, *names].index(minimise)]),
+        )
+        mean = solver.get_function("nlp_f")(stop.unknowns, np.append(free.lengths, units[0]))
+        peaks, found = np.split(stop.unknowns, [len(names)])
+        columns = found.reshape(free.steps, -1).T[: len(self._scale)] * self._scale[:, None]
+        last = columns[self._states]
+        acceleration, jerk = (columns[2], last) if self.smooth else (last, np.zeros(free.steps))
         return FreeSolution(
-            free=FreeMotion(
-                free.times,
-                rows[2] if self.smooth else last,
-                last if self.smooth else np.zeros(free.steps),
-            ),
-            energy=mean * self.task.duration * self._peaks[POWER],
-            peaks={name: float(peak * self._peaks[name]) for name, peak in reached},
+            free=FreeMotion(free.times, acceleration, jerk),
+            energy=float(mean * self.task.duration * self._measures[0]),
+            peaks=dict(zip(names, (peaks * self._measures[1:]).tolist(), strict=True)),
             status=SolveStatus.from_ipopt(stop.return_status),
             iterations=stop.iterations,
         )
 
-    def _state(self, angle: float, modes: tuple[float, ...]) -> Array:
-        """The state, scaled, with the joint at rest."""
-        resting = [0.0] * (self._states - len(modes) - 1)
-        return np.array([angle, *resting, *modes]) / self._scale[: self._states]
+    def _guess(self, free: FreeMotion) -> Array:
+        columns, (power, _, *limited) = self._simulate(free)
+        peaks = [np.abs(of).max() for of in limited] / self._measures[1:]
+        power = np.concatenate([power, -power])[: 2 * self._parts] / self._measures[0]
+        return _flat(
+            peaks, np.vstack([columns / self._scale[:, None], np.maximum(power, 0.0) + _ROOM])
+        )
 
-    def _of(self, name: str, at: _Simulated) -> Array:
-        row = of_joint([name], self.smooth, self._states).get(name)
-        return at.values[name] if row is None else at.unknowns[row]
+    def _bounds(self, limits: Mapping[str, float], steps: int) -> tuple[Array, Array]:
+        upper = np.full((len(self._scale) + 2 * self._parts, steps), np.inf)
+        lower = -upper
+        lower[len(self._scale) :] = 0.0
+        begun = self._resting(self.task.start, self.task.initial_state)
+        lower[: self._states, 0] = upper[: self._states, 0] = begun
+        most = [limits.get(name, np.inf) for name in self._names] / self._measures[1:]
+        return _flat(np.zeros(len(most)), lower), _flat(most, upper)
 
-    def _simulated(self, free: FreeMotion) -> _Simulated:
-        """The modes along a motion, and what it takes."""
-        before = [*free.boundaries(self.task.start)[:, :-1], free.acceleration]
-        joint = [ca.DM(row).T for row in (*before, *([free.jerk] if self.smooth else []))]
+    def _resting(self, angle: float, modes: tuple[float, ...]) -> Array:
+        """The state with the joint at rest, scaled."""
+        return np.array([angle, *[0.0] * (1 + self.smooth), *modes]) / self._scale[: self._states]
+
+    def _simulate(self, free: FreeMotion) -> tuple[Array, list[Array]]:
+        """The columns of a motion, and the values of `_interval` from the power on."""
         h = ca.DM(free.lengths).T
-        joints = [joint_after(joint, share * h) for share in GAUSS_NODES]
-        one = step(self.plant, joints, h)
+        given = [*free.boundaries(self.task.start)[:, :-1], free.acceleration, free.jerk]
+        begun = [ca.DM(row).T for row in given[: 3 + self.smooth]]
+        one = step(self.task.plant, [joint_after(begun, share * h) for share in GAUSS_NODES], h)
         W, dW, _ = march(*one.transition(), h.shape, self.task.initial_state)
-        ddW = one.accelerations(W, dW)
-        nodes, names = one.nodes(W, dW, ddW), tuple(QUANTITIES)
-        values = values_at_nodes(self.plant, joints, nodes, names, self.task.energy)
-        rows = [*joint[:-1], *W, *dW, joint[-1], *(x for at_node in ddW for x in at_node)]
-        numbers = {name: _rows(of, free.steps) for name, of in values.items() if of}
-        return _Simulated(_rows(rows, free.steps), numbers)
+        ddW = [ca.DM.zeros(h.shape) + entry for node in one.accelerations(W, dW) for entry in node]
+        columns = ca.vertcat(*begun[:-1], *W, *dW, begun[-1], *ddW)
+        return columns.full(), [values.full() for values in self._interval(columns, h)[2:]]
 
 
-def _rows(entries: Sequence[Any], steps: int) -> Array:
-    return np.array([np.broadcast_to(ca.DM(x).full().ravel(), steps) for x in entries])
-
-
-def _flat(peaks: Sequence[float] | Array, columns: Array) -> Array:
+def _flat(peaks: ArrayLike, columns: Array) -> Array:
     """Unknowns as the solver takes them: the peaks, then interval after interval."""
-    return np.concatenate([peaks, columns.T.ravel()])
+    return np.append(peaks, columns.T)

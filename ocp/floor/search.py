@@ -8,19 +8,21 @@ from contextlib import suppress
 from operator import attrgetter
 
 import numpy as np
+from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.floor.answer import Floor, FloorSettings, Level
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.planning.best_of_starts import SAME
 from quietarm.ocp.planning.certify import refuse_exceeded, tighten
 from quietarm.ocp.planning.feasibility import keeps, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.record import Provenance, Verification
-from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.task import PointToPoint
 
 FIRST_INTERVALS = 80
@@ -30,11 +32,9 @@ _MOST_COLD = 600
 """After a failed warm solve a cold one is tried on grids of up to this many intervals."""
 _LEAST_LEVELS = 3
 """Two falls of the energy at least, to see whether they become smaller, and how fast."""
-_SAME = 1e-5
-"""Solutions whose energies differ by less than this share are refined once."""
-_ENERGY = attrgetter("energy")
 _ROUNDS, _KEPT = 4, 1e-6
 """Rounds of tightening, and the share by which a verified peak may pass its limit without one."""
+_by_energy = attrgetter("energy")
 
 
 @one_at_a_time
@@ -48,32 +48,19 @@ def energy_floor(
 ) -> Floor:
     """Find the least energy with which any joint motion does a move and arrives at rest.
 
-    The acceleration of the joint is free on every interval of a grid (piecewise constant), or its
-    jerk for a smooth motion (acceleration continuous, and zero at both ends). The joint is at rest
-    at both ends, and the modes are as the task says. The grid is refined until the energy changes
-    by less than the tolerance.
-
-    Where the solver fails on a finer grid, the refinement ends there and the floor says so. Where
-    the energy rises on a finer grid, having gone to another minimum, the motion of the grid whose
-    energy is least by the independent integrator is returned.
-
-    Without an acceleration limit the least energy is approached by motions whose speed jumps: an
-    impulse at either end, and on the single-link manipulator others on the way. The grid is finer
-    where it finds them; the estimate of what is left says how far off the limit is. A smooth motion
-    approaches the same limit; on as many intervals its energy may be slightly higher or lower.
+    The acceleration of the joint is free on every interval of a grid, or its jerk for a smooth
+    motion. Where the speed would best jump, the grid is finer.
 
     Parameters
     ----------
     task : PointToPoint
         The move and its limits.
     smooth : bool
-        Whether the acceleration is continuous.
-    starts : int
-        How many starts: the plain cycloid, the plan of six terms, then random motions.
-    seed : int
-        Seed of the random starts.
+        Whether the acceleration is continuous, and zero at both ends.
+    starts, seed : int
+        How many starts: the plain cycloid, the plan of six terms, then random motions of the seed.
     tolerance : float
-        Relative change of the energy at which the refinement stops.
+        Relative change of the energy at which the grid is refined no more.
 
     Returns
     -------
@@ -89,81 +76,65 @@ def energy_floor(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    settings = FloorSettings(smooth, starts, seed, tolerance)
+    settings = FloorSettings(bool(smooth), starts, seed, tolerance)
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)
-    fractions = first_grid(_first_steps(task))
-    tried = [program.solve(program.along(path, fractions), task.limits)
-             for path in _paths(task, settings)]  # fmt: skip
-    solved = _solved(program, tried)
-    improved = _refined_once(program, solved)
-    grids = [min(solved, key=_ENERGY), min(improved, key=_ENERGY)]
-    _refine(program, grids, settings.tolerance)
-    best, simulation = _least_verified(program, grids)
+    solved = _solve_from_starts(program, settings)
+    improved = _refine_each(program, solved)
+    levels = [min(solved, key=_by_energy), min(improved, key=_by_energy)]
+    _refine(program, levels, settings.tolerance)
+    best, motion = _certify_least(program, levels)
+    method = f"ipopt, free {'jerk' if smooth else 'acceleration'}"
     return Floor(
         task=task,
         free=best.free,
-        motion=simulation.motion,
-        levels=tuple(Level(found.free.steps, found.energy) for found in grids),
+        motion=motion,
+        levels=tuple(Level(found.free.steps, found.energy) for found in levels),
         starts=tuple(found.energy for found in improved),
         status=best.status,
-        verification=Verification.between(best.free.steps, best.energy, 0.0, simulation.motion),
-        provenance=Provenance(
-            f"ipopt, free {'jerk' if smooth else 'acceleration'}",
-            settings,
-            seconds=time.perf_counter() - began,
-        ),
+        verification=Verification.between(best.free.steps, best.energy, 0.0, motion),
+        provenance=Provenance(method, settings, seconds=time.perf_counter() - began),
     )
 
 
-def _first_steps(task: PointToPoint) -> int:
-    after_arrival(task)  # a window that is too long is refused before the solves, not after
+def _first_fractions(task: PointToPoint) -> NDArray[np.float64]:
     steps = default_steps(task, least=FIRST_INTERVALS)
     if steps > MOST_FIRST_INTERVALS:
         raise ValueError(
             f"duration {task.duration:g} s takes {steps} intervals of the plant's fastest mode; "
             f"a floor begins with up to {MOST_FIRST_INTERVALS}: give a shorter duration"
         )
-    return steps
-
-
-def _refine(program: FloorProgram, grids: list[FreeSolution], tolerance: float) -> None:
-    """Append finer grids until the energy settles, a solve fails or the grid is the finest."""
-    while not _settled(grids, tolerance) and 2 * grids[-1].free.steps <= MOST_INTERVALS:
-        following = _refined(program, grids[-1])
-        if not following.status.solved:
-            return
-        grids.append(following)
+    return first_grid(steps)
 
 
 def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
     """Motions to start from: plain cycloid, the plan of six terms, random ones."""
-    random = np.random.default_rng(settings.seed)
-    profile = CycloidPolynomial()
-    for i in range(settings.starts):
-        coefficients = random.uniform(*profile.start_box(None))
-        if i == 0:
-            coefficients = profile.plain
-        elif i == 1:
-            with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
-                plan = plan_move(task.certain, profile, starts=1)
-                coefficients = np.array(plan.coefficients)
-        yield profile.path(coefficients, *task.move)
+    random, profile = np.random.default_rng(settings.seed), CycloidPolynomial()
+    drawn = [random.uniform(*profile.start_box(None)) for _ in range(settings.starts)]
+    drawn[0] = profile.plain
+    if settings.starts > 1:
+        with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
+            drawn[1] = np.array(plan_move(task.certain, profile, starts=1).coefficients)
+    return (profile.path(coefficients, *task.move) for coefficients in drawn)
 
 
-def _solved(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSolution]:
-    """The starts that were solved; InfeasibleTaskError or SolverFailedError where none was."""
-    limits, least = program.task.limits, dict[str, FreeSolution]()
+def _solve_from_starts(program: FloorProgram, settings: FloorSettings) -> list[FreeSolution]:
+    """The solutions from all starts; where there are none, from motions of least peaks."""
+    task, limits = program.task, program.task.limits
+    fractions = _first_fractions(task)
+    guesses = [program.along(path, fractions) for path in _paths(task, settings)]
+    tried = [program.solve(free, limits) for free in guesses]
+    least = dict[str, FreeSolution]()
     if not any(found.status.solved for found in tried):
         least = least_peaks(
             limits,
             lambda others, name: [program.solve(one.free, others, name) for one in tried[:2]],
         )
-        within = [one for name, one in least.items() if keeps(one.peaks[name], name, limits)]
-        tried = [*tried, *(program.solve(one.free, limits) for one in within)]
+        within = [one.free for name, one in least.items() if keeps(one.peaks[name], name, limits)]
+        tried += [program.solve(free, limits) for free in within]
     solved = [found for found in tried if found.status.solved]
     if not solved:
-        peaks = true_peaks(least, lambda found: _judge(program, found))
+        peaks = true_peaks(least, lambda found: Candidate.of_free_motion(task.certain, found.free))
         raise unmet(
             "motion at all", limits, tried, peaks, "a longer duration",
             otherwise="try another seed, more starts or a longer duration.",
@@ -171,12 +142,29 @@ def _solved(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSoluti
     return solved
 
 
-def _settled(grids: list[FreeSolution], tolerance: float) -> bool:
-    before, after = grids[-2].energy, grids[-1].energy
-    return len(grids) >= _LEAST_LEVELS and abs(before - after) <= tolerance * after
+def _refine_each(program: FloorProgram, solved: list[FreeSolution]) -> list[FreeSolution]:
+    """Every solution on its next grid, or as it was; of equal energies one is solved."""
+    refined = list[tuple[FreeSolution, FreeSolution]]()
+    for found in solved:
+        equal = (new for old, new in refined if abs(old.energy / found.energy - 1) <= SAME)
+        after = next(equal, None) or _on_finer_grid(program, found)
+        refined.append((found, after if after.status.solved else found))
+    return [after for _, after in refined]
 
 
-def _refined(program: FloorProgram, found: FreeSolution) -> FreeSolution:
+def _refine(program: FloorProgram, levels: list[FreeSolution], tolerance: float) -> None:
+    """Append finer grids until the energy settles, a solve fails or the grid is the finest."""
+    while 2 * levels[-1].free.steps <= MOST_INTERVALS:
+        fall = levels[-2].energy - levels[-1].energy
+        if len(levels) >= _LEAST_LEVELS and abs(fall) <= tolerance * levels[-1].energy:
+            return
+        following = _on_finer_grid(program, levels[-1])
+        if not following.status.solved:
+            return
+        levels.append(following)
+
+
+def _on_finer_grid(program: FloorProgram, found: FreeSolution) -> FreeSolution:
     """The solution on the next grid, warm, or cold where that fails and the grid is coarse."""
     free, limits = finer(found.free), program.task.limits
     warm = program.solve(free, limits, warm=True)
@@ -185,50 +173,30 @@ def _refined(program: FloorProgram, found: FreeSolution) -> FreeSolution:
     return program.solve(free, limits)
 
 
-def _refined_once(program: FloorProgram, solved: list[FreeSolution]) -> list[FreeSolution]:
-    """Every solution on its next grid; solutions of equal energy are refined once."""
-    refined: dict[float, FreeSolution] = {}
-    for found in solved:
-        if not any(abs(found.energy - energy) <= _SAME * energy for energy in refined):
-            refined[found.energy] = _refined(program, found)
-    results = [
-        refined[min(refined, key=lambda energy, found=found: abs(energy - found.energy))]
-        for found in solved
-    ]
-    return [
-        after if after.status.solved else before
-        for before, after in zip(solved, results, strict=True)
-    ]
-
-
-def _least_verified(
-    program: FloorProgram, grids: list[FreeSolution]
-) -> tuple[FreeSolution, Candidate]:
+def _certify_least(
+    program: FloorProgram, levels: list[FreeSolution]
+) -> tuple[FreeSolution, Motion]:
     """The last grid's motion, or that of a coarser grid where it is verified to need less."""
-    least = _within_limits(program, grids[-1])
-    for found in grids[:-1]:
-        if found.energy < grids[-1].energy:
+    least = _certify(program, levels[-1])
+    for found in levels[:-1]:
+        if found.energy < levels[-1].energy:
             with suppress(SolverFailedError):  # a coarse grid may not keep the limits in between
-                least = min(least, _within_limits(program, found), key=lambda one: one[1].energy)
+                least = min(least, _certify(program, found), key=lambda one: one[1].energy)
     return least
 
 
-def _within_limits(program: FloorProgram, best: FreeSolution) -> tuple[FreeSolution, Candidate]:
-    """Verify; tighten limits that are passed between the solver's nodes."""
-    limits = program.task.limits
-    used, simulated = dict(limits), _judge(program, best)
+def _certify(program: FloorProgram, found: FreeSolution) -> tuple[FreeSolution, Motion]:
+    """Compare with CVODES; tighten limits that are exceeded between the solver's nodes."""
+    task, limits = program.task.certain, program.task.limits
+    motion, tightened = Candidate.of_free_motion(task, found.free), dict(limits)
     for _ in range(_ROUNDS):
-        if not simulated.exceeded(limits, _KEPT):
+        if not motion.exceeded(limits, _KEPT):
             break
-        used = tighten(used, simulated, limits)
-        again = program.solve(best.free, used, warm=True)
+        tightened = tighten(tightened, motion, limits)
+        again = program.solve(found.free, tightened, warm=True)
         if not again.status.solved:
             break
-        best, simulated = again, _judge(program, again)
+        found, motion = again, Candidate.of_free_motion(task, again.free)
     remedy = "the grid is too coarse for this motion; give a smaller tolerance"
-    refuse_exceeded(simulated, limits, remedy)
-    return best, simulated
-
-
-def _judge(program: FloorProgram, found: FreeSolution) -> Candidate:
-    return Candidate.of_free_motion(program.task.certain, found.free)
+    refuse_exceeded(motion, limits, remedy)
+    return found, motion.motion

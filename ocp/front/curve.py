@@ -13,23 +13,14 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.planning.best_of_starts import start_coefficients
-from quietarm.ocp.planning.certify import (
-    CHECK_EVERY,
-    FINER_AGREEMENT,
-    OF_A_PLAN,
-    Certified,
-    Tolerances,
-    certify,
-    finer_values,
-    judge,
-)
+from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
+from quietarm.ocp.planning.certify_all import certify_all
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, SolveSettings
-from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Scalarization
 from quietarm.ocp.solvers.solution import Solution
-from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, Transcription
+from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
@@ -119,7 +110,7 @@ class Curve:
             return Certificate(FailedPoint(asked, str(error)), solution.iterations)
         return self.point_of(found)
 
-    def point_of(self, found: Certified) -> Certificate:
+    def point_of(self, found: Certified[Any]) -> Certificate:
         """A certified solution as a point."""
         coefficients = self.transcription.profile.checked(found.solution.coefficients)
         point = FrontPoint(coefficients, found.checked.residual, found.checked.energy)
@@ -129,39 +120,16 @@ class Curve:
         self, found: Sequence[tuple[Solution, Mapping[str, float]]]
     ) -> list[Certificate]:
         """Certify many solutions, each with what was asked for."""
-        fine = self._by_finer_steps([solution for solution, _ in found])
+        solutions = [solution for solution, _ in found]
+        problems = [self.problem(solution.residual) for solution in solutions]
+        limits = {**self.task.limits, RESIDUAL: np.inf}
+        outcomes = certify_all(problems, solutions, self.solver, self.tolerances, limits)
         return [
-            Certificate(fine[i], solution.iterations)
-            if i in fine
-            else self.certify(solution, asked)
-            for i, (solution, asked) in enumerate(found)
+            Certificate(FailedPoint(asked, str(outcome)), solution.iterations)
+            if isinstance(outcome, SolverFailedError)
+            else self.point_of(outcome)
+            for (solution, asked), outcome in zip(found, outcomes, strict=True)
         ]
-
-    def _by_finer_steps(self, found: Sequence[Solution]) -> dict[int, FrontPoint]:
-        """Points with the figures of many more steps, in one call; CVODES confirms every tenth.
-
-        None where it does not, where the solver's own figures differ, or where limits are set,
-        which also have to hold between the nodes.
-        """
-        task, profile = self.task, self.transcription.profile
-        if len(found) < CHECK_EVERY or task.limits or task.uncertainty is not None:
-            return {}
-        table = np.array([one.coefficients for one in found])
-        values = finer_values([self.transcription] * len(table), table)
-        points, vibration = dict[int, FrontPoint](), after_arrival(task)[0]
-        for i, (one, energy) in enumerate(zip(found, values.energy.tolist(), strict=True)):
-            if abs(one.energy - energy) <= self.tolerances.energy * energy:
-                residual = float(vibration.peak(task.missed(values.arrival[i])))
-                points[i] = FrontPoint(profile.checked(one.coefficients), residual, energy)
-        for point in list(points.values())[::CHECK_EVERY]:
-            exact = judge(self.transcription, np.array(point.coefficients))
-            energy, residual = exact.energy - point.energy, exact.residual - point.residual
-            if (
-                abs(energy) > FINER_AGREEMENT * exact.energy
-                or abs(residual) > FINER_AGREEMENT * exact.residual + STILL
-            ):
-                return {}
-        return points
 
     def to_front(
         self,

@@ -132,13 +132,7 @@ class Front(Saved):
         return np.array([point.energy for point in self.points])
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
-        """The points as columns of a table, as `to_frame` has them.
-
-        Returns
-        -------
-        dict of str to ndarray, shape (points,)
-            ``residual_m``, ``energy_J``, and the coefficients ``a_1``, ``a_2``, ...
-        """
+        """``residual_m``, ``energy_J`` and ``a_1``, ``a_2``, ... of all points, by name."""
         shape = len(self.points), self.profile.size
         coefficients = np.array([point.coefficients for point in self.points]).reshape(shape)
         named = {f"a_{i + 1}": column for i, column in enumerate(coefficients.T)}
@@ -151,17 +145,9 @@ class Front(Saved):
         return pd.DataFrame(self.columns())
 
     def save_csv(self, path: str | Path) -> None:
-        """Write the points as a table: one row for each, stillest first, with every digit.
+        """Write the `columns` as a table, stillest first, with every digit.
 
-        Parameters
-        ----------
-        path : str or Path
-            The file; its header is that of `columns`.
-
-        Raises
-        ------
-        ValueError
-            When the file cannot be written.
+        ValueError when the file cannot be written.
         """
         columns = self.columns()
         rows = zip(*(column.tolist() for column in columns.values()), strict=True)
@@ -241,22 +227,9 @@ class Front(Saved):
         return self._nonempty()[0]
 
     def cheapest(self, residual_limit: float | None = None) -> FrontPoint:
-        """The point of least energy.
+        """The point of least energy, of those within a residual limit [m] where one is given.
 
-        Parameters
-        ----------
-        residual_limit : float, optional
-            Largest residual [m] that counts; any by default.
-
-        Returns
-        -------
-        FrontPoint
-            The point.
-
-        Raises
-        ------
-        ValueError
-            When no point is within the limit, with the least residual there is.
+        ValueError when there is none, with the least residual there is.
         """
         points = self._nonempty()
         if residual_limit is None:
@@ -303,15 +276,7 @@ class Front(Saved):
 def reference_corner(task: PointToPoint) -> tuple[float, float]:
     """The corner that hypervolumes of a task's fronts are measured from.
 
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-
-    Returns
-    -------
-    tuple of float
-        Residual [m] of the plain cycloid, 1 mm at least, and twice its energy [J].
+    Residual [m] of the plain cycloid, 1 mm at least, and twice its energy [J].
     """
     cycloid = Candidate.of_profile(task, CycloidPolynomial(0), [])
     return max(cycloid.residual, LEAST_REFERENCE), 2 * cycloid.energy

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import WithPeaks
-from quietarm.ocp.solvers.batch import Batch, Values, batch
 from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.solution import Solution
@@ -22,10 +20,9 @@ from quietarm.ocp.solvers.transcription import (
     STILL_SHARE,
     Transcription,
 )
-from quietarm.ocp.task import QUANTITIES
 
 _RESIDUAL_AGREEMENT = 5e-3
-_AT_REST = 0.3
+AT_REST = 0.3
 """Of a limit, and of rest: by these shares may the two integrators' residuals differ."""
 _ROUNDS = 12
 _BELOW = 1 + 2e-8
@@ -56,11 +53,24 @@ OF_A_PLAN = Tolerances()
 56 plans tried (6e-6)."""
 
 
-class Certified(NamedTuple):
-    """A solution with the figures of CVODES, and the problem, tightened, that it solves."""
+@dataclass(frozen=True)
+class FinerFigures:
+    """Energy [J] and residual [m] by much finer steps; whether CVODES judged the motion, too."""
+
+    energy: float
+    residual: float
+    by_cvodes: bool = False
+
+
+Checked = TypeVar("Checked", Candidate, FinerFigures, covariant=True)
+
+
+@dataclass(frozen=True)
+class Certified(Generic[Checked]):
+    """A solution with the figures of another integrator, and the problem, tightened, it solves."""
 
     solution: Solution
-    checked: Candidate
+    checked: Checked
     problem: Problem
 
     @property
@@ -75,7 +85,7 @@ def certify(
     solver: Solver,
     tolerances: Tolerances = OF_A_PLAN,
     limits: Mapping[str, float] | None = None,
-) -> Certified:
+) -> Certified[Candidate]:
     """Compare with CVODES; correct the arrival, double the steps, tighten what is exceeded.
 
     The solver's few steps miss the state on arrival by a little; limits hold at its nodes only, and
@@ -103,8 +113,8 @@ def certify(
     (transcription, asked), best = problem, solution
     limits, tightened = asked.limits if limits is None else limits, dict(asked.limits)
     still = max(STILL, STILL_SHARE * transcription.plain_residual)
-    tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * asked.residual_limit)
-    tried: list[Certified] = []
+    tolerated = max(AT_REST * still, _RESIDUAL_AGREEMENT * asked.residual_limit)
+    tried: list[Certified[Candidate]] = []
 
     def check(problem: Problem, found: Solution) -> Candidate:
         tried.append(Certified(found, judge(transcription, found.coefficients), problem))
@@ -177,7 +187,9 @@ def refuse_exceeded(
             )
 
 
-def _cheapest_kept(tried: list[Certified], kept: Mapping[str, float], still: float) -> Certified:
+def _cheapest_kept(
+    tried: list[Certified[Candidate]], kept: Mapping[str, float], still: float
+) -> Certified[Candidate]:
     """The cheapest of the verified motions that keep every limit; else the last."""
     keeping = [
         one
@@ -185,36 +197,3 @@ def _cheapest_kept(tried: list[Certified], kept: Mapping[str, float], still: flo
         if all(one.checked.peak(name) <= max(limit, still) for name, limit in kept.items())
     ]
     return min(keeping, key=lambda one: one.checked.energy) if keeping else tried[-1]
-
-
-CHECK_EVERY = 10
-"""CVODES checks one motion in so many."""
-FINER_AGREEMENT = 1e-6
-"""The share by which its figures may then differ."""
-_FINER = 3
-
-
-def finer_values(of: Sequence[Transcription], coefficients: NDArray[np.float64]) -> Values:
-    """Figures of one motion of each task, on three times the solver's steps or more."""
-    return _values_of(_finer(of[0]), of, coefficients)
-
-
-def finer_peaks(
-    of: Sequence[Transcription], coefficients: NDArray[np.float64]
-) -> dict[str, NDArray[np.float64]]:
-    """Peaks of every quantity of one motion of each task, at the nodes of these steps."""
-    finer = _finer(of[0], tuple(QUANTITIES))
-    limited = _values_of(finer, of, coefficients).limited
-    return {name: np.abs(limited[:, place]).max(axis=1) for name, place in finer.places.items()}
-
-
-def _finer(one: Transcription, quantities: tuple[str, ...] = ()) -> Batch:
-    steps = max(default_steps(one.task), _FINER * one.steps)
-    return batch(one.task.plant, one.profile, steps, quantities, energy=one.task.energy)
-
-
-def _values_of(
-    finer: Batch, of: Sequence[Transcription], coefficients: NDArray[np.float64]
-) -> Values:
-    move = np.array([one.task.row for one in of])
-    return finer.values(coefficients, move, np.zeros((len(of), 0)))

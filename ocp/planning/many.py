@@ -4,35 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
     start_coefficients,
 )
-from quietarm.ocp.planning.certify import (
-    CHECK_EVERY,
-    FINER_AGREEMENT,
-    OF_A_PLAN,
-    certify,
-    finer_peaks,
-    finer_values,
-    judge,
-)
+from quietarm.ocp.planning.certify_all import certify_all, finer_peaks
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_of_moves
-from quietarm.ocp.solvers.batch import Values
+from quietarm.ocp.simulation.free_vibration import fastest_of_moves
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.problem import Problem, Scalarization
 from quietarm.ocp.solvers.solution import Solution
-from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, first_steps, transcribe
+from quietarm.ocp.solvers.transcription import RESIDUAL, first_steps, transcribe
 from quietarm.ocp.task import QUANTITIES, PointToPoint
 
 Array = NDArray[np.float64]
@@ -143,7 +134,7 @@ def plan_moves(
         for i, one in zip(unsolved, found, strict=True):
             if one.status.solved:
                 best[i] = one
-    return _certify(problems, best, chosen)
+    return _moves_of(problems, best, chosen)
 
 
 def _from_neighbours(
@@ -171,136 +162,48 @@ def _steps(tasks: Sequence[PointToPoint], profile: JointProfile) -> int:
     return first_steps(tasks[int(np.argmax(radians))], profile)
 
 
-class _Row(NamedTuple):
-    """A move's place, what was asked and what was found."""
-
-    place: int
-    problem: Problem
-    solution: Solution
-
-
-def _certify(problems: Sequence[Problem], found: Sequence[Solution], solver: Solver) -> Moves:
-    """Correct what the steps miss, and give the figures of finer steps or of CVODES."""
+def _moves_of(problems: Sequence[Problem], found: Sequence[Solution], solver: Solver) -> Moves:
+    """The solutions certified, as arrays; without figures where there is none."""
     count, profile = len(found), problems[0].transcription.profile
-    moves = Moves(
-        tasks=tuple(problem.transcription.task for problem in problems),
-        profile=profile,
-        coefficients=np.full((count, profile.size), np.nan),
-        energy=np.full(count, np.nan),
-        residual=np.full(count, np.nan),
-        peaks={name: np.full(count, np.nan) for name in QUANTITIES},
-        status=(),
-        reasons=(),
-        iterations=np.array([one.iterations for one in found]),
-        shadow_prices=(),
-        by_cvodes=np.zeros(count, dtype=bool),
-    )
-    ended = list(found)
-    rows = [_Row(i, *one) for i, one in enumerate(zip(problems, found, strict=True))]
-    rows = [row for row in rows if row.solution.status.solved]
-    together = [row for row in rows if _at_rest_without_limits(row.problem)]
-    doubtful = {row.place for row in rows} - {row.place for row in together}
-    if together:
-        doubtful |= _together(moves, together, solver)
-    for i in sorted(doubtful):
-        try:
-            best, checked, _ = certify(problems[i], found[i], solver)
-        except SolverFailedError as error:
-            moves.coefficients[i] = moves.energy[i] = moves.residual[i] = np.nan
-            for values in moves.peaks.values():
-                values[i] = np.nan
+    solved = [i for i, one in enumerate(found) if one.status.solved]
+    outcomes = certify_all([problems[i] for i in solved], [found[i] for i in solved], solver)
+    ended, figures, of_moves = list(found), np.full((count, 2), np.nan), np.zeros(count, dtype=bool)
+    coefficients = np.full((count, profile.size), np.nan)
+    peaks = {name: np.full(count, np.nan) for name in QUANTITIES}
+    finer = list[int]()
+    for i, outcome in zip(solved, outcomes, strict=True):
+        if isinstance(outcome, SolverFailedError):
             ended[i] = replace(
-                found[i], status=SolveStatus.NOT_CERTIFIED, reason=str(error), shadow_prices={}
+                found[i], status=SolveStatus.NOT_CERTIFIED, reason=str(outcome), shadow_prices={}
             )
             continue
-        moves.coefficients[i], moves.by_cvodes[i] = best.coefficients, True
-        moves.energy[i], moves.residual[i] = checked.energy, checked.residual
-        for name, values in moves.peaks.items():
-            values[i] = checked.motion.peak(name)
-    return replace(
-        moves,
+        ended[i], checked = outcome.solution, outcome.checked
+        coefficients[i] = ended[i].coefficients
+        figures[i] = checked.energy, checked.residual
+        if isinstance(checked, Candidate):
+            of_moves[i] = True
+            for name, values in peaks.items():
+                values[i] = checked.motion.peak(name)
+        else:
+            of_moves[i] = checked.by_cvodes
+            finer.append(i)
+    if finer:
+        transcriptions = [problems[i].transcription for i in finer]
+        for name, values in finer_peaks(transcriptions, coefficients[finer]).items():
+            peaks[name][finer] = values
+    return Moves(
+        tasks=tuple(problem.transcription.task for problem in problems),
+        profile=profile,
+        coefficients=coefficients,
+        energy=figures[:, 0],
+        residual=figures[:, 1],
+        peaks=peaks,
         status=tuple(one.status for one in ended),
         reasons=tuple(one.reason for one in ended),
+        iterations=np.array([one.iterations for one in ended]),
         shadow_prices=tuple(one.shadow_prices if one.status.solved else {} for one in ended),
+        by_cvodes=of_moves,
     )
-
-
-def _at_rest_without_limits(problem: Problem) -> bool:
-    return problem.scalarization.at_rest and not problem.transcription.task.limits
-
-
-def _together(moves: Moves, rows: list[_Row], solver: Solver, doublings: int = 2) -> set[int]:
-    """Certify moves at rest in a few calls; the places of those left to CVODES alone.
-
-    Those whose energy the finer steps do not confirm are solved again on twice the steps.
-    """
-    table = np.array([row.solution.coefficients for row in rows])
-    values = finer_values([row.problem.transcription for row in rows], table)
-    energy = np.array([row.solution.energy for row in rows])
-    rough = np.abs(energy - values.energy) > OF_A_PLAN.energy * values.energy
-    doubtful = {rows[k].place for k in np.flatnonzero(rough)}
-    if rough.any():
-        if doublings:
-            again = _on_twice_the_steps([rows[k] for k in np.flatnonzero(rough)], solver)
-            doubtful = _together(moves, again, solver, doublings - 1)
-        kept = np.flatnonzero(~rough)
-        rows, table = [rows[k] for k in kept], table[kept]
-        if not rows:
-            return doubtful
-    table, values, residual = _correct_arrivals(rows, table, solver)
-    places = [row.place for row in rows]
-    moves.coefficients[places], moves.energy[places] = table, values.energy
-    moves.residual[places] = residual
-    transcriptions = [row.problem.transcription for row in rows]
-    for name, largest in finer_peaks(transcriptions, table).items():
-        moves.peaks[name][places] = largest
-    doubtful |= {places[k] for k in np.flatnonzero(residual > STILL)}
-    for k in range(0, len(rows), CHECK_EVERY):
-        exact = judge(transcriptions[k], table[k])
-        differs = abs(exact.energy - values.energy[k]) > FINER_AGREEMENT * exact.energy
-        if differs or exact.residual > STILL:
-            return doubtful | set(places)
-        moves.by_cvodes[places[k]] = True
-    return doubtful
-
-
-def _on_twice_the_steps(rows: list[_Row], solver: Solver) -> list[_Row]:
-    tasks, one = [row.problem.transcription.task for row in rows], rows[0].problem.transcription
-    problems = [
-        Problem(transcription, row.problem.scalarization)
-        for transcription, row in zip(
-            transcribe(tasks, one.profile, 2 * one.steps), rows, strict=True
-        )
-    ]
-    found = solver.solve(problems, [row.solution.coefficients for row in rows], warm=True)
-    places = [row.place for row in rows]
-    return [_Row(*row) for row in zip(places, problems, found, strict=True)]
-
-
-def _correct_arrivals(
-    rows: list[_Row], table: Array, solver: Solver
-) -> tuple[Array, Values, Array]:
-    """Coefficients, figures and residuals, corrected by what the steps miss on arrival."""
-    transcriptions = [row.problem.transcription for row in rows]
-    one, targets = transcriptions[0].task, [each.task.target for each in transcriptions]
-    vibrations = FreeVibration(one.plant, targets, one.residual_window)
-    by_steps = np.array([row.solution.arrival[0] for row in rows])
-    rounds = 0
-    while True:
-        values = finer_values(transcriptions, table)
-        residual = vibrations.peak(values.arrival - [each.wanted for each in transcriptions])
-        again = np.flatnonzero(residual > _AT_REST * STILL)
-        if not again.size or rounds == _ROUNDS:
-            return table, values, residual
-        rounds += 1
-        offset = values.arrival - by_steps
-        problems = [
-            Problem(transcriptions[k], rows[k].problem.scalarization._replace(offset=offset[k]))
-            for k in again
-        ]
-        found = solver.solve(problems, [table[k] for k in again], warm=True)
-        for k, one in zip(again, found, strict=True):
-            table[k], by_steps[k] = one.coefficients, one.arrival[0] - offset[k]
 
 
 def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:

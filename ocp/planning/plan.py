@@ -21,8 +21,7 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import Provenance, Setting, SolveSettings, Verification
-from quietarm.ocp.robustness.sensitivity import Sensitivity, sensitivities
-from quietarm.ocp.robustness.worst import Worst, worst_of
+from quietarm.ocp.robustness.perturbed import Sensitivity, Worst, sensitivities, worst_of
 from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
@@ -128,20 +127,10 @@ class Plan(MotionAnswer):
         return self.candidate.sample(times)
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
-        """Write the move as a table to drive a joint with.
+        """Write the move as a table to drive a joint with, so many rows a second [Hz].
 
-        Parameters
-        ----------
-        path : str or Path
-            The file; its header names the quantities with their units.
-        sample_rate : float
-            Rows per second [Hz]. The last row is the first tick at or after arrival, where the
-            joint rests at its target.
-
-        Raises
-        ------
-        ValueError
-            When the rate is out of range or the file cannot be written.
+        Its header names the quantities with their units. The last row is the first tick at or after
+        arrival. ValueError when the rate is out of range or the file cannot be written.
         """
         ticks = ticks_of_move(self.task.duration, sample_rate)
         sampled = self.sampled(np.arange(ticks + 1) / sample_rate)

@@ -20,7 +20,7 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, SolveSettings
 from quietarm.ocp.robustness.measures import quiet_residual
-from quietarm.ocp.robustness.worst import peaks_between, worst_of
+from quietarm.ocp.robustness.perturbed import Worst, peaks_between, worst_of
 from quietarm.ocp.solvers.choice import solver_of
 from quietarm.ocp.solvers.problem import Problem, Scalarization
 from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
@@ -139,14 +139,14 @@ def _hold(
     """
     limit = settings.residual_limit
 
-    def solve(task: PointToPoint, starts: Starts) -> tuple[Plan, Array, Starts]:
+    def solve(task: PointToPoint, starts: Starts) -> tuple[Plan, list[Worst], Starts]:
         plan, others = plan_from_starts(task, profile, settings, starts)
         return *_look_between(plan), [np.array(plan.coefficients), *others[:_KEPT]]
 
     plan, peaks, starts = solve(task, [*starts, *start_coefficients(profile, settings)])
     for _ in range(_ROUNDS):
-        more = _new_scenarios(task, peaks[peaks[:, 0] > limit, 1:])
-        if peaks[0, 0] / limit - 1 <= EXCESS or not more:
+        more = _new_scenarios(task, [one for one in peaks if one.residual > limit])
+        if peaks[0].residual / limit - 1 <= EXCESS or not more:
             break
         task = task.with_samples([*task.scenarios[1:], *more])
         plan, peaks, starts = solve(task, starts)
@@ -154,11 +154,11 @@ def _hold(
     return replace(plan, provenance=replace(plan.provenance, settings=settings))
 
 
-def _tighten(plan: Plan, peaks: Array, settings: SolveSettings) -> Plan:
+def _tighten(plan: Plan, peaks: list[Worst], settings: SolveSettings) -> Plan:
     """Take what is left of the excess off the limit."""
     limit = used = settings.residual_limit
     for _ in range(_TIGHTENINGS):
-        excess = peaks[0, 0] / limit - 1
+        excess = peaks[0].residual / limit - 1
         if excess <= 0:
             break
         used /= (1 + excess) * (1 + OVERRUN)
@@ -172,14 +172,15 @@ def _tighten(plan: Plan, peaks: Array, settings: SolveSettings) -> Plan:
     return plan
 
 
-def _new_scenarios(task: PointToPoint, errors: Array) -> list[list[float]]:
-    """Those of the errors that are no scenario of the task yet."""
+def _new_scenarios(task: PointToPoint, peaks: list[Worst]) -> list[list[float]]:
+    """The errors of those peaks that are no scenario of the task yet."""
     known = np.array(task.scenarios[1:])
     near = _SAME * np.array(list(task.ranges.values()))
-    return [one.tolist() for one in errors if (np.abs(known - one) > near).any(axis=1).all()]
+    errors = [list(one.errors.values()) for one in peaks]
+    return [one for one in errors if (np.abs(known - one) > near).any(axis=1).all()]
 
 
-def _look_between(plan: Plan) -> tuple[Plan, Array]:
-    """The plan with its worst case; residuals [m] and errors of peaks, the largest first."""
-    worst, peaks = peaks_between(plan.task, plan.profile, plan.coefficients, _ADDED)
-    return replace(plan, worst=worst), peaks
+def _look_between(plan: Plan) -> tuple[Plan, list[Worst]]:
+    """The plan with its worst case, and the peaks of the residual between the scenarios."""
+    peaks = peaks_between(plan.task, plan.profile, plan.coefficients, _ADDED)
+    return replace(plan, worst=peaks[0]), peaks

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,17 +12,25 @@ from quietarm.ocp.checks import whole
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.robustness.population import ErrorPopulation, Figures
+from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
+from quietarm.ocp.robustness.perturbed import Report, perturbed_figures
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import check_ranges
 
-TOLERATED = 0.05
-"""Share of the plain cycloid's residual up to which a motion counts as insensitive."""
 MOST_SAMPLES = 1_000_000
 _SIDE = 100
 """Errors of a sweep on either side of none."""
 
-Report = Callable[[int, int], object]
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Figures:
+    """F1 [m], F2 [J] and peak torque [N m] at the nodes of the steps: an entry for each plant."""
+
+    residual: Array
+    energy: Array
+    peak_torque: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,22 +46,14 @@ class Sweep:
     figures : Figures
         What the motion leaves and costs at each.
     insensitivity : tuple of float, or None
-        The errors around 0 between which the residual stays within `Robustness.tolerated`; None
-        where it is above already without an error. At an end of the sweep it may reach farther.
+        The errors around 0 between which the residual stays within `Robustness.tolerated`, or the
+        ends of the sweep; None where it is above already without an error.
     """
 
     name: str
-    errors: NDArray[np.float64]
+    errors: Array
     figures: Figures
     insensitivity: tuple[float, float] | None
-
-    def __post_init__(self) -> None:
-        self.errors.setflags(write=False)
-
-    @property
-    def width(self) -> float:
-        """Width of the insensitivity range, 0 where there is none."""
-        return 0.0 if self.insensitivity is None else float(np.ptp(self.insensitivity))
 
     @property
     def open_ends(self) -> tuple[bool, bool]:
@@ -69,32 +69,20 @@ class Robustness:
     Attributes
     ----------
     ranges : dict of str to float
-        Largest relative errors by name.
+        Largest relative errors by name; there is one of the `sweeps` for each.
     cycloid : float
-        Residual of the plain cycloid of the same duration on the assumed plant [m].
-    assumed : Figures
-        The motion on the assumed plant, one entry.
-    sweeps : tuple of Sweep
-        One for every name.
+        Residual of the plain cycloid of the same duration on the `assumed` plant [m].
     errors : ndarray, shape (samples, names)
-        Errors of the Monte Carlo samples, all at once, uniform within the ranges.
-    samples : Figures
-        What the motion leaves and costs at each.
-    seed : int
-        Of the samples.
+        Errors of the Monte Carlo `samples`, all at once, uniform within the ranges.
     """
 
     ranges: Mapping[str, float]
     cycloid: float
     assumed: Figures
     sweeps: tuple[Sweep, ...]
-    errors: NDArray[np.float64]
+    errors: Array
     samples: Figures
     seed: int
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "ranges", dict(self.ranges))
-        self.errors.setflags(write=False)
 
     @property
     def tolerated(self) -> float:
@@ -102,36 +90,17 @@ class Robustness:
         return TOLERATED * self.cycloid
 
     def percentile(self, figure: str, share: float) -> float:
-        """A percentile of the samples.
-
-        Parameters
-        ----------
-        figure : str
-            ``"residual"``, ``"energy"`` or ``"peak_torque"``.
-        share : float
-            Percentage, 100 for the largest.
-
-        Returns
-        -------
-        float
-            The value that this share of the samples stays within, in SI units.
-        """
+        """What so many percent of the samples stay within, of a figure by its name."""
         return float(np.percentile(getattr(self.samples, figure), share))
 
 
 def tolerated_residual(task: PointToPoint) -> float:
-    """`TOLERATED` of what the plain cycloid of the same duration leaves on the assumed plant [m].
-
-    A motion is insensitive to errors within which it leaves no more.
-    """
+    """What the plain cycloid leaves on the assumed plant [m], times `TOLERATED`."""
     return TOLERATED * _plain(task).residual
 
 
 def quiet_residual(task: PointToPoint) -> float:
-    """`TOLERATED` of how far the plain cycloid bends the assumed plant's tip on its way [m].
-
-    Unlike what the cycloid leaves, this has no zeros: it falls steadily with the duration.
-    """
+    """Its peak deflection [m], times `TOLERATED`: over durations this has no zeros."""
     return TOLERATED * _plain(task).motion.peak_deflection
 
 
@@ -155,18 +124,13 @@ def evaluate_robustness(
     Parameters
     ----------
     task : PointToPoint
-        The move; of an uncertain plant the assumed one counts.
+        The move; of an uncertain task the nominal plant counts.
     profile : JointProfile
-        How the joint moves.
-    coefficients : array_like, shape (profile.size,)
-        The profile's coefficients.
+        How the joint moves, with these `coefficients`.
     ranges : mapping of str to float
-        Largest relative errors, as 0.1 for 10 %: of ``"frequency"`` and ``"damping"``, which all
-        modes have alike, and of any parameter of the plant by its name.
-    samples : int
-        Monte Carlo samples, uniform within all ranges at once.
-    seed : int
-        Of these.
+        Largest relative errors by name, as of `Uncertainty`.
+    samples, seed : int
+        Monte Carlo samples, uniform within all ranges at once, and their seed.
     report : callable, optional
         Is told how many evaluations of how many are done.
 
@@ -181,41 +145,43 @@ def evaluate_robustness(
         When there is no such parameter, a number is out of range, a plant within the ranges breaks
         its contract, or the coefficients or the duration do not fit the profile.
     """
-    task = task.certain
     ranges = check_ranges(task.plant, ranges)
     samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)
-    population = ErrorPopulation(task, profile, coefficients, ranges)
     largest = np.array(list(ranges.values()))
     shares = np.arange(-_SIDE, _SIDE + 1) / _SIDE
-    alone = [np.outer(shares, unit * largest) for unit in np.eye(len(largest))]
+    alone = [np.outer(shares, own) for own in np.diag(largest)]
     random = np.random.default_rng(seed).uniform(-largest, largest, (samples, len(largest)))
-    found = population(np.vstack([*alone, random]), report)
+    every = np.vstack([*alone, random])
+    found = perturbed_figures(task, profile, coefficients, ranges, every, report)
+    *swept, sampled = np.split(found, len(shares) * np.arange(1, len(ranges) + 1))
     cycloid = _plain(task).residual
-    sweeps = tuple(
-        _sweep(name, size * shares, found.part(i * len(shares), len(shares)), TOLERATED * cycloid)
-        for i, (name, size) in enumerate(ranges.items())
-    )
     return Robustness(
-        ranges=ranges, cycloid=cycloid, assumed=found.part(_SIDE, 1), sweeps=sweeps,
-        errors=random, samples=found.part(len(sweeps) * len(shares), samples), seed=seed,
-    )  # fmt: skip
+        ranges=ranges,
+        cycloid=cycloid,
+        assumed=Figures(*swept[0][[_SIDE]].T),
+        sweeps=tuple(
+            _sweep(name, size * shares, Figures(*rows.T), TOLERATED * cycloid)
+            for (name, size), rows in zip(ranges.items(), swept, strict=True)
+        ),
+        errors=random,
+        samples=Figures(*sampled.T),
+        seed=seed,
+    )
 
 
-def _sweep(name: str, errors: NDArray[np.float64], figures: Figures, tolerated: float) -> Sweep:
-    excess = figures.residual - tolerated
-    within: tuple[float, float] | None = None
+def _sweep(name: str, errors: Array, figures: Figures, tolerated: float) -> Sweep:
+    excess, within = figures.residual - tolerated, None
     if excess[_SIDE] <= 0:
         low, high = (_crossing(errors[_SIDE::side], excess[_SIDE::side]) for side in (-1, 1))
         within = low, high
     return Sweep(name, errors, figures, within)
 
 
-def _crossing(errors: NDArray[np.float64], excess: NDArray[np.float64]) -> float:
+def _crossing(errors: Array, excess: Array) -> float:
     """Where the excess is first above 0, between two errors; the last error if it never is."""
     above = np.flatnonzero(excess > 0)
     if not above.size:
         return float(errors[-1])
-    i = above[0]
-    share = excess[i - 1] / (excess[i - 1] - excess[i])
-    return float(errors[i - 1] + share * (errors[i] - errors[i - 1]))
+    around = slice(above[0] - 1, above[0] + 1)
+    return float(np.interp(0.0, excess[around], errors[around]))

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from quietarm.ocp import Robustness
 from quietarm.ocp.checks import has_no
-from quietarm.ocp.robustness.measures import TOLERATED
+from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies.figures.axes import axes_or_new, legend_of, side_by_side
 from quietarm.studies.figures.looks import look
 

@@ -15,7 +15,7 @@ from quietarm.metaheuristics.ensemble import (
 from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.robustness.worst import worst_of
+from quietarm.ocp.robustness.perturbed import worst_of
 from quietarm.studies.display.words import counted, energy_words, millimetres, residual_words
 from quietarm.studies.document.blocks import Document, Lines
 from quietarm.studies.reports.plan import worst_in_words

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from quietarm.ocp import Plan, Robustness, Sweep
-from quietarm.ocp.robustness.measures import TOLERATED
+from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies import figures
 from quietarm.studies.display.words import REST, move_of, moved
 from quietarm.studies.document.blocks import Bullets, Document, Picture, Section

@@ -7,7 +7,7 @@ from typing import Any
 
 from quietarm.ocp import PointToPoint, SolveSettings, SolveStatus
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.robustness.sensitivity import OF_MODES
+from quietarm.ocp.robustness.perturbed import OF_MODES
 from quietarm.ocp.saved import plain, typed
 from quietarm.ocp.solvers.transcription import RESIDUAL
 from quietarm.ocp.task import QUANTITIES

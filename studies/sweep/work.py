@@ -27,7 +27,7 @@ from quietarm.ocp import (
     plan_moves,
 )
 from quietarm.ocp.interrupts import note_interrupts
-from quietarm.ocp.robustness.sensitivity import sensitivities_of_moves
+from quietarm.ocp.robustness.perturbed import sensitivities_of_moves
 from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.sweep.asked import COEFFICIENTS, STATES, STATUS, Sweep
 from quietarm.studies.sweep.store import Store

@@ -1,6 +1,7 @@
 """The front by epsilon-constraint: its ends, its spacing, and that no point could be cheaper."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -98,3 +99,20 @@ def test_there_is_a_point_at_every_residual_that_is_asked_for():
     for residual in at[:3]:
         assert residual * (1 - 3e-4) < front.cheapest(residual).residual <= residual
     assert tuple(map(float, front.settings["at"].split(", "))) == at  # to the last digit
+
+
+@pytest.mark.parametrize(
+    ("name", "limits", "bound"),
+    [("arm", {"acceleration_limit": 12.5}, 0.5), ("arm", {"speed_limit": 2.6}, None)],
+)
+def test_every_point_keeps_the_limits_that_no_motion_at_rest_keeps(tasks, name, limits, bound):
+    task = replace(tasks[name], **limits)
+    front, fine = (
+        qa.epsilon_front(task, bound=bound, points=4, steps=steps) for steps in (None, 384)
+    )
+    assert not front.failures
+    for point in front.points:
+        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
+        assert not motion.exceeded(task.limits, 1e-6)
+    # and is hardly less still for it
+    assert front.residuals[0] == pytest.approx(fine.residuals[0], rel=2e-3)

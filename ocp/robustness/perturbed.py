@@ -1,0 +1,184 @@
+"""One joint motion on perturbed plants: figures of many, the worst case, what each error adds.
+
+The joint follows its planned path whatever the plant; energy and torque are what that takes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.checks import NotNegative
+from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.simulation.free_vibration import FreeVibration, after_arrival
+from quietarm.ocp.simulation.grid import ROLLOUT_STEPS, default_steps
+from quietarm.ocp.solvers.batch import Values, batch
+from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import DAMPING, FREQUENCY, perturb_plant
+
+OF_MODES = (FREQUENCY, DAMPING)
+_BLOCK = 1000
+"""Plants a call."""
+_STEP = 1e-4
+"""Relative error to either side: of what follows 1e-8 is curvature, and 1e-6 the integrator's."""
+_ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
+"""Errors along each side of the grid, by the number of ranges."""
+_ZOOMS, _BESIDE = 3, (-1.0, -0.5, 0.0, 0.5, 1.0)
+"""How often the grid around a peak is made finer, and its points in steps of the grid before."""
+
+Array = NDArray[np.float64]
+Report = Callable[[int, int], object]
+Simulated = Candidate | Values
+
+
+@keep_interrupts()  # casadi loses a Ctrl-C
+def perturbed_figures(
+    task: PointToPoint,
+    profile: JointProfile,
+    coefficients: ArrayLike,
+    ranges: Mapping[str, float],
+    errors: Array,
+    report: Report | None = None,
+) -> Array:
+    """Residual [m], energy [J] and peak torque [N m] on plants with errors, by fixed steps.
+
+    From errors of shape (plants, ranges) within the ranges to shape (plants, 3).
+    """
+    task, names = task.certain, tuple(ranges)
+    faster = 1 + max(ranges.values())  # any of them may be a frequency
+    steps = max(ROLLOUT_STEPS, int(np.ceil(faster * default_steps(task, least=1))))
+    breaks = profile.breaks(task.duration)
+    rows = batch(task.plant, profile, steps, ("torque",), names, task.energy, breaks)
+    motion = profile.checked(coefficients, task.duration)
+    figures = np.empty((len(errors), 3))
+    for first in range(0, len(errors), _BLOCK):
+        block = errors[first : first + _BLOCK]
+        found = rows.values(*(np.tile(one, (len(block), 1)) for one in (motion, task.row)), block)
+        plants = perturb_plant(task.plant, dict(zip(names, map(ca.DM, block.T), strict=True)))
+        vibrations = FreeVibration(plants, [task.target] * len(block), task.residual_window)
+        residual = vibrations.peak(task.missed(found.arrival))
+        torque = np.abs(found.limited).max(axis=1)
+        figures[first : first + _BLOCK] = np.column_stack([residual, found.energy, torque])
+        if report is not None:
+            report(first + len(block), len(errors))
+    return figures
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The errors within a task's ranges at which a motion leaves most, and its F1 there [m]."""
+
+    errors: Mapping[str, float] = field(hash=False)
+    residual: NotNegative
+
+
+def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Worst | None:
+    """The worst case of a motion; None where the task is certain."""
+    return peaks_between(task, profile, coefficients)[0] if task.ranges else None
+
+
+def peaks_between(
+    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, most: int = 1
+) -> list[Worst]:
+    """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first."""
+    largest = np.array(list(task.ranges.values()))
+    count, along = len(largest), _ALONG[len(largest)]
+
+    def residuals(shares: Array) -> Array:
+        errors = shares * largest
+        return perturbed_figures(task, profile, coefficients, task.ranges, errors)[:, 0]
+
+    def zoom(peak: Array) -> Worst:
+        for finer in range(_ZOOMS):
+            step = 2 / (along - 1) / 2**finer
+            around = np.clip(peak + step * _grid(_BESIDE, count), -1, 1)
+            peak = around[np.argmax(residuals(around))]
+        errors = dict(zip(task.error_names, (peak * largest).tolist(), strict=True))
+        return Worst(errors, candidate.perturbed(errors).residual)
+
+    candidate = Candidate.of_profile(task, profile, coefficients)
+    shares = _grid(np.linspace(-1, 1, along), count)
+    values = residuals(shares)
+    tops = np.flatnonzero(_is_peak(values.reshape([along] * count)))
+    tops = tops[np.argsort(-values[tops])][:most]
+    return sorted((zoom(shares[i]) for i in tops), key=lambda one: -one.residual)
+
+
+def _grid(along: ArrayLike, ranges: int) -> Array:
+    return np.stack(np.meshgrid(*[np.asarray(along)] * ranges), axis=-1).reshape(-1, ranges)
+
+
+def _is_peak(values: Array) -> NDArray[np.bool_]:
+    """Where a value of a grid is no smaller than its neighbours along every side."""
+    peak = np.ones(values.shape, dtype=bool)
+    for axis in range(values.ndim):
+        peak &= np.diff(values, axis=axis, prepend=-np.inf) >= 0
+        peak &= np.diff(values, axis=axis, append=-np.inf) <= 0
+    return peak
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """What changes with a small relative error of a parameter, over that error.
+
+    Attributes
+    ----------
+    parameter : str
+        Its name; ``"frequency"`` and ``"damping"`` are those of all modes alike.
+    energy : float
+        Change of F2 [J].
+    residual : float
+        F1 of the change of the state on arrival [m].
+    """
+
+    parameter: str
+    energy: float
+    residual: float
+
+
+@one_at_a_time
+def sensitivities(
+    task: PointToPoint, profile: JointProfile, coefficients: Sequence[float]
+) -> tuple[Sensitivity, ...]:
+    """By central differences of CVODES; the parameter that adds most vibration comes first."""
+    candidate = Candidate.of_profile(task.certain, profile, coefficients)
+    vibration = after_arrival(task)[0]
+
+    def of(name: str) -> Sensitivity:
+        above, below = (candidate.perturbed({name: error}) for error in (_STEP, -_STEP))
+        energy, residual = _slopes(above, below, vibration)
+        return Sensitivity(name, float(energy), float(residual[0]))
+
+    known = (name for name, value in task.plant.measured.items() if value)
+    names = dict.fromkeys([*OF_MODES, *known])
+    return tuple(sorted(map(of, names), key=lambda one: -one.residual))
+
+
+@one_at_a_time
+def sensitivities_of_moves(
+    tasks: Sequence[PointToPoint], profile: JointProfile, coefficients: Array
+) -> dict[str, tuple[Array, Array]]:
+    """Energies and residuals as of `sensitivities`, for many moves of one plant by fixed steps."""
+    one, moves = tasks[0], np.array([task.row for task in tasks])
+    rows = batch(one.plant, profile, max(map(default_steps, tasks)), (), OF_MODES, one.energy)
+    targets = [task.target for task in tasks]
+    vibrations = FreeVibration(one.plant, targets, one.residual_window)
+
+    def of(error: Array) -> tuple[Array, Array]:
+        errors = np.tile(_STEP * error, (len(tasks), 1))
+        above, below = (rows.values(coefficients, moves, each) for each in (errors, -errors))
+        return _slopes(above, below, vibrations)
+
+    return dict(zip(OF_MODES, map(of, np.eye(2)), strict=True))
+
+
+def _slopes(above: Simulated, below: Simulated, vibration: FreeVibration) -> tuple[Any, Array]:
+    """Change of the energy, and F1 of that of the state on arrival, by a relative error of 1."""
+    arrival = (above.arrival - below.arrival) / (2 * _STEP)
+    return (above.energy - below.energy) / (2 * _STEP), vibration.peak(arrival)
