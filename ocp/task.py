@@ -181,7 +181,8 @@ class PointToPoint:
                 )
         if abs(self.span) < LEAST_MOVE:
             raise ValueError(
-                f"target - start is {self.span:g} rad; give a move of at least {LEAST_MOVE:g} rad"
+                f"target - start is {self.span:g} rad: there is no move; change one of them by "
+                f"{LEAST_MOVE:g} rad or more"
             )
         if self.duration < LEAST_DURATION:
             raise ValueError(f"duration is {self.duration:g} s; give at least {LEAST_DURATION:g} s")
