@@ -27,12 +27,12 @@ from quietarm.ocp.solvers.node import Path
 from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
-_OF_VALUES, _OF_DERIVATIVES = (8, 100), (4, 8)
+_OF_VALUES, _OF_DERIVATIVES = (1, 8, 100), (1, 4, 8)
 """Rows of a compiled call: to build one takes as long as hundreds of its calls."""
 _LEAST_STRETCH = 1e-3
 """Share of the largest speed below which a direction in a box counts as this share."""
 _PADDED = 200
-"""So many times single rows are padded to a block before a function of one is built."""
+"""So many times single rows take a larger function before one of their own is built."""
 
 
 @dataclass(frozen=True)
@@ -112,8 +112,14 @@ class Derivatives(Values):
 class _Compiled:
     """A function of rows, compiled for a block of rows when one of that size is first needed."""
 
-    def __init__(self, build: Callable[[int], ca.Function], sizes: tuple[int, ...]) -> None:
-        self._build, self._sizes, self._singles = build, sizes, 0
+    def __init__(
+        self,
+        build: Callable[[int], ca.Function],
+        sizes: tuple[int, ...],
+        unpack: Callable[[list[Array], int], tuple[Array, ...]],
+    ) -> None:
+        """Unpack makes a row for each candidate of outputs whose columns they are, and copies."""
+        self._build, self._sizes, self._unpack, self._singles = build, sizes, unpack, 0
         self._functions = dict[int, ca.Function]()
         self._idle = dict[int, list[BufferedFunction]]()
 
@@ -130,26 +136,32 @@ class _Compiled:
         return [np.concatenate(part) for part in zip(*parts, strict=True)]
 
     def _prepare(self, rows: int) -> int:
-        """The size of block for so many rows, built; often single rows get a function of one."""
-        self._singles += rows == 1
-        sizes = (1, *self._sizes) if self._singles > _PADDED else self._sizes
-        size = next(one for one in sizes if one >= rows)
+        """The size of block for so many rows, built; single ones use another for a while."""
+        size = next(one for one in self._sizes if one >= rows)
+        larger = [one for one in self._functions if one > size]
+        if size == 1 and size not in self._functions and larger and self._singles < _PADDED:
+            self._singles += 1
+            return min(larger)
         if size not in self._functions:
             self._functions[size] = self._build(size)
             self._idle[size] = []
         return size
 
-    def _evaluate(self, block: Sequence[Array]) -> list[Array]:
+    def prepare(self, rows: int) -> None:
+        """Build the function that so many rows take, for fewer rows as well."""
+        self._prepare(min(rows, self._sizes[-1]))
+
+    def _evaluate(self, block: Sequence[Array]) -> tuple[Array, ...]:
         rows = len(block[0])
         size = self._prepare(rows)
         try:
             function = self._idle[size].pop()
         except IndexError:  # all are in use by other threads, or none is made yet
             function = BufferedFunction(self._functions[size])
-        found = function(*(np.resize(one, (size, one.shape[1])).T for one in block))
-        copies = [one[:, :rows].T.copy() for one in found]  # the next call overwrites its own
+        outputs = function(*(np.resize(one, (size, one.shape[1])).T for one in block))
+        found = self._unpack(outputs, rows)
         self._idle[size].append(function)
-        return copies
+        return found
 
 
 class Batch:
@@ -157,8 +169,10 @@ class Batch:
 
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
-        self._values = _Compiled(partial(compile_values, kind), _OF_VALUES)
-        self._derivatives = _Compiled(partial(compile_derivatives, kind), _OF_DERIVATIVES)
+        self._values = _Compiled(partial(compile_values, kind), _OF_VALUES, _copy)
+        self._derivatives = _Compiled(
+            partial(compile_derivatives, kind), _OF_DERIVATIVES, self._unpack
+        )
 
     @cached_property
     def places(self) -> dict[str, slice]:
@@ -249,27 +263,34 @@ class Batch:
         )
         inputs = [coefficients, move, errors, width[:, None], weights.energy[:, None],
                   weights.arrival, weights.limited]  # fmt: skip
+        return Derivatives(*self._derivatives(inputs))
+
+    def prepare(self, rows: int) -> None:
+        """Build the derivatives for so many rows first, for single ones are evaluated before."""
+        self._derivatives.prepare(rows)
+
+    def _unpack(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
+        """What `Derivatives` holds; a column of the outputs is a candidate."""
         size, steps = self.kind.profile.size, self.kind.steps
 
         def by_coefficient(one: Array) -> Array:
-            """From columns by value, coefficient and step to (rows, coefficients, others)."""
-            return one.reshape(rows, -1, size, steps).swapaxes(1, 2).reshape(rows, size, -1)
+            """From (value, coefficient, step; candidate) to (candidate; coefficient; others)."""
+            apart = one.reshape(-1, size, steps, one.shape[1])[..., :rows]
+            return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
 
-        found = self._derivatives(inputs)
-        energy, arrival, limited, gradient, arrival_jacobian = found[:5]
-        limited_jacobian, left, right = map(by_coefficient, found[5:8])
+        energy, arrival, limited, gradient, arrival_jacobian = _copy(outputs[:5], rows)
+        limited_jacobian, left, right = map(by_coefficient, outputs[5:8])
         hessian = left @ right.swapaxes(1, 2)
-        if found[8].size:
-            hessian += found[8].reshape(rows, size, size)
-        return Derivatives(
-            energy=energy[:, 0],
-            arrival=arrival,
-            limited=limited,
-            gradient=gradient,
-            arrival_jacobian=arrival_jacobian.reshape(rows, -1, size),
-            limited_jacobian=limited_jacobian.swapaxes(1, 2),
-            hessian=hessian,
-        )
+        if outputs[8].size:
+            hessian += outputs[8][:, :rows].T.reshape(rows, size, size)
+        return (
+            energy[:, 0], arrival, limited, gradient, arrival_jacobian.reshape(rows, -1, size),
+            limited_jacobian.swapaxes(1, 2), hessian,
+        )  # fmt: skip
+
+
+def _copy(outputs: list[Array], rows: int) -> tuple[Array, ...]:
+    return tuple(one[:, :rows].T.copy() for one in outputs)
 
 
 @lru_cache(maxsize=32)

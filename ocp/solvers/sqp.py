@@ -67,6 +67,8 @@ class Sqp:
         solutions: dict[int, Solution] = {}
         for places in _group_by_form(problems):
             own = [problems[i] for i in places]
+            transcription = own[0].transcription
+            transcription.batch.prepare(len(own) * len(transcription.errors))
             programs = Programs(own)
             ended = minimise(
                 programs.evaluate,
