@@ -35,12 +35,12 @@ from .planning.plan_move import plan_move as plan_move
 from .planning.shaping import shaped_cycloid as shaped_cycloid
 from .profiles.cycloid import MAX_TERMS as MAX_TERMS
 from .profiles.cycloid import CycloidPolynomial as CycloidPolynomial
+from .profiles.cycloid import CycloidSpline as CycloidSpline
 from .profiles.joint_profile import JointPath as JointPath
 from .profiles.joint_profile import JointProfile as JointProfile
 from .profiles.networks import CycloidGaussians as CycloidGaussians
 from .profiles.networks import CycloidNetwork as CycloidNetwork
 from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
-from .profiles.spline import CycloidSpline as CycloidSpline
 from .record import SolveSettings as SolveSettings
 from .record import Verification as Verification
 from .robustness.measures import Figures as Figures

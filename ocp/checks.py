@@ -13,7 +13,7 @@ from msgspec import Meta
 T = TypeVar("T")
 
 
-def finite(name: str, value: Any, unit: str = "") -> float:
+def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
     """A finite number as a float."""
     wanted = f"number in {unit}" if unit else "number"
     try:
@@ -22,16 +22,16 @@ def finite(name: str, value: Any, unit: str = "") -> float:
         raise ValueError(f"{name} is {value!r}; give a {wanted}") from None
     if not math.isfinite(number):
         raise ValueError(f"{name} is {value}; give a finite {wanted}")
+    if abs(number) > most:
+        raise ValueError(f"{name} is {number:g}; give at most {most:g}{why and f' ({why})'}")
     return number
 
 
 def positive(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
     """A positive finite number as a float."""
-    number = finite(name, value, unit)
+    number = finite(name, value, unit, most, why)
     if number <= 0:
         raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
-    if number > most:
-        raise ValueError(f"{name} is {number:g}; give at most {most:g}{why and f' ({why})'}")
     return number
 
 

@@ -11,36 +11,12 @@ from threading import RLock, get_ident
 from types import FrameType
 from typing import Any, TextIO
 
-_signals = [signal.SIGINT]
-"""What stops the work."""
+STOPS = [signal.SIGINT]
+"""The signals that stop the work; a program of its own may add some."""
 _blocks: list[tuple[list[int], bool]] = []
 """The blocks under way: what came during each, and whether it holds that back."""
 _before: dict[int, Any] = {}
 """The handlers outside of them."""
-
-
-def _in_main() -> bool:
-    """Whether this is the thread that may change handlers."""
-    return threading.current_thread() is threading.main_thread()
-
-
-@contextmanager
-def as_ctrl_c() -> Iterator[None]:
-    """Let SIGTERM and SIGHUP stop the block as Ctrl-C does.
-
-    For a program that is a process of its own. Signals that are handled or ignored stay so.
-    """
-    others = [one for one in signal.Signals if one.name in ("SIGTERM", "SIGHUP")]
-    taken = [one for one in others if _in_main() and signal.getsignal(one) is signal.SIG_DFL]
-    for one in taken:
-        signal.signal(one, signal.default_int_handler)
-    _signals.extend(taken)
-    try:
-        yield
-    finally:
-        for one in taken:
-            _signals.remove(one)
-            signal.signal(one, signal.SIG_DFL)
 
 
 def _held() -> bool:
@@ -58,13 +34,13 @@ def _note(number: int, frame: FrameType | None) -> None:
 def _block(holds: bool) -> Iterator[list[int]]:
     """List the interrupts during the block; where no block holds them they act as outside, too."""
     came: list[int] = []
-    if not _in_main():
+    if threading.current_thread() is not threading.main_thread():  # only it may change handlers
         yield came
         return
     depth = len(_blocks)
     try:
         _blocks.append((came, holds))
-        for number in _signals if depth == 0 else ():
+        for number in STOPS if depth == 0 else ():
             handler = signal.getsignal(number)
             if callable(handler) and handler is not _note:
                 _before[number] = handler

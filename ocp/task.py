@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +15,7 @@ from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
-from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturbed_plants
+from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,8 @@ class ModalState:
 
     def __post_init__(self) -> None:
         for name, unit in (("W", "m"), ("dW", "m/s")):
-            numbers = tuple(finite(f"a mode's {name}", one, unit) for one in getattr(self, name))
+            given = enumerate(getattr(self, name), start=1)
+            numbers = tuple(finite(f"{name} of mode {i}", one, unit) for i, one in given)
             object.__setattr__(self, name, numbers)
         if len(self.W) != len(self.dW):
             raise ValueError(
@@ -103,10 +105,10 @@ def ask_for_jerk(names: Container[str]) -> bool:
 LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANTITIES.values()}
 """The limits that a task may set, with their units."""
 _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual_window": "s"}
-MOST_ANGLE, LEAST_DURATION, MOST_DURATION = 1e6, 1e-6, 1e6
-"""Beyond these [rad, s, s] no joint moves, and double precision does not follow."""
-LEAST_MOVE = 1e-6
-"""Below this [rad] the integrators' absolute tolerances are no longer small beside the move."""
+_MOST = {"rad": 1e6, "s": 1e6}
+"""Beyond these no joint moves, and double precision does not follow."""
+LEAST_DURATION, LEAST_MOVE = 1e-6, 1e-6
+"""Below these [s, rad] double precision or the integrators' absolute tolerances do not suffice."""
 
 
 @dataclass(frozen=True)
@@ -167,13 +169,10 @@ class PointToPoint:
         limits = {name: unit for name, unit in LIMITS.items() if getattr(self, name) is not None}
         for name, unit in (_UNITS | limits).items():
             check = finite if unit == "rad" else positive
-            number = check(name.replace("_", " "), getattr(self, name), unit)
+            most = _MOST.get(unit, math.inf)
+            number = check(name.replace("_", " "), getattr(self, name), unit, most)
             object.__setattr__(self, name, number)
         for name, angle in (("start", self.start), ("target", self.target)):
-            if abs(angle) > MOST_ANGLE:
-                raise ValueError(
-                    f"{name} is {angle:g} rad; give an angle within {MOST_ANGLE:g} rad"
-                )
             if abs(angle) > 2 * math.pi and (2 * angle).is_integer():  # no multiple of pi is
                 warnings.warn(
                     f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
@@ -182,12 +181,11 @@ class PointToPoint:
                 )
         if abs(self.span) < LEAST_MOVE:
             raise ValueError(
-                f"target - start is {self.span:g} rad; give a move of at least {LEAST_MOVE:g} rad"
+                f"target - start is {self.span:g} rad: there is no move; change one of them by "
+                f"{LEAST_MOVE:g} rad or more"
             )
-        if not LEAST_DURATION <= self.duration <= MOST_DURATION:
-            raise ValueError(
-                f"duration is {self.duration:g} s; give {LEAST_DURATION:g} to {MOST_DURATION:g} s"
-            )
+        if self.duration < LEAST_DURATION:
+            raise ValueError(f"duration is {self.duration:g} s; give at least {LEAST_DURATION:g} s")
         modes = self.plant.modes
         for name, state in (("initial", self.initial), ("final", self.final)):
             if state is not None and len(state.W) != modes:
@@ -247,10 +245,11 @@ class PointToPoint:
         samples = () if self.uncertainty is None else self.uncertainty.samples
         return ((0.0,) * len(self.ranges), *samples)
 
-    @property
+    @cached_property
     def perturbed_plants(self) -> tuple[Plant, ...]:
         """The plant in every scenario, the nominal one first."""
-        return perturbed_plants(self.plant, self.error_names, self.scenarios)
+        others = (dict(zip(self.ranges, one, strict=True)) for one in self.scenarios[1:])
+        return (self.plant, *(perturb_plant(self.plant, errors) for errors in others))
 
     @property
     def certain(self) -> PointToPoint:

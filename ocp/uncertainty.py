@@ -215,12 +215,3 @@ class Uncertainty:
 
     def __hash__(self) -> int:
         return hash((tuple(self.ranges.items()), self.samples))
-
-
-@lru_cache(maxsize=64)
-def perturbed_plants(
-    plant: Plant, names: tuple[str, ...], scenarios: tuple[Scenario, ...]
-) -> tuple[Plant, ...]:
-    """The plant with the errors of every scenario; itself where there are none."""
-    named = (dict(zip(names, errors, strict=True)) for errors in scenarios)
-    return tuple(perturb_plant(plant, one) if any(one.values()) else plant for one in named)

@@ -14,7 +14,7 @@ from keyword import iskeyword
 import click
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import unknown
-from quietarm.ocp.interrupts import as_ctrl_c
+from quietarm.studies.cli.signals import as_ctrl_c
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 

@@ -24,7 +24,7 @@ def _families() -> dict[str, type[Cycloid]]:
         for kind in vars(module).values()
         if isinstance(kind, type) and issubclass(kind, Cycloid) and hasattr(kind, "name")
     }
-    return {POLYNOMIAL: found.pop(POLYNOMIAL), **found}
+    return {POLYNOMIAL: found.pop(POLYNOMIAL), **dict(sorted(found.items()))}
 
 
 FAMILIES: Mapping[str, type[Cycloid]] = _families()
