@@ -1,6 +1,6 @@
 """What is asked, and the gradient answer.
 
-What is asked: `task`, its `quantities`, and how a joint may move, `profiles`. What a motion costs:
+What is asked: `task` with its limits, and how a joint may move, `profiles`. What a motion costs:
 `simulation`, `robustness`. The gradient's answers: `solvers` solve, and `planning`, `front` and
 `floor` ask it. An answer is `saved` with its `record`; `checks`, `errors`, `files` and
 `interrupts` serve all. What a user needs is here.

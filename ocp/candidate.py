@@ -26,7 +26,7 @@ from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import Motion, WithPeaks
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.trajectory import Trajectory, outputs_of
-from quietarm.ocp.task import QUANTITIES, PointToPoint
+from quietarm.ocp.task import QUANTITIES, PointToPoint, Quantity
 from quietarm.ocp.uncertainty import perturb_plant
 
 _STEPS, _SMOOTH_STEPS = 500, 250
@@ -112,22 +112,32 @@ class Candidate(WithPeaks):
     @cached_property
     def motion(self) -> Motion:
         """All figures; peaks are those between the samples."""
-        extreme, task = self._extreme, self.task
-        joint = extreme.motion if self.path.has_jerk else extreme.motion._replace(jerk=None)
-        past_target = (joint.angle - task.target) * np.sign(task.span)
-        deflection = max(float(np.abs(one._extreme.tips).max()) for one in self.scenarios)
-        of = {
-            q.peak: q.of(joint, list(extreme.tips.T), extreme.torque) for q in QUANTITIES.values()
+        task, joint = self.task, self._samples.motion
+        past_target = (self._largest(joint.angle[None]) - task.target) * np.sign(task.span)
+        peaks = {
+            quantity.peak: max(
+                one._peak(quantity) for one in (self.scenarios if quantity.in_scenarios else [self])
+            )
+            for quantity in QUANTITIES.values()
+            if quantity.name != "jerk" or self.path.has_jerk
         }
-        known = {name: rows for name, rows in of.items() if all(row is not None for row in rows)}
-        peaks = {name: float(np.abs(rows).max()) for name, rows in known.items()}
         return Motion(
             residual=self.residual,
             energy=self.energy,
             net_work=self._run.net_work,
             overshoot=max(0.0, float(past_target.max())),
-            **peaks | {"peak_deflection": deflection},
+            **peaks,
         )
+
+    def _peak(self, quantity: Quantity) -> float:
+        """The largest absolute value of a quantity, between the samples as well."""
+        samples = self._samples
+        values = quantity.of(samples.motion, list(samples.tips.T), samples.torque)
+        return float(np.abs(self._largest(np.array(values))).max())
+
+    def _largest(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Least and largest value of each row of samples."""
+        return extremes(self._grid.samples, rows)
 
     def peak(self, name: str) -> float:
         """As of `WithPeaks`."""
@@ -204,10 +214,10 @@ class Candidate(WithPeaks):
         return Grid(max(of_a_piece, _LEAST_STEPS_OF_A_PIECE))
 
     @cached_property
-    def _extreme(self) -> Trajectory:
-        """The least and the largest of everything on the way, as two samples."""
-        found = extremes(self._grid.samples, self._run.outputs)
-        return Trajectory.from_outputs(self.task.plant, np.zeros(2), found)
+    def _samples(self) -> Trajectory:
+        """Everything on the way, at the samples of the quadrature."""
+        outputs = self._run.outputs
+        return Trajectory.from_outputs(self.task.plant, np.zeros(outputs.shape[1]), outputs)
 
     @keep_interrupts()  # casadi loses a Ctrl-C
     def _after(self, later: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -60,6 +60,8 @@ class Quantity:
         (joint's motion, tip displacements, joint torque) -> its values.
     derivative : int or None
         Which time derivative of the joint's angle it is; None where it follows from the modes.
+    in_scenarios : bool
+        Whether its limit holds in all scenarios of an uncertain task; else for the nominal plant.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Quantity:
     label: str
     of: Callable[[JointMotion, Sequence[Expression], Expression], Sequence[Expression]]
     derivative: int | None = None
+    in_scenarios: bool = False
 
     @property
     def limit(self) -> str:
@@ -91,7 +94,7 @@ QUANTITIES: Mapping[str, Quantity] = {
         Quantity("speed", "rad/s", "joint speed", lambda joint, *_: [joint[1]], 1),
         Quantity("acceleration", "rad/s^2", "joint acceleration", lambda joint, *_: [joint[2]], 2),
         Quantity("jerk", "rad/s^3", "joint jerk", lambda joint, *_: [joint[3]], 3),
-        Quantity("deflection", "m", "tip displacement", lambda joint, tips, torque: tips),
+        Quantity("deflection", "m", "tip displacement", lambda joint, tips, _: tips, None, True),
     )
 }
 """Every quantity by its name; each has fields for its limit below and for its peak in `Motion`."""

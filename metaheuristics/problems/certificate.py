@@ -90,9 +90,13 @@ class Certificates(Saved):
 
 
 def checksum(front: Front) -> str:
-    """SHA-256 of a front's move, profile, box and points, in canonical JSON."""
+    """SHA-256 of a front's move, profile, box and points, in canonical JSON.
+
+    What the move does not set is left out, so that a new option of tasks changes nothing.
+    """
     bound = front.settings.get("bound")
-    content = [plain(front.task), plain(front.profile), bound, plain(front.points)]
+    task = {name: value for name, value in plain(front.task).items() if value is not None}
+    content = [task, plain(front.profile), bound, plain(front.points)]
     text = json.dumps(content, sort_keys=True, separators=(",", ":"))
     return sha256(text.encode()).hexdigest()
 

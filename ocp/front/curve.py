@@ -69,7 +69,7 @@ class Curve:
     @property
     def solver(self) -> Solver:
         """What solves its problems."""
-        return solver_of(self.settings.solver)
+        return solver_of(self.settings)
 
     @cached_property
     def starts(self) -> list[Array]:

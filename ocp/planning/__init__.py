@@ -1,4 +1,4 @@
 """The least energy of one move: its solver, the check by CVODES, what to say where none exists.
 
-May import `program` and the rooms below it.
+May import `solvers` and the rooms below it.
 """

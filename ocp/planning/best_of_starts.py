@@ -120,7 +120,7 @@ def plan_from_starts(
     And the coefficients of all that were solved, cheapest first. Errors are those of
     `solve_from_starts` and `certify`.
     """
-    began, solver = time.perf_counter(), solver_of(settings.solver, settings.print_level)
+    began, solver = time.perf_counter(), solver_of(settings)
     starts = start_coefficients(profile, settings) if starts is None else starts
     transcription = Transcription.of(task, profile, settings.steps)
     limits = {RESIDUAL: settings.residual_limit, **task.limits}

@@ -15,7 +15,7 @@ from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.solution import Solution
 from quietarm.ocp.solvers.transcription import (
-    MOST_STEPS,
+    MOST_SOLVER_STEPS,
     STILL,
     STILL_SHARE,
     Transcription,
@@ -45,7 +45,7 @@ class Tolerances:
     """
 
     energy: float = 1e-5
-    most_steps: int = MOST_STEPS
+    most_steps: int = MOST_SOLVER_STEPS
 
 
 OF_A_PLAN = Tolerances()

@@ -116,7 +116,7 @@ def plan_moves(
         Problem(one, Scalarization({RESIDUAL: residual_limit, **one.task.limits}, bound))
         for one in transcribe(tasks, profile, _steps(tasks, profile))
     ]
-    chosen, first = solver_of(solver), start_coefficients(profile, settings)
+    chosen, first = solver_of(settings), start_coefficients(profile, settings)
     random = start_coefficients(profile, replace(settings, starts=4))[1:]
     attempts: list[tuple[Solver, list[Array]]]
     attempts = [(chosen, first), (chosen, random), (Ipopt(), first[:1])]

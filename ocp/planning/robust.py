@@ -120,7 +120,7 @@ def _least_worst_case(
     transcription = Transcription.of(task, profile, settings.steps)
     asked = Scalarization(task.limits, settings.bound, {RESIDUAL: 1.0})
     every = [*starts, *start_coefficients(profile, settings)]
-    solver = solver_of(settings.solver)
+    solver = solver_of(settings)
     (found,) = best_of_starts([Problem(transcription, asked)], [every], solver)
     if not found.status.solved:
         raise InfeasibleTaskError(f"no motion keeps the limits: {found.status.text}")

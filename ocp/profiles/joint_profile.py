@@ -117,10 +117,10 @@ class JointProfile(ABC):
         """
 
     def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
-        """Three values that the coefficients enter; `outer` makes the joint's motion of them.
+        """Values that the coefficients enter; `outer` makes the joint's motion of them.
 
-        A profile whose coefficients enter linearly somewhere on the way to the joint says so by
-        these two; the gradient is then several times cheaper. The move is as in `derivatives`.
+        Where they are linear in the coefficients, by derivatives that depend on neither these nor
+        the move, the gradient is several times cheaper. The move is as in `derivatives`.
         """
         return self.derivatives(coefficients, fraction, *move)[:3]
 

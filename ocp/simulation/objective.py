@@ -1,4 +1,4 @@
-"""F1, F2 and the diagnostics of a motion: each quantity is defined here, once."""
+"""F1, F2 and the diagnostics of a motion: each is defined here, once."""
 
 from __future__ import annotations
 

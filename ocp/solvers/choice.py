@@ -7,6 +7,7 @@ from typing import Literal, Protocol, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.solution import Solution
@@ -31,6 +32,6 @@ class Solver(Protocol):
         ...
 
 
-def solver_of(name: SolverName, print_level: int = 0) -> Solver:
-    """The solver of a name; the level of its log is IPOPT's."""
-    return Sqp() if name == "sqp" else Ipopt(print_level)
+def solver_of(settings: SolveSettings) -> Solver:
+    """The solver that settings ask for."""
+    return Sqp() if settings.solver == "sqp" else Ipopt(settings.print_level)

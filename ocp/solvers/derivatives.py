@@ -254,7 +254,7 @@ class _Differentiated:
             *self.hessian_factors(energy_pp, of_outputs, of_forcing),
             self.path_hessian(of_outputs, of_forcing),
         ]
-        options = {"cse": 1 < rows and steps <= _STEPS_OF_CSE}
+        options = {"cse": rows > 1 and steps <= _STEPS_OF_CSE}
         return ca.Function("derivatives", self.inputs, [_join(x, rows) for x in found], options)
 
 

@@ -161,8 +161,8 @@ def _perturb(form: _Form, errors: Sequence[float]) -> Plant:
 
 
 def _values(form: _Form, name: str, rollouts: Sequence[SymbolicRollout]) -> ca.MX:
-    """A limited quantity at all nodes; the deflection in all scenarios."""
-    counted = rollouts if name == "deflection" else rollouts[:1]
+    """A limited quantity at all nodes, where it asks for that in all scenarios."""
+    counted = rollouts if QUANTITIES[name].in_scenarios else rollouts[:1]
     values = list[Any]()
     for rollout, errors in zip(counted, form.scenarios, strict=False):
         tips = [_perturb(form, errors).tip_displacements(state.W) for state in rollout.states]

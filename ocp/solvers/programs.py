@@ -17,11 +17,10 @@ from quietarm.ocp.solvers.constraints import Box, Constraint, Peak, QuantityLimi
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.quadratic import Model, Multipliers
 from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL
+from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
-_IN_SCENARIOS = "deflection"
-"""The quantity whose limit holds in all scenarios; the others' hold for the nominal plant."""
 
 
 class Programs:
@@ -75,7 +74,7 @@ class Programs:
             limit = self._limits(RESIDUAL) / self._scales(RESIDUAL)
             constraints[RESIDUAL] = ResidualLimit(self._tips(), limit)
         for name, place in self._batch.places.items():
-            scenarios = self._scenarios if name == _IN_SCENARIOS else 1
+            scenarios = self._scenarios if QUANTITIES[name].in_scenarios else 1
             own = place, scenarios, self._limits(name), self._scales(name)
             constraints[name] = QuantityLimit(*own)
         if self._peak is not None:

@@ -30,7 +30,7 @@ class Solution:
     status : SolveStatus
         How it ended.
     iterations : int
-        Iterations of the solver, those of other starts of the same problem included.
+        Iterations of the solver; `best_of_starts` adds those of the other starts.
     arrival : ndarray, shape (scenarios, 2 * modes)
         W [m] and then W' [m/s] on arrival in every scenario, with the scalarization's offset.
     shadow_prices : mapping of str to float

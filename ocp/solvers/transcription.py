@@ -20,7 +20,7 @@ ENERGY, RESIDUAL = "energy", "residual"
 _LEAST_STEPS, _LIMITED_STEPS, _STEPS_A_TERM = 48, 80, 8
 """Steps that resolve a profile: more with more terms, since the power changes sign more often, but
 within the first two; with limits the second, since limits hold only at the nodes."""
-MOST_STEPS = 3200
+MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
 STILL, STILL_SHARE = 1e-8, 1e-7
 """A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
@@ -120,10 +120,10 @@ def first_steps(task: PointToPoint, profile: JointProfile) -> int:
     fewest = _LIMITED_STEPS if task.limits else _LEAST_STEPS
     least = min(max(fewest, _STEPS_A_TERM * (profile.size - 2)), _LIMITED_STEPS)
     steps = default_steps(task, least=least)
-    if steps > MOST_STEPS:
+    if steps > MOST_SOLVER_STEPS:
         raise ValueError(
             f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
-            f"mode; the solver resolves up to {MOST_STEPS // 2}: give a shorter duration"
+            f"mode; the solver resolves up to {MOST_SOLVER_STEPS // 2}: give a shorter duration"
         )
     return steps
 
