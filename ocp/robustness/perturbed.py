@@ -59,7 +59,8 @@ def perturbed_figures(
     figures = np.empty((len(errors), 3))
     for first in range(0, len(errors), _BLOCK):
         block = errors[first : first + _BLOCK]
-        found = rows.values(*(np.tile(one, (len(block), 1)) for one in (motion, task.row)), block)
+        candidates, moves = (np.tile(one, (len(block), 1)) for one in (motion, task.row))
+        found = rows.values(candidates, moves, block)
         plants = perturb_plant(task.plant, dict(zip(names, map(ca.DM, block.T), strict=True)))
         vibrations = FreeVibration(plants, [task.target] * len(block), task.residual_window)
         residual = vibrations.peak(task.missed(found.arrival))
