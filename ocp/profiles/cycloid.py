@@ -27,7 +27,7 @@ DEGREE = 5
 
 @dataclass(frozen=True)
 class Cycloid(JointProfile):
-    """A cycloid whose input U goes from 0 to 1, so that the joint is at rest at both ends, eq (5)."""
+    """A cycloid whose input U goes from 0 to 1, so that the joint rests at both ends, eq (5)."""
 
     term: ClassVar[str] = "term"
     least_terms: ClassVar[int] = 1
