@@ -24,8 +24,8 @@ from quietarm.ocp.task import QUANTITIES, ask_for_jerk
 from quietarm.ocp.uncertainty import perturb_plant
 
 _STEPS_OF_CSE = 48
-"""Common terms are looked for up to these steps: that takes a fifth off a call, but a time that
-grows with the square of the steps."""
+"""Common terms are looked for up to these steps, where many rows gain by it: that takes a fifth off
+a call, but a time that grows with the square of the steps."""
 
 
 class Kind(NamedTuple):
@@ -254,7 +254,7 @@ class _Differentiated:
             *self.hessian_factors(energy_pp, of_outputs, of_forcing),
             self.path_hessian(of_outputs, of_forcing),
         ]
-        options = {"cse": steps <= _STEPS_OF_CSE}
+        options = {"cse": 1 < rows and steps <= _STEPS_OF_CSE}
         return ca.Function("derivatives", self.inputs, [_join(x, rows) for x in found], options)
 
 

@@ -85,8 +85,9 @@ class Programs:
         lower, upper = np.array(boxes).transpose(1, 0, 2)
         boxed = bool(np.isfinite(lower).any() or np.isfinite(upper).any())
         self._axes = self._batch.even_axes(boxed)
-        widened = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
-        box = Box(lower, upper, widened)
+        # the coefficients by all unknowns
+        self._along = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
+        box = Box(lower, upper, self._along)
         self.linear, self.constraints = box.count, {**constraints, "box": box}
         self.lower, self.upper = (
             np.hstack([getattr(each, name) for each in self.constraints.values()])
@@ -168,7 +169,7 @@ class Programs:
             np.repeat(width * self._energy[rows] / self._move[rows, 2], scenarios),
             weights,
         ).by_scenario(scenarios)
-        along = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
+        along = self._along
         return Derivatives(
             energy=found.energy,
             arrival=found.arrival + self._offset[rows],
