@@ -152,7 +152,7 @@ def evaluate_robustness(
     shares = np.arange(-_SIDE, _SIDE + 1) / _SIDE
     alone = [np.outer(shares, own) for own in np.diag(largest)]
     random = np.random.default_rng(seed).uniform(-largest, largest, (samples, len(largest)))
-    every: NDArray[np.float64] = np.vstack([*alone, random])
+    every = np.vstack([*alone, random]).astype(float)
     found = perturbed_figures(task, profile, coefficients, ranges, every, report)
     *swept, sampled = np.split(found, len(shares) * np.arange(1, len(ranges) + 1))
     cycloid = _plain(task).residual
