@@ -62,26 +62,16 @@ def epsilon_front(
 
     Parameters
     ----------
-    task : PointToPoint
-        The move and its limits.
-    profile : JointProfile, optional
-        How the joint moves; the cycloid of a polynomial of six terms by default.
-    bound : float, optional
-        Largest absolute coefficient; none by default.
+    task, profile, bound, seed, steps, solver
+        As for `plan_move`.
     points : int
         Number of points, the ends included.
     at : sequence of float, optional
         Residuals [m] at which there is to be a point as well, where they lie between the ends.
     starts : int
         Starts of the ends; from two on one random start tries the first limits and some points.
-    seed : int
-        Seed of the random starts.
-    steps : int, optional
-        Steps of the solver's discretisation, as for `plan_move`.
     report : callable, optional
         Called with the number of points done and of all.
-    solver : {"sqp", "ipopt"}
-        As for `plan_move`.
 
     Returns
     -------
@@ -94,10 +84,8 @@ def epsilon_front(
     ------
     ValueError
         When an argument is out of range.
-    InfeasibleTaskError
-        When no motion of this profile keeps the task's limits.
-    SolverFailedError
-        When an end of the front could not be found for another reason.
+    InfeasibleTaskError, SolverFailedError
+        When no motion of this profile keeps the limits, or an end is not found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
     points = number_of_points(points)

@@ -174,27 +174,19 @@ class Front(Saved):
 
         Parameters
         ----------
-        task : PointToPoint
-            The move.
+        task, method, settings, seed
+            As of a front; a ``bound`` among the settings must be kept.
         coefficients : array_like, shape (motions, profile.size)
             The profile's coefficients, one row for each motion.
-        method : str
-            What found them.
         profile : JointProfile, optional
-            How the joint moves; by default the cycloid of a polynomial with as many terms as there
-            are columns.
-        settings : mapping, optional
-            Settings of the method; a ``bound`` on the coefficients must be kept.
-        seed : int, optional
-            Seed of its random numbers.
+            How the joint moves; by default a `CycloidPolynomial` of as many terms.
         evaluations : int, optional
             Candidates that it took to find them; as many as there are motions by default.
 
         Returns
         -------
         Front
-            The front. `failed` those that CVODES cannot follow,
-            `infeasible` those that break a limit by more than 1e-9.
+            Its `failed` are those that CVODES cannot follow, `infeasible` those that break a limit.
 
         Raises
         ------

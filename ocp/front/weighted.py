@@ -72,10 +72,8 @@ def weighted_front(
     ------
     ValueError
         When an argument is out of range, or a weight negative, or both of a pair zero.
-    InfeasibleTaskError
-        When no motion of this profile keeps the task's limits.
-    SolverFailedError
-        When an end of the front could not be found for another reason.
+    InfeasibleTaskError, SolverFailedError
+        When no motion of this profile keeps the limits, or an end is not found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
     points = number_of_points(points)

@@ -98,10 +98,9 @@ def plan_move(
     ------
     ValueError
         When an argument is out of range.
-    InfeasibleTaskError
-        When no motion of this profile meets the task; the text says what would be feasible.
-    SolverFailedError
-        When no start ended at an optimum for another reason.
+    InfeasibleTaskError, SolverFailedError
+        When no motion of this profile meets the task, with what would be feasible; when no start
+        ended at an optimum for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
     if guess is not None:

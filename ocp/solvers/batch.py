@@ -37,16 +37,10 @@ _PADDED = 200
 
 @dataclass(frozen=True)
 class Values:
-    """What candidates cost; rows are candidates.
+    """What candidates cost, a row each: F2 [J], state on arrival, limited quantities at the nodes.
 
-    Attributes
-    ----------
-    energy : ndarray, shape (rows,)
-        F2 [J], with its sign changes resolved.
-    arrival : ndarray, shape (rows, 2 * modes)
-        W [m], then W' [m/s].
-    limited : ndarray, shape (rows, values)
-        Each limited quantity at the nodes; `Batch.places` tells where.
+    Shapes are (rows,), (rows, 2 * modes) and (rows, values); `Batch.places` tells which value is of
+    which quantity.
     """
 
     energy: Array
@@ -56,13 +50,9 @@ class Values:
 
 @dataclass(frozen=True)
 class Multipliers:
-    """What weighs the Hessian of a sum of energy, arrival and limited quantities.
+    """Weights of the sum of energy, arrival and limited values whose Hessian is asked for.
 
-    Attributes
-    ----------
-    energy : ndarray, shape (rows,)
-    arrival : ndarray, shape (rows, 2 * modes)
-    limited : ndarray, shape (rows, values)
+    Shapes are those of `Values`; or with an axis of scenarios after the first.
     """
 
     energy: Array

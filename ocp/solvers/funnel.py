@@ -71,20 +71,9 @@ class End(Enum):
 
 @dataclass(frozen=True)
 class Ended:
-    """Where the rows ended.
+    """Where the rows ended: points (rows, n), multipliers, why, after how many iterations (rows,).
 
-    Attributes
-    ----------
-    x : ndarray, shape (rows, n)
-        Points.
-    violation : ndarray, shape (rows,)
-        The largest distance from c = 0 and from the bounds of v.
-    multipliers : Multipliers
-        Of c and v.
-    ends : list of End
-        Why.
-    iterations : ndarray, shape (rows,)
-        How many.
+    The violation (rows,) is the largest distance from c = 0 and from the bounds of v.
     """
 
     x: Array

@@ -25,12 +25,9 @@ _EQUALITY, _OPTIMUM, _EMPTY = 5, 1, -1
 
 
 class Multipliers(NamedTuple):
-    """Multipliers of rows, positive where the objective falls if a value may grow.
+    """Multipliers of m equalities and k bounded values, shapes (rows, m) and (rows, k).
 
-    Attributes
-    ----------
-    equality, bounded : ndarray, shapes (rows, m) and (rows, k)
-        Of the equalities, and of what is bounded.
+    Positive where the objective falls if a value may grow.
     """
 
     equality: Array
@@ -48,18 +45,8 @@ class Multipliers(NamedTuple):
 class Model(NamedTuple):
     """Rows of programs at their points: values, derivatives, Hessian of the Lagrangian.
 
-    Attributes
-    ----------
-    objective : ndarray, shape (rows,)
-        Objective.
-    gradient : ndarray, shape (rows, n)
-        Its gradient.
-    equality, bounded : ndarray, shapes (rows, m) and (rows, k)
-        Equalities, which are to be 0, and what is bounded.
-    equality_jacobian, bounded_jacobian : ndarray, shapes (rows, m, n) and (rows, k, n)
-        Their derivatives.
-    hessian : ndarray, shape (rows, n, n)
-        Of the Lagrangian.
+    Shapes are (rows,), (rows, n); (rows, m) and (rows, m, n) of the equalities, which are to be 0;
+    (rows, k) and (rows, k, n) of what is bounded; (rows, n, n).
     """
 
     objective: Array
