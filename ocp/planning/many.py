@@ -39,22 +39,16 @@ class Moves:
 
     Attributes
     ----------
-    tasks : tuple of PointToPoint
-        The moves.
-    profile : JointProfile
-        How the joint moves.
+    tasks, profile
+        The moves, and how the joint moves.
     coefficients : ndarray, shape (moves, profile.size)
         Coefficients; NaN where there is no plan.
     energy, residual : ndarray, shape (moves,)
         F2 [J] and F1 [m]; NaN where there is no plan.
     peaks : dict of str to ndarray, shape (moves,)
         Largest absolute values on the way by quantity [SI units]; NaN where there is no plan.
-    status : tuple of SolveStatus
-        How each ended.
-    reasons : tuple of str
-        The same in the solver's words.
-    iterations : ndarray, shape (moves,)
-        Iterations of the solver.
+    status, reasons, iterations
+        How each ended, the same in the solver's words, and after how many iterations.
     shadow_prices : tuple of mapping of str to float
         By how much each least energy falls if a limit is widened [J by the limit's unit]; of the
         residual, too, where rest on arrival is asked for. Empty where there is no plan.

@@ -155,34 +155,23 @@ def evaluate_coefficients(
     method: str = "given coefficients",
     settings: Mapping[str, Setting] | None = None,
 ) -> Plan:
-    """The figures of one motion of a profile.
+    """The figures of one motion of a profile: a plan whose status says that nothing was optimised.
 
     Parameters
     ----------
     task : PointToPoint
         The move.
     coefficients : array_like, shape (profile.size,)
-        The profile's coefficients; for the cycloid of a polynomial a_1 to a_N of eq (6), none for
-        the plain cycloid.
+        The profile's coefficients; none for the plain cycloid.
     profile : JointProfile, optional
-        How the joint moves; by default the cycloid of a polynomial with as many terms as there are
-        coefficients.
-    method : str
+        How the joint moves; by default a `CycloidPolynomial` of as many terms, eq (6).
+    method, settings
         Where the coefficients come from, for the plan's provenance.
-    settings : mapping, optional
-        Settings of that method.
-
-    Returns
-    -------
-    Plan
-        A plan whose status says that nothing was optimised.
 
     Raises
     ------
-    ValueError
-        When the coefficients or the duration do not fit the profile.
-    SolverFailedError
-        When CVODES cannot follow the motion.
+    ValueError, SolverFailedError
+        When coefficients or duration do not fit the profile; when CVODES cannot follow the motion.
     """
     began, settings = time.perf_counter(), {} if settings is None else settings
     if profile is None:

@@ -71,22 +71,18 @@ def symbolic_rollout(
     initial: Sequence[Expression] = (),
     energy: Energy = ABSOLUTE_POWER,
 ) -> SymbolicRollout:
-    """Simulate the modes along the profile, with a fixed number of steps.
+    """Simulate the modes along the profile in fixed steps: joint, modes, torque, state on arrival.
 
     Parameters
     ----------
-    plant : Plant
-        What moves.
-    profile : JointProfile
-        How the joint moves.
+    plant, profile
+        What moves, and how the joint does.
     coefficients : sequence of Expression
         The profile's coefficients; each of shape (candidates, steps), or a scalar.
     move : sequence of Expression
         start [rad], target [rad], duration [s]; scalars.
-    steps : int
-        Number of steps.
-    candidates : int
-        Number of rows.
+    steps, candidates : int
+        Number of steps, and of rows.
     jerk : bool
         Whether the joint's jerk is computed as well, at the times of `Grid.stretch`.
     breaks : tuple of float
@@ -96,11 +92,6 @@ def symbolic_rollout(
         default.
     energy : Energy
         What counts as the energy.
-
-    Returns
-    -------
-    SymbolicRollout
-        Every joint, mode and torque at the Gauss nodes, and the state at arrival.
     """
     grid = Grid(steps, breaks)
     times, length = grid.columns(candidates)
