@@ -20,12 +20,11 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
-from quietarm.ocp.simulation.extremes import extremes
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import Motion, WithPeaks
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.trajectory import Trajectory, outputs_of
+from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import QUANTITIES, PointToPoint, Quantity
 from quietarm.ocp.uncertainty import perturb_plant
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics.budget.problem import BudgetProblem
 from quietarm.ocp.front.curve import Curve
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Solution
 
 Array = NDArray[np.float64]
 _BETWEEN = (0.25, 0.5, 0.75)

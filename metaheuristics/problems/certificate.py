@@ -18,8 +18,7 @@ from quietarm.ocp.planning.best_of_starts import plan_from_starts
 from quietarm.ocp.planning.certify import judge
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
-from quietarm.ocp.solvers.problem import Problem, Scalarization
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, Transcription
 

@@ -18,8 +18,7 @@ from quietarm.ocp.planning.certify_all import certify_all
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, SolveSettings
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Scalarization
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Scalarization, Solution
 from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
 from quietarm.ocp.task import PointToPoint
 

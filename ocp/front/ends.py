@@ -10,8 +10,7 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve
 from quietarm.ocp.planning.best_of_starts import SAME, best_of_starts, solve_from_starts
 from quietarm.ocp.planning.certify import OF_A_PLAN, Tolerances, certify
 from quietarm.ocp.planning.feasibility import least_peaks_of
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution
 from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL, STILL, Transcription
 
 _ENERGY_WEIGHTS = (1.0, 0.1, 0.02, 2e-3)

@@ -20,7 +20,7 @@ from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings, digits, number_of_points
 from quietarm.ocp.solvers.choice import SolverName
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.transcription import STILL
 from quietarm.ocp.task import PointToPoint
 

@@ -10,7 +10,7 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report,
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Solution
 
 
 @dataclass(frozen=True)

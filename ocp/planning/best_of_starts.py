@@ -15,8 +15,7 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Provenance, SolveSettings, Verification
 from quietarm.ocp.solvers.choice import Solver, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem, Scalarization
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
 from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL, Transcription
 from quietarm.ocp.task import PointToPoint
 

@@ -12,8 +12,7 @@ from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.simulation.objective import WithPeaks
 from quietarm.ocp.solvers.choice import Solver
-from quietarm.ocp.solvers.problem import Problem
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.transcription import (
     MOST_SOLVER_STEPS,
     STILL,

@@ -22,8 +22,7 @@ from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Batch, Values, batch
 from quietarm.ocp.solvers.choice import Solver
-from quietarm.ocp.solvers.problem import Problem
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.transcription import STILL, Transcription, transcribe
 from quietarm.ocp.task import QUANTITIES
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.planning.certify import judge
 from quietarm.ocp.simulation.objective import WithPeaks
-from quietarm.ocp.solvers.problem import Problem
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.solvers.transcription import RESIDUAL, STILL
 from quietarm.ocp.task import QUANTITIES

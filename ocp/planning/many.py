@@ -21,8 +21,7 @@ from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem, Scalarization
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
 from quietarm.ocp.solvers.transcription import RESIDUAL, first_steps, transcribe
 from quietarm.ocp.task import QUANTITIES, PointToPoint
 

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem
-from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.sqp import Sqp
 
 SolverName = Literal["sqp", "ipopt"]

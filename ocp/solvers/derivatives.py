@@ -17,9 +17,8 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import NODES, Step, step
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import march, symbolic_rollout
-from quietarm.ocp.solvers.elementwise import product, repeat, repeat_table, transpose
 from quietarm.ocp.solvers.energy import energy_with_derivatives
-from quietarm.ocp.solvers.node import Node, Path
+from quietarm.ocp.solvers.node import Node, Path, product, repeat, repeat_table, transpose
 from quietarm.ocp.task import QUANTITIES, ask_for_jerk
 from quietarm.ocp.uncertainty import perturb_plant
 

@@ -31,8 +31,7 @@ from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.objective import integrated
 from quietarm.ocp.simulation.rollout import SymbolicRollout, symbolic_rollout
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
-from quietarm.ocp.solvers.problem import Problem
-from quietarm.ocp.solvers.solution import Solution, price_of_rest
+from quietarm.ocp.solvers.problem import Problem, Solution, price_of_rest
 from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL
 from quietarm.ocp.task import QUANTITIES, ask_for_jerk
 from quietarm.ocp.uncertainty import perturb_plant

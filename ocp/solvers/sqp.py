@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, End, Ended, minimise
-from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.problem import Problem, Solution, price_of_rest
 from quietarm.ocp.solvers.programs import Programs
-from quietarm.ocp.solvers.solution import Solution, price_of_rest
 from quietarm.ocp.solvers.transcription import RESIDUAL, evaluate
 
 Array = NDArray[np.float64]
