@@ -141,7 +141,7 @@ def front(
 ) -> None:
     """Find the trade-off of residual and energy by the gradient, or with a metaheuristic.
 
-    Ctrl-C ends the work early and keeps what was found.
+    Ctrl-C ends the work early; a search keeps what it has found until then.
 
     \b
     Examples; NSGA-II and VEPSO with the paper's settings:
