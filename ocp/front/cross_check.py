@@ -18,7 +18,7 @@ from quietarm.ocp.solvers.transcription import RESIDUAL
 _SAME = 1e-6
 """Energies that differ by no more than this share agree."""
 _STARTS = 4
-"""The plain cycloid first; the others only where it led to a dearer minimum."""
+"""The plain cycloid first; where that leads to a dearer minimum random ones, and last the point."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,8 @@ def cross_check(front: Front, points: int = 7, report: Report = no_report) -> Cr
     Returns
     -------
     CrossCheck
-        What both found. Where the plain cycloid leads to a dearer minimum, random starts follow.
+        What both found. Where the plain cycloid leads to a dearer minimum, random starts follow,
+        and in the end the point itself.
 
     Raises
     ------
@@ -101,8 +102,9 @@ def _compare(curve: Curve, point: FrontPoint) -> Compared:
     }
     limits[RESIDUAL] = peaks[RESIDUAL]
     problem, best = Problem(transcription, asked._replace(limits=limits)), np.nan
-    for start in curve.starts:
-        (found,) = curve.solver.solve([problem], [start])
+    starts = [(start, False) for start in curve.starts]
+    for start, warm in [*starts, (np.array(point.coefficients), True)]:
+        (found,) = curve.solver.solve([problem], [start], warm=warm)
         if found.status.solved:
             energy = judge(transcription, found.coefficients).energy
             best = float(np.nanmin([best, energy]))

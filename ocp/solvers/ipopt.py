@@ -43,10 +43,17 @@ _OPTIONS = {
     **OPTIONS,
     # Where zeros of the power meet, exact second derivatives are without bound.
     "hessian_approximation": "limited-memory", "limited_memory_max_history": 50,
-    # There it ends within the constraints when the objective has hardly changed three times.
+    # There a second-order correction leads to and fro across the kink, for hundreds of iterations.
+    "max_soc": 0,
+    # And there it ends within the constraints when the objective has hardly changed three times.
     "acceptable_tol": 1e3, "acceptable_dual_inf_tol": 1e10, "acceptable_constr_viol_tol": 1e-9,
     "acceptable_compl_inf_tol": 1e-5, "acceptable_obj_change_tol": 1e-10, "acceptable_iter": 3,
 }  # fmt: skip
+_WARM = {
+    **_OPTIONS, "mu_strategy": "monotone", "mu_init": 1e-8, "bound_push": 1e-9,
+    "bound_frac": 1e-9, "slack_bound_push": 1e-9, "slack_bound_frac": 1e-9,
+}  # fmt: skip
+"""A thin barrier, which does not drive a start beside a minimum away from it."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +82,7 @@ class Ipopt:
         del groups
         widths = _WIDTHS[-1:] if warm else _WIDTHS
         pairs = zip(problems, starts, strict=True)
-        return [_Numbers(one, self.print_level).solve(start, widths) for one, start in pairs]
+        return [_Numbers(one, self.print_level, warm).solve(start, widths) for one, start in pairs]
 
 
 class _Form(NamedTuple):
@@ -92,6 +99,7 @@ class _Form(NamedTuple):
     at_rest: bool
     peak: str | None
     print_level: int
+    warm: bool
 
 
 class _Program:
@@ -138,7 +146,8 @@ class _Program:
             "g": ca.vertcat(*constraints.values()),
         }
         self.counts = {name: values.numel() for name, values in constraints.items()}
-        self.solver = compile_nlp(nlp, {**_OPTIONS, "print_level": form.print_level})
+        options = {**(_WARM if form.warm else _OPTIONS), "print_level": form.print_level}
+        self.solver = compile_nlp(nlp, options)
         figures = [nominal.energy, arrival.T, *limited.values()]
         self.figures = ca.Function("figures", [a, row], figures)
 
@@ -181,7 +190,7 @@ def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
 class _Numbers:
     """One problem's numbers: the parameters of its program, and what its solution means."""
 
-    def __init__(self, problem: Problem, print_level: int) -> None:
+    def __init__(self, problem: Problem, print_level: int, warm: bool) -> None:
         (transcription, self.asked), task = problem, problem.transcription.task
         self.task, self.profile, modes = task, transcription.profile, 2 * task.plant.modes
         self.tips = [vibration.rows for vibration in after_arrival(task)]
@@ -190,7 +199,7 @@ class _Numbers:
             _Form(
                 task.plant, self.profile, task.energy, transcription.steps, tuple(task.limits),
                 task.error_names, task.scenarios, tuple(map(len, tips)), self.asked.at_rest,
-                self.asked.peak, print_level,
+                self.asked.peak, print_level, warm,
             )
         )  # fmt: skip
         self.wanted = np.array([task.final_state] * len(self.tips))

@@ -7,6 +7,7 @@ Objective, equalities and what is bounded are scaled; the coefficients' box come
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -88,6 +89,9 @@ class Programs:
         self._along = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
         box = Box(lower, upper, self._along)
         self.linear, self.constraints = box.count, {**constraints, "box": box}
+        stops = np.cumsum([each.count for each in self.constraints.values()]).tolist()
+        ends = pairwise([0, *stops])
+        self._places = dict(zip(self.constraints, (slice(*one) for one in ends), strict=True))
         self.lower, self.upper = (
             np.hstack([getattr(each, name) for each in self.constraints.values()])
             for name in ("lower", "upper")
@@ -127,8 +131,7 @@ class Programs:
 
     def split(self, bounded: Array) -> dict[str, Array]:
         """Multipliers of what is bounded by name of the constraint."""
-        stops = np.cumsum([each.count for each in self.constraints.values()])
-        return dict(zip(self.constraints, np.split(bounded, stops[:-1], axis=1), strict=True))
+        return {name: bounded[:, place] for name, place in self._places.items()}
 
     def evaluate(self, rows: Index, x: Array, multipliers: Multipliers, width: Array) -> Model:
         """The model of rows at their unknowns, as `funnel.Evaluate`."""
