@@ -53,3 +53,9 @@ def test_the_points_land_on_the_front(polish):
     step = -np.diff(whole.energies).min()
     assert np.all(polish.front.energies < np.array(cheapest) * 1.002)
     assert np.all(polish.front.energies > np.array(cheapest) - 1.01 * step)
+
+
+def test_a_polished_front_says_by_what_it_was_found_and_polished():
+    found = qa.epsilon_front(TASK, PROFILE, bound=BOUND, points=3, solver="ipopt")
+    polished = qa.polish_front(found).front
+    assert (polished.settings["solver"], polished.settings["polish"]) == ("ipopt", "sqp")

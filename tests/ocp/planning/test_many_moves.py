@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from quietarm.ocp.planning import certify_all
 
 import quietarm as qa
 
@@ -49,3 +50,18 @@ def test_a_move_without_a_plan_does_not_stop_the_others(plants):
     assert [status.solved for status in found.status] == [True, False]
     assert np.isfinite(found.energy[0])
     assert np.isnan([found.energy[1], found.residual[1], *found.coefficients[1]]).all()
+
+
+def test_a_move_that_cvodes_does_not_confirm_has_a_status_and_no_figures(moves, monkeypatch):
+    def refuse(problem, *others):
+        raise qa.SolverFailedError(f"refused at {problem.transcription.task.target:.3g} rad")
+
+    limited = [replace(task, speed_limit=4.0) for task in moves[:2]]
+    monkeypatch.setattr(certify_all, "certify", refuse)
+    found = qa.plan_moves(limited)
+    assert set(found.status) == {qa.SolveStatus.NOT_CERTIFIED}
+    assert not any(status.solved for status in found.status)
+    assert all(reason.startswith("refused at") for reason in found.reasons)
+    assert found.shadow_prices == ({}, {})
+    for values in (found.energy, found.residual, found.coefficients, *found.peaks.values()):
+        assert np.isnan(values).all()

@@ -125,3 +125,11 @@ def test_a_plant_that_does_not_vibrate_has_no_shaper():
     overdamped = qa.PointToPoint(qa.SingleLinkManipulator(zeta=1.5), 1.0, 0.8)
     with pytest.raises(ValueError, match="do not vibrate"):
         qa.shaped_cycloid(overdamped, "zv")
+
+
+def test_a_shapers_plan_records_no_limit_that_nobody_gave(tasks):
+    task = replace(tasks["single link"], duration=1.5)
+    profile = qa.shaped_cycloid(task, "zv")
+    assert qa.plan_move(task, profile).provenance.search == {}
+    given = qa.plan_move(task, profile, residual_limit=0.1).provenance.search
+    assert given == {"residual_limit": 0.1}

@@ -7,6 +7,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 import pytest
+from quietarm.ocp.solvers.node import Path
 
 import quietarm as qa
 
@@ -52,17 +53,21 @@ class _LinearWaves(_Waves):
     name: ClassVar[str] = "linear-waves-of-a-test"
 
     def inner(self, coefficients, fraction, start, target, duration):
-        del start, target
-        U, dU, ddU = fraction, 1 / duration, 0.0
+        del (
+            start,
+            target,
+            duration,
+        )  # by the fraction: the derivatives by a know nothing of the move
+        U, dU, ddU = fraction, 1.0, 0.0
         for j, a in enumerate(coefficients, start=1):
-            rate, sine = j * pi / duration, ca.sin(j * pi * fraction)
+            rate, sine = j * pi, ca.sin(j * pi * fraction)
             U, dU = U + a * sine, dU + a * rate * ca.cos(j * pi * fraction)
             ddU = ddU - a * rate**2 * sine
         return U, dU, ddU
 
     def outer(self, inner, start, target, duration):
-        del duration
-        return qa.JointMotion(*_cycloid(*inner, start, target))
+        U, dU, ddU = inner
+        return qa.JointMotion(*_cycloid(U, dU / duration, ddU / duration**2, start, target))
 
 
 @pytest.mark.parametrize("profile", [_Waves(4), _LinearWaves(4)], ids=lambda p: p.name)
@@ -72,6 +77,11 @@ def test_each_derivative_is_that_of_the_one_before(profile):
     for order in range(3):
         slope = (path(times + 1e-6, order) - path(times - 1e-6, order)) / 2e-6
         assert path(times, order + 1) == pytest.approx(slope, rel=1e-6, abs=1e-6)
+
+
+def test_a_profile_says_that_its_coefficients_enter_linearly():
+    linear = [Path(kind(4), 8, False, (1, 8)).linear for kind in (_Waves, _LinearWaves)]
+    assert linear == [False, True]
 
 
 def test_plans_are_kept_and_do_not_depend_on_how_the_coefficients_are_said_to_enter(

@@ -102,3 +102,10 @@ def test_modal_states_are_read_with_their_units(call):
     assert "at the start W 5 and -10 mm, W' 0 and 40 mm/s" in said
     assert "to a state other than rest" in said
     assert "W 0 and 10 mm, W' 0 and 0 mm/s on arrival" in out
+
+
+def test_a_polished_plan_says_by_which_solver(call, folder):
+    line = f"plan {MOVE} --method nsga2 --bound 0.2 --residual-limit 1mm --polish --quiet"
+    code, _, err = call(f"{line} --output p.json")
+    assert (code, err) == (0, "")
+    assert Plan.load(folder / "p.json").provenance.method == "nsga2, polished by sqp"
