@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,9 +65,9 @@ def best_of_starts(
     flat = [start for own in starts for start in own]
     grouped = groups if leave and len(flat) > len(problems) else None
     found = solver.solve([problems[i] for i in groups], flat, warm=warm, groups=grouped)
-    best = list[Solution]()
-    for i, problem in enumerate(problems):
-        own = [one for k, one in zip(groups, found, strict=True) if k == i]
+    remaining, best = iter(found), list[Solution]()
+    for problem, guesses in zip(problems, starts, strict=True):
+        own = list(islice(remaining, len(guesses)))
         lowest = min(own, key=lambda one: objective_of(one, problem.scalarization))
         best.append(replace(lowest, iterations=sum(one.iterations for one in own)))
     return best
@@ -102,7 +103,10 @@ def solve_from_starts(
         tried += by.solve([problem] * len(guesses), guesses, groups=[0] * len(guesses))
         if any(one.status.solved for one in tried):
             break
-    solved = sorted((one for one in tried if one.status.solved), key=lambda one: one.energy)
+    solved = sorted(
+        (one for one in tried if one.status.solved),
+        key=lambda one: objective_of(one, problem.scalarization),
+    )
     if not solved:
         raise explain(problem, tried, least)
     return replace(solved[0], iterations=sum(one.iterations for one in tried)), solved

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
@@ -128,7 +128,7 @@ def certify(
         if not rough and (missed or simulated.exceeded(limits)):
             offset = simulated.arrival - transcription.evaluate(best.coefficients).arrival
             problem = Problem(transcription, asked._replace(limits=tightened, offset=offset))
-            again = _solve_again(problem, best, solver)
+            (again,) = solve_again([problem], [best], solver)
         elif not rough:
             break
         if again is None or not again.status.solved:
@@ -136,7 +136,7 @@ def certify(
                 break
             transcription = transcription.refine()
             problem = Problem(transcription, asked)
-            again = _solve_again(problem, best, solver)
+            (again,) = solve_again([problem], [best], solver)
             tightened = dict(asked.limits)
             if not again.status.solved:
                 break
@@ -152,10 +152,15 @@ def certify(
     return cheapest
 
 
-def _solve_again(problem: Problem, found: Solution, solver: Solver) -> Solution:
-    """Solve again from a solution close by."""
-    (again,) = solver.solve([problem], [found.coefficients], warm=True)
-    return replace(again, iterations=found.iterations + again.iterations)
+def solve_again(
+    problems: Sequence[Problem], solutions: Sequence[Solution], solver: Solver
+) -> list[Solution]:
+    """Solve problems from solutions close by, whose iterations count as well."""
+    found = solver.solve(problems, [one.coefficients for one in solutions], warm=True)
+    return [
+        replace(new, iterations=old.iterations + new.iterations)
+        for new, old in zip(found, solutions, strict=True)
+    ]
 
 
 def judge(transcription: Transcription, coefficients: NDArray[np.float64]) -> Candidate:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from quietarm.ocp.planning.certify import (
     Tolerances,
     certify,
     judge,
+    solve_again,
 )
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.simulation.grid import default_steps
@@ -83,7 +83,8 @@ def _confirm(
     if rough.size and doublings and 2 * steps <= tolerances.most_steps:
         again = _refine([rows[k] for k in rough], solver)
         found = _confirm(again, solver, tolerances, doublings - 1)
-    rows = [row for k, row in enumerate(rows) if k not in set(rough.tolist())]
+    refined = set(rough.tolist())
+    rows = [row for k, row in enumerate(rows) if k not in refined]
     if not rows:
         return found
     rows, values, residual = _correct_arrivals(rows, solver)
@@ -111,18 +112,8 @@ def _refine(rows: list[_Row], solver: Solver) -> list[_Row]:
             transcribe(tasks, one.profile, 2 * one.steps), rows, strict=True
         )
     ]
-    found = _solve_again(problems, [solution for _, _, solution in rows], solver)
+    found = solve_again(problems, [solution for _, _, solution in rows], solver)
     return list(zip(places, problems, found, strict=True))
-
-
-def _solve_again(
-    problems: Sequence[Problem], solutions: Sequence[Solution], solver: Solver
-) -> list[Solution]:
-    found = solver.solve(problems, [one.coefficients for one in solutions], warm=True)
-    return [
-        replace(new, iterations=old.iterations + new.iterations)
-        for new, old in zip(found, solutions, strict=True)
-    ]
 
 
 def _correct_arrivals(rows: list[_Row], solver: Solver) -> tuple[list[_Row], Values, Array]:
@@ -147,7 +138,7 @@ def _correct_arrivals(rows: list[_Row], solver: Solver) -> tuple[list[_Row], Val
             for k in again
             for one in [rows[k][1]]
         ]
-        found = _solve_again(problems, [rows[k][2] for k in again], solver)
+        found = solve_again(problems, [rows[k][2] for k in again], solver)
         for k, problem, solution in zip(again, problems, found, strict=True):
             rows[k] = (rows[k][0], problem, solution)
             by_steps[k] = solution.arrival[0] - offset[k]

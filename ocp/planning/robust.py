@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
@@ -91,26 +91,36 @@ def _hold_default(
     task: PointToPoint, profile: JointProfile, settings: SolveSettings, largest: float
 ) -> Plan:
     """The plan within the default limit, at most what the nominal plant's plan leaves."""
-    nominal, reached = list[Plan](), np.inf
-    with suppress(SolverFailedError):  # only other motions may keep the limits
-        plain = replace(settings, residual_limit=0.0)
-        plan, _ = plan_from_starts(task.certain, profile, plain)
-        nominal = [plan]
-        worst = worst_of(task, profile, plan.coefficients)
-        reached = np.inf if worst is None else max(worst.residual, REST)
-    starts = [np.array(plan.coefficients) for plan in nominal]
-    limit = min(largest, reached)
+    nominal = _nominal_plan(task, profile, settings)
+    reached = np.inf if nominal is None or nominal.worst is None else nominal.worst.residual
+    starts = [] if nominal is None else [np.array(nominal.coefficients)]
+    limit = min(largest, max(reached, REST))
     try:
         plan = _hold(task, profile, replace(settings, residual_limit=limit), starts)
     except InfeasibleTaskError:
         least = _least_worst_case(task, profile, settings, starts)
-        limit = min((1 + EXCESS) * least, reached)
+        limit = min((1 + EXCESS) * least, max(reached, REST))
         plan = _hold(task, profile, replace(settings, residual_limit=limit), starts)
     if plan.excess is None or plan.excess <= OVERRUN or plan.worst is None:
         return plan
+    if nominal is not None and plan.worst.residual > reached:
+        plan = nominal
     # it is as low as this profile gets: the limit is what it leaves
+    assert plan.worst is not None
     settings = replace(settings, residual_limit=plan.worst.residual)
     return replace(plan, provenance=replace(plan.provenance, settings=settings))
+
+
+def _nominal_plan(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings
+) -> Plan | None:
+    """The nominal plant's plan with its figures on the uncertain task; None if there is none."""
+    try:
+        plan, _ = plan_from_starts(task.certain, profile, replace(settings, residual_limit=0.0))
+    except SolverFailedError:  # only other motions may keep the limits
+        return None
+    motion = Candidate.of_profile(task, profile, plan.coefficients).motion
+    return replace(plan, task=task, motion=motion, worst=worst_of(task, profile, plan.coefficients))
 
 
 def _least_worst_case(

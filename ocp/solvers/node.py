@@ -140,7 +140,7 @@ class Path:
         return dict(zip(self._bent, entries, strict=True))
 
     def motion(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:
-        """The joint's motion; with its jerk where that is asked for and y are symbols."""
+        """The joint's motion, without its jerk."""
         return self._profile.outer(y[: self._own], *move)
 
     def motion_with_jerk(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:

@@ -58,11 +58,15 @@ class Programs:
             np.broadcast_to(offset - each.wanted, (self._scenarios, one.wanted.size))
             for offset, each in zip(offsets, self._transcriptions, strict=True)
         ])  # fmt: skip
-        self.weights = np.array([self._weights(*problem) for problem in problems])
+        self.weights = np.array([self._weights(problem) for problem in problems])
         self._constrain(asked.bounds_residual)
 
-    def _weights(self, transcription: Any, scalarization: Any) -> tuple[float, float]:
-        peak, minimise = self._peak, scalarization.minimise
+    def _weights(self, problem: Problem) -> tuple[float, float]:
+        transcription, minimise, peak = (
+            problem.transcription,
+            problem.scalarization.minimise,
+            self._peak,
+        )
         of_energy = minimise.get(ENERGY, 0.0) * transcription.energy_scale
         of_peak = minimise[peak] * transcription.scale_of(peak) if peak else 0.0
         largest = max(of_energy, of_peak)
@@ -82,12 +86,11 @@ class Programs:
             constraints[self._peak] = Peak(constraints[self._peak])
         boxes = [each.profile.box(asked.bound) for each, asked in zip(
             self._transcriptions, self._scalarizations, strict=True)]  # fmt: skip
-        lower, upper = np.array(boxes).transpose(1, 0, 2)
-        boxed = bool(np.isfinite(lower).any() or np.isfinite(upper).any())
-        self._axes = self._batch.even_axes(boxed)
+        self._box = np.array(boxes).transpose(1, 0, 2)
+        self._axes = self._batch.even_axes(boxed=bool(np.isfinite(self._box).any()))
         # the coefficients by all unknowns
         self._along = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
-        box = Box(lower, upper, self._along)
+        box = Box(self._box[0], self._box[1], self._along)
         self.linear, self.constraints = box.count, {**constraints, "box": box}
         stops = np.cumsum([each.count for each in self.constraints.values()]).tolist()
         ends = pairwise([0, *stops])
@@ -123,11 +126,7 @@ class Programs:
 
     def coefficients(self, x: Array) -> Array:
         """The coefficients of unknowns, within their box, which rounding may pass."""
-        found = x[:, : self._size] @ self._axes.T
-        boxes = [each.profile.box(asked.bound) for each, asked in zip(
-            self._transcriptions, self._scalarizations, strict=True)]  # fmt: skip
-        lower, upper = np.array(boxes).transpose(1, 0, 2)
-        return np.clip(found, lower, upper)
+        return np.clip(x[:, : self._size] @ self._axes.T, *self._box)
 
     def split(self, bounded: Array) -> dict[str, Array]:
         """Multipliers of what is bounded by name of the constraint."""

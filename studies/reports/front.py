@@ -124,12 +124,11 @@ def _check_line(check: CrossCheck) -> str:
     """By how much the other solver's energies differ."""
     found = [point for point in check.points if point.other == point.other]  # not NaN
     missing = len(check.points) - len(found)
-    largest = max((abs(point.difference) for point in found), default=float("nan"))
+    shares = [point.difference for point in found] or [float("nan")]
     return (
         f"checked by {_SOLVERS[check.solver]}, {counted(len(check.points), 'point')} from the "
-        f"plain cycloid: energies differ by at most {largest:.1g} of their size"
-        + f"; {missing} it did not find"
-        * (missing > 0)
+        f"plain cycloid: its energies differ by {min(shares):+.1g} to {max(shares):+.1g}"
+        " of their size" + f"; {missing} it did not find" * (missing > 0)
     )
 
 
