@@ -195,13 +195,13 @@ class _Numbers:
         self.task, self.profile, modes = task, transcription.profile, 2 * task.plant.modes
         self.tips = [vibration.rows for vibration in after_arrival(task)]
         tips = self.tips if self.asked.bounds_residual else [np.zeros((0, modes))] * len(self.tips)
-        self.program = compile_program(
-            _Form(
-                task.plant, self.profile, task.energy, transcription.steps, tuple(task.limits),
-                task.error_names, task.scenarios, tuple(map(len, tips)), self.asked.at_rest,
-                self.asked.peak, print_level, warm,
-            )
+        form = _Form(
+            task.plant, self.profile, task.energy, transcription.steps, tuple(task.limits),
+            task.error_names, task.scenarios, tuple(map(len, tips)), self.asked.at_rest,
+            self.asked.peak, print_level, warm,
         )  # fmt: skip
+        with keep_interrupts():  # casadi loses a Ctrl-C
+            self.program = compile_program(form)
         self.wanted = np.array([task.final_state] * len(self.tips))
         if self.asked.offset is not None:
             self.wanted = self.wanted - self.asked.offset

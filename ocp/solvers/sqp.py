@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, End, Ended, minimise
 from quietarm.ocp.solvers.problem import Problem, Solution, price_of_rest
 from quietarm.ocp.solvers.programs import Programs
@@ -67,11 +68,13 @@ class Sqp:
         for places in _group_by_form(problems):
             own = [problems[i] for i in places]
             transcription = own[0].transcription
-            transcription.batch.prepare(len(own) * len(transcription.errors))
-            programs = Programs(own)
+            with keep_interrupts():  # casadi loses a Ctrl-C
+                transcription.batch.prepare(len(own) * len(transcription.errors))
+                programs = Programs(own)
+                x = programs.start(np.array([starts[i] for i in places]))
             ended = minimise(
                 programs.evaluate,
-                programs.start(np.array([starts[i] for i in places])),
+                x,
                 programs.lower,
                 programs.upper,
                 equalities=programs.equalities,

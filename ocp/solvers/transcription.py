@@ -98,7 +98,6 @@ class Transcription:
         """The same on twice the steps."""
         return Transcription(self.task, self.profile, 2 * self.steps)
 
-    @keep_interrupts()  # casadi loses a Ctrl-C
     def evaluate(self, coefficients: Array) -> Derivatives:
         """One candidate in all scenarios."""
         return evaluate([self], coefficients[None])[0]
@@ -128,6 +127,7 @@ def first_steps(task: PointToPoint, profile: JointProfile) -> int:
     return steps
 
 
+@keep_interrupts()  # casadi loses a Ctrl-C
 def evaluate(transcriptions: Sequence[Transcription], coefficients: Array) -> list[Derivatives]:
     """A candidate of each of several transcriptions of one batch, in all its scenarios.
 
