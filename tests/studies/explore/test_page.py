@@ -70,8 +70,12 @@ def figures(page):
     return page.locator(".figures .bk-clearfix")
 
 
+def said_of_energy(page):
+    return re.search(r"energy \(F2\) [\d.]+ J", figures(page).inner_text())[0]
+
+
 def energy(page):
-    return float(re.search(r"energy \(F2\) ([\d.]+) J", figures(page).inner_text())[1])
+    return float(said_of_energy(page).split()[-2])
 
 
 def button(page, name):
@@ -79,7 +83,7 @@ def button(page, name):
 
 
 def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
-    cycloid = energy(page)
+    cycloid, first = energy(page), said_of_energy(page)
     assert cycloid == pytest.approx(0.0911, abs=5e-5)  # README
     page.locator(".shape .noUi-handle").nth(1).press("ArrowLeft")
     api.expect(figures(page)).to_contain_text("coefficients 0, -0.001, 0")
@@ -90,7 +94,7 @@ def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
     api.expect(page.get_by_label("a6")).not_to_have_value("0")
     button(page, "Plain cycloid").click()
     api.expect(page.get_by_label("a6")).to_have_value("0")
-    assert energy(page) == cycloid
+    api.expect(figures(page)).to_contain_text(first)  # the figures come after the sliders
     page.set_viewport_size({"width": 390, "height": 844})
     page.get_by_label("plant").select_option("dual-link")
     api.expect(figures(page)).to_contain_text("dual-link, 0 to 30 deg")
