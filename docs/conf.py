@@ -19,7 +19,7 @@ from latex2mathml.converter import convert
 from quietarm.models.version import __version__
 from quietarm.studies.cli.application import COMMANDS
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "notebooks" / "shared"))
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "helpers"))
 from notebook_files import EXECUTED, execute_those_that_changed
 
 project, author, release = "quietarm", "The quietarm developers", __version__
@@ -38,6 +38,7 @@ include_patterns = [
     "notebooks/README.md",
     "README.md",
     "CHANGELOG.md",
+    "CONTRIBUTING.md",
 ]
 exclude_patterns = ["docs/_*"]
 html_theme, html_title = "furo", "quietarm"
