@@ -15,7 +15,8 @@ from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import STDOUT, File
 from quietarm.studies.display.words import print_lines
 from quietarm.studies.document.blocks import Document
-from quietarm.studies.document.terminal import show
+from quietarm.studies.document.terminal import show as show_document
+from quietarm.studies.report import Report, show
 from rich.console import Console
 
 
@@ -30,7 +31,7 @@ class Together:
 
 def finish(
     files: Sequence[File],
-    document: Document,
+    document: Document | Report,
     *,
     trouble: Exception | None = None,
     together: Together | None = None,
@@ -48,7 +49,10 @@ def finish(
             written.append(f"{len(inside)} {together.what} to {together.folder}")
     try:
         console = Console(stderr=any(path is STDOUT for path, _ in files))
-        show(console, document)
+        if isinstance(document, Report):
+            show(console, document)
+        else:
+            show_document(console, document)
         for name in written:
             print_lines(console, f"wrote {name}")
     except KeyboardInterrupt:

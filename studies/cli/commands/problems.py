@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
-from quietarm.ocp import Front, QuietarmError
+from quietarm.ocp import Front
 from quietarm.studies.cli.ending import Together, finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.types import FOLDER, Parsed
@@ -26,13 +26,9 @@ from rich.console import Console
     metavar="[PROBLEM]...",
 )  # fmt: skip
 @click.option("--again", is_flag=True, help="Find the exact fronts anew; some minutes each.")
-@click.option("--verify", is_flag=True,
-              help="Check the exact fronts anew, against their certificates.")  # fmt: skip
 @click.option("--output", type=FOLDER, help="Write the exact fronts to this folder.")
 @quiet_option
-def problems(
-    names: tuple[str, ...], again: bool, verify: bool, output: Path | None, quiet: bool
-) -> None:
+def problems(names: tuple[str, ...], again: bool, output: Path | None, quiet: bool) -> None:
     """List named problems, and write their exact fronts.
 
     Without PROBLEM all of them. Their fronts come with quietarm; other libraries take the problems
@@ -42,17 +38,11 @@ def problems(
     Examples:
       quietarm problems
       quietarm problems single-link-30deg-0.8s --output fronts
-      quietarm problems --verify single-link-30deg-0.8s
       quietarm problems --again --output fronts
     """  # noqa: D301  # \b is click's: do not rewrap
     chosen = [PROBLEMS[name] for name in dict.fromkeys(names or PROBLEMS)]
     if again and output is None:
         raise ValueError("--again finds fronts for a folder; give --output as well")
-    if verify:
-        if again or output is not None:
-            raise ValueError("--verify writes nothing; leave --again and --output out")
-        _verify(chosen, quiet)
-        return
     if again:
         fronts = _found_again(chosen, quiet)
         if not fronts:
@@ -77,18 +67,6 @@ def problems(
 
 def _number(chosen: Sequence[NamedProblem]) -> int:
     return sum(len(problem.tasks()) for problem in chosen)
-
-
-def _verify(chosen: Sequence[NamedProblem], quiet: bool) -> None:
-    from quietarm.metaheuristics.problems.certificate import Certificates, certified
-    from quietarm.studies.reports.certificates import certificates_document, not_holding
-
-    kept = Certificates.kept()
-    with progress(_number(chosen), Console(stderr=True), quiet=quiet) as begin:
-        found = [one for problem in chosen for one in certified(problem, begin)]
-    failed = not_holding(found, kept)
-    trouble = QuietarmError("; ".join(failed)) if failed else None
-    finish([], certificates_document(found), trouble=trouble, quiet=quiet)
 
 
 def _found_again(chosen: Sequence[NamedProblem], quiet: bool) -> dict[str, Front]:
