@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.options import command, quiet_option
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import INPUT, SHARE, STATE, WHOLE
 
 
-@click.command()
+@command()
 @click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
 @click.option("--output", type=STATE, required=True,
               help="The file: .gif, or .mp4 where ffmpeg is installed.")  # fmt: skip

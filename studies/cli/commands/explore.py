@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 from quietarm.models import Plant, known_plants
 from quietarm.ocp.checks import install
+from quietarm.studies.cli.options import command
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import SETTING
@@ -16,7 +17,7 @@ _USUAL = "single-link"
 """The plant where none is given."""
 
 
-@click.command()
+@command()
 @click.argument("what", required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]")
 @plant_file_option()
 @click.option("--set", "parameters", type=SETTING, multiple=True,

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.options import typed
+from quietarm.studies.cli.options import command, typed
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import INPUT, OUTPUT, Named
 from quietarm.studies.document.blocks import Document, Lines
@@ -23,7 +23,7 @@ from quietarm.studies.export.formats import (
 from quietarm.studies.reading.saved import load_plans
 
 
-@click.command()
+@command()
 @click.argument("plan", type=INPUT)
 @click.option("--output", type=OUTPUT, required=True, help="The file; move.c has move.h beside it.")
 @click.option("--format", "form", type=Named("format", FORMATS),

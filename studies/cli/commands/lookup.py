@@ -10,7 +10,7 @@ from quietarm.ocp import InfeasibleTaskError, Plan
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import plan_file_options
-from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.options import command, quiet_option
 from quietarm.studies.cli.plants import values_of_plant
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import ANGLE, INPUT, SETTING, TIME
@@ -20,7 +20,7 @@ from quietarm.studies.reports.plan import plan_document
 from rich.console import Console
 
 
-@click.command()
+@command()
 @click.argument("moves", type=INPUT, metavar="DATASET")
 @plant_file_option(expose_value=False)
 @click.option("--start", type=ANGLE, help="Joint angle at the start, where that is an axis.")

@@ -10,6 +10,7 @@ import click
 from quietarm.ocp import QuietarmError, SolveSettings
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import (
+    command,
     family_option,
     part_option,
     quiet_option,
@@ -43,7 +44,7 @@ def _check_size(grid: Grid, yes: bool) -> None:
         )
 
 
-@click.command()
+@command()
 @task_grid_options
 @family_option
 @terms_option

@@ -9,7 +9,7 @@ from lines import MOVE
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front, evaluate_coefficients
 
-TABLE = Path(__file__).with_name("refused.txt").read_text().splitlines()
+TABLE = Path(__file__).with_name("messages.txt").read_text().splitlines()
 LINES = [line.split(" => ") for line in TABLE if not line.startswith("#")]
 
 
