@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
+from quietarm.ocp.limits import QUANTITIES, Limit
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.robust import EXCESS
 from quietarm.ocp.record import AGREEMENT
-from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
 from quietarm.studies.document.blocks import Document, Facts, Lines
 from quietarm.studies.document.table import Column, Table
@@ -100,7 +101,7 @@ def _residual_limit(plan: Plan) -> float:
 def move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and where the motion breaks one."""
     limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
-    limits += [_limit(name, most, motion.peak(name)) for name, most in task.limits.items()]
+    limits += [_limit(one, one.peak_of(motion)) for one in task.limits]
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),
@@ -172,8 +173,6 @@ def _tip(task: PointToPoint) -> str:
     return words if scenarios == 1 else f"{words}, worst of {scenarios} samples"
 
 
-def _limit(name: str, limit: float, peak: float) -> str:
+def _limit(limit: Limit, peak: float) -> str:
     """A limit, and how it is broken; nothing where it is kept to the README's tolerance."""
-    unit = QUANTITIES[name].unit
-    broken = "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {unit})"
-    return f"{name} {limit:g} {unit}{broken}"
+    return f"{limit}{'' if limit.keeps(peak, OVERRUN) else f' (broken: {limit.describe(peak)})'}"

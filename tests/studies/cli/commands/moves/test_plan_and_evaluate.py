@@ -30,7 +30,7 @@ def test_a_plan_says_what_it_found_and_what_it_wrote(planned):
     assert sorted(path.name for path in where.iterdir()) == ["move.csv", "move.svg", "plan.json"]
     found = Plan.load(where / "plan.json")
     settings = found.provenance.settings
-    assert (settings.starts, settings.seed, found.task.limits) == (2, 3, {"torque": 0.4})
+    assert (settings.starts, settings.seed, found.task.torque_limit) == (2, 3, 0.4)
     assert "arm-on-flexible-link, -90 to 45 deg in 1 s" in ran.stdout
     assert f"{found.energy:.6g} J" in ran.stdout
     assert f"{found.motion.peak_torque:.4g} N m" in ran.stdout
