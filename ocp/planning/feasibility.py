@@ -104,7 +104,11 @@ def unmet(
         if otherwise:
             ended = f"{ended.partition(';')[0]}; {otherwise}"
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
-    asked = ", ".join(f"{one.name} within {one.bounds}" for one in limits if one.size < np.inf)
+    asked = ", ".join(
+        f"{one.name} {'<=' if one.is_peak else 'within'} {one.bounds}"
+        for one in limits
+        if one.size < np.inf
+    )
     remedies = [
         f"{one.name} limit {one.describe(least[one.name] * _ROOM)}"
         for one in limits

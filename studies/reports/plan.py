@@ -17,6 +17,8 @@ from quietarm.studies.document.table import Column, Table
 Row = tuple[str, str]
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
+_FAR = 0.1
+"""A limit that a motion does not come to this share of does not act, and silences no warning."""
 HARD_REMEDY = "give what the drive can do, as --acceleration-limit or --torque-limit"
 _SEEN = 1e-6
 """A joint turns back where it does so by more than this [rad]."""
@@ -133,13 +135,15 @@ def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
     peak, unit = motion.peak(name), QUANTITIES[name].unit
     if unit == "m":
         return f"{millimetres(peak)}{_large(task, motion)}"
-    return f"{peak:.4g} {unit}{_hard(name, task, peak)}"
+    return f"{peak:.4g} {unit}{_hard(name, task, motion)}"
 
 
-def _hard(name: str, task: PointToPoint, peak: float) -> str:
-    """A warning where nothing limits a motion that accelerates far harder than the cycloid."""
+def _hard(name: str, task: PointToPoint, motion: Motion) -> str:
+    """A warning where no limit is near a motion that accelerates far harder than the cycloid."""
     cycloid = 2 * math.pi * abs(task.span) / task.duration**2  # of eq (1) with U = t / TE
-    if name != "acceleration" or task.limits or peak <= _HARD * cycloid:
+    peak = motion.peak_acceleration
+    acts = any(one.peak_of(motion) > _FAR * one.size for one in task.limits)
+    if name != "acceleration" or acts or peak <= _HARD * cycloid:
         return ""
     return f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {HARD_REMEDY})"
 
