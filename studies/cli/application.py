@@ -36,7 +36,7 @@ COMMANDS = {
 of `commands.list_`."""
 del COMMANDS["bench"]  # until it is here
 COMMANDS |= {  # until their heirs are here
-    "lookup": "", "robustness": "", "versus": "", "study": "", "contest": "", "animate": "",
+    "robustness": "", "versus": "", "study": "", "contest": "",
 }  # fmt: skip
 HEIRS = {
     "floor": "plan --profile free", "lookup": "plan --from moves.zarr",
@@ -48,6 +48,7 @@ HEIRS = {
     "plan --method": "quietarm search", "plan --polish": "quietarm search and then front --polish",
     "front --runs": "quietarm search --runs", "front --population": "quietarm search",
     "front --generations": "quietarm search", "front --setting": "quietarm search",
+    "sweep --refine": "--limit-margin, or a finer grid",
     "--checkpoint": "quietarm search --from front.json",
     "--resume": "quietarm search --from front.json",
 }  # fmt: skip

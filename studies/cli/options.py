@@ -13,7 +13,7 @@ from quietarm.models import Plant
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.cli.quantities import literal, once
-from quietarm.studies.cli.types import PLANT_FILE, SETTING, WHOLE, Named, Parsed
+from quietarm.studies.cli.types import LENGTH, PLANT_FILE, SETTING, WHOLE, Named, Parsed
 from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL
 from rich.console import Console
 
@@ -145,6 +145,11 @@ def profile_options(*others: str, words: str = "") -> Callable[[F], F]:
 bound_option = click.option(
     "--bound", type=float,
     help="Largest size of a coefficient. [default: none; a search of polynomials needs one]",
+)  # fmt: skip
+residual_limit_option = click.option(
+    "--residual-limit", type=LENGTH,
+    help="Largest tip displacement after arrival. [default: at rest; with --error 5 % of how far "
+    "the plain cycloid bends the tip on its way]",
 )  # fmt: skip
 seed_option = click.option(
     "--seed", type=WHOLE, default=0, show_default=True, help="Seed of the random numbers."

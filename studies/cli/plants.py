@@ -40,7 +40,7 @@ def parse_error(text: str) -> tuple[str, float]:
         return MEASURED, 0.0
     name, share = parse_pair(text, "an error", "frequency=10%")
     size = parse_quantity(share, "-", "a share")
-    if size > 1 and is_number(share):
+    if size >= 1 and is_number(share):
         raise ValueError(f"{text} is {100 * size:g} %; was {share} % meant? give {name}={share}%")
     return name.replace("-", "_"), size
 
@@ -102,10 +102,17 @@ def values_of_plant(
     """What parameters are set to."""
     texts = once(settings, "--set ")
     units = units_of_plant(plant, texts)
-    return {
-        name: parse_quantity(text, units[name], f"a value of {name}")
-        for name, text in texts.items()
-    }
+    return {name: _value(name, text, units[name]) for name, text in texts.items()}
+
+
+def _value(name: str, text: str, unit: str) -> float:
+    value = parse_quantity(text, unit, f"a value of {name}")
+    if name.startswith(("zeta", "damping")) and value >= 1 and is_number(text):
+        raise ValueError(
+            f"{name}={text} is a damping ratio of {100 * value:g} %; was {text} % meant? give "
+            f"{name}={text}%, or {name}={100 * value:g}%"
+        )
+    return value
 
 
 def chosen_plant(

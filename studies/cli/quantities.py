@@ -94,6 +94,22 @@ def parse_state(text: str) -> ModalState:
     return ModalState(W, dW)
 
 
+def parse_torque_speed(text: str) -> tuple[tuple[float, float], ...]:
+    """Read what a drive gives, torques at speeds: ``1.5Nm@0,0.8Nm@20`` or ``0.8Nm@190rpm``."""
+    points = list[tuple[float, float]]()
+    for point in text.split(","):
+        torque, at, speed = point.partition("@")
+        if not at:
+            raise ValueError(
+                f"{point!r} is no torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with "
+                "speeds in rad/s, or as 190rpm"
+            )
+        points.append(
+            (parse_quantity(torque, "N m", "a torque"), parse_quantity(speed, "rad/s", "a speed"))
+        )
+    return tuple(points)
+
+
 def parse_coefficients(text: str) -> list[float]:
     """Read numbers that are separated by commas."""
     try:

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import click
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.task import QUANTITIES, Quantity
+from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, plant_file, refuse_typed, typed
 from quietarm.studies.cli.plants import check_machine, chosen_plant, uncertainty_of, units_of_plant
 from quietarm.studies.cli.quantities import parse_quantity
@@ -23,6 +23,7 @@ from quietarm.studies.cli.types import (
     SETTING,
     TIME,
     TIMES,
+    TORQUE_SPEED,
     limit_type,
 )
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid, axis_values
@@ -37,7 +38,7 @@ def _limit_option(quantity: Quantity) -> Callable[[F], F]:
     return click.option(
         f"--{quantity.name}-limit", type=limit_type(quantity.name, quantity.unit),
         metavar=f"[{quantity.unit}]",
-        help=f"Largest {quantity.label} on the way, or its least and largest with a colon between.",
+        help=f"Largest {quantity.label} on the way; by direction as LEAST:LARGEST.",
     )  # fmt: skip
 
 
@@ -64,6 +65,8 @@ _OPTIONS = options(
     click.argument("plant", type=PLANT, required=False, metavar="[PLANT]"),
     set_option, start_option, target_option, duration_option,
     *_LIMITS,
+    click.option("--torque-speed", type=TORQUE_SPEED,
+                 help="What the drive gives, torques at speeds: 1.5Nm@0,0.8Nm@190rpm."),
     click.option("--residual-window", type=TIME, default="1", show_default=True,
                  help="Time after arrival in which the residual is measured."),
     click.option("--initial", type=MODES,
@@ -78,7 +81,7 @@ _OPTIONS = options(
 )  # fmt: skip
 _MOVE = (
     "start", "target", "duration", "residual_window", "initial", "final", "energy",
-    *(quantity.limit for quantity in QUANTITIES.values()),
+    *(quantity.limit for quantity in QUANTITIES.values()), "torque_speed",
 )  # fmt: skip
 NAMES = ("plant", "parameters", "errors", *_MOVE)
 """What the options of a task are called among a command's arguments."""
@@ -131,7 +134,6 @@ class TypedMove:
         kind, parameters, errors = (given.pop(name) for name in ("plant", "parameters", "errors"))
         axes = {name: text for name, text in parameters if ":" in text or "," in text}
         single = [(name, text) for name, text in parameters if name not in axes]
-        check_machine(kind, single, errors)
         plant = chosen_plant(kind, plant_file(), single)
         units = units_of_plant(plant, axes)
         found = [
@@ -140,6 +142,7 @@ class TypedMove:
         ]
         firsts = [(axis.name, repr(axis.values[0])) for axis in found]
         plant = chosen_plant(kind, plant_file(), [*single, *firsts]) if firsts else plant
+        check_machine(kind, [*single, *firsts], errors)
         for name, example in _NEEDED.items():
             if given[name] is None:
                 raise click.UsageError(f"Missing option '--{name}'. Give it as --{name} {example}")

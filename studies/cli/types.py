@@ -20,6 +20,7 @@ from quietarm.studies.cli.quantities import (
     parse_pair,
     parse_quantity,
     parse_state,
+    parse_torque_speed,
     parse_weights,
 )
 from quietarm.studies.sweep.grid import axis_values
@@ -122,6 +123,7 @@ COEFFICIENTS = Parsed(
     lambda text: Path(text) if Path(text).suffix in _TABLES else parse_coefficients(text),
 )
 _TABLES = (".csv", ".txt", ".dat", ".npy", ".npz", ".mat")
+TORQUE_SPEED = Parsed("torque@speed", parse_torque_speed)
 WEIGHTS = Parsed("weights", parse_weights)
 WHOLE = click.INT
 INPUT = click.Path(path_type=Path)

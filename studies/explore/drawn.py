@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from quietarm.models import Body
 from quietarm.ocp import Plan
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.animation.cast import cast_of
 from quietarm.studies.display.words import raised
 from quietarm.studies.explore.state import Explored
 from quietarm.studies.figures import Line
 from quietarm.studies.figures.looks import BLUE, RED
+from quietarm.studies.figures.structure import structures_of
 
 Numbers = list[float]
 GREY, INK = "#9e9e9e", "#404040"
@@ -59,10 +59,10 @@ def panels(explored: Explored) -> dict[str, list[Curve]]:
                 for one in values
             ]
     ends = _plain(np.array([0.0, explored.task.duration]))
-    for name, limit in explored.task.limits.items():
-        if explored.plan.motion.peak(name) >= _IN_SIGHT * limit:
-            level = _factor(name) * limit * np.ones(2)
-            found[name] += [Curve(ends, _plain(side * level), RED, "dashed") for side in (1, -1)]
+    for limit in explored.task.limits:
+        if limit.name in found and limit.peak_of(explored.plan.motion) >= _IN_SIGHT * limit.size:
+            levels = (_factor(limit.name) * one * np.ones(2) for one in (limit.upper, limit.lower))
+            found[limit.name] += [Curve(ends, _plain(one), RED, "dashed") for one in levels]
     for curves in found.values():
         ends = [pick(y for curve in curves for y in curve.y) for pick in (min, max)]
         curves.append(Curve([explored.task.duration] * 2, ends, INK, "dotted"))
@@ -102,7 +102,7 @@ def film(plan: Plan) -> Film:
     """The structure of a plan from its start to the end of the residual window."""
     end = plan.task.duration + plan.task.residual_window
     times = np.arange(0.0, end, 1 / FRAMES)
-    (actor,) = cast_of([Line(plan, "")], times, end)
+    (actor,) = structures_of([Line(plan, "")], times, end)
     of_bodies = [
         np.array([_drawable(body) for body in frames]) for frames in zip(*actor.bodies, strict=True)
     ]

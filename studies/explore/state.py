@@ -25,7 +25,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.front.curve import Report, no_report
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.export import export_plan
+from quietarm.studies.export.formats import export_plan
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary
 
@@ -130,7 +130,9 @@ class Explored:
     def shown(self) -> dict[str, float | None]:
         """Values of the dials in the units that are shown."""
         return {
-            name: None if value is None else float(f"{value * self.dials[name].factor:.12g}")
+            name: None
+            if value is None or isinstance(value, tuple)  # a limit that differs by direction
+            else float(f"{value * self.dials[name].factor:.12g}")
             for name, value in self._values.items()
         }
 
@@ -143,11 +145,12 @@ class Explored:
         values: dict[str, Any] = {**self._values, **held}
         coefficients: ArrayLike = [values[name] for name in self.coefficients]
         limits = {quantity.limit: values[quantity.limit] for quantity in QUANTITIES.values()}
+        limits["torque_speed"] = self.task.torque_speed
         task = replace(self.task, **{name: values[name] for name in OF_MOVES}, **limits)
         method = "given coefficients"
         if self.library and not held.keys().isdisjoint(self._axes):
             at = {name: values[name] for name in self._axes}
-            coefficients, method = self.library.coefficients(**at), "lookup"
+            coefficients, method = self.library.coefficients(**at), "interpolated"
             task = replace(self.library.task(**at), **limits)
         plan = evaluate_coefficients(task, coefficients, profile=self.plan.profile, method=method)
         same = task == self.task and values["bound"] == self.bound

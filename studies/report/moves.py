@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from quietarm.ocp import CycloidPolynomial, Floor, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.robust import EXCESS
 from quietarm.ocp.record import AGREEMENT
-from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ Row = tuple[str, str]
 HARD_REMEDY = "give what the drive can do, as --acceleration-limit or --torque-limit"
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
+_FAR = 0.1
+"""A limit that a motion does not come to this share of does not act, and silences no warning."""
 _SEEN, _ROUNDING = 1e-6, 1e-12
 """A joint turns back where it does so by more [rad]; smaller angles are rounding errors."""
 
@@ -146,10 +149,10 @@ def _verified_row(plan: Plan) -> Row:
 def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and which of them the motion breaks."""
     limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
-    for name, most in task.limits.items():
-        unit, peak = QUANTITIES[name].unit, motion.peak(name)
-        broken = "" if peak <= most * 1.001 else f" (broken: {peak:.4g} {unit})"
-        limits.append(f"{name} {most:g} {unit}{broken}")
+    for limit in task.limits:
+        peak = limit.peak_of(motion)
+        broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
+        limits.append(f"{limit}{broken}")
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),
@@ -186,7 +189,8 @@ def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
         )
     words = f"{peak:.4g} {unit}"
     cycloid = 2 * math.pi * abs(task.span) / task.duration**2  # of eq (1) with U = t / TE
-    if name == "acceleration" and not task.limits and peak > _HARD * cycloid:
+    near = any(one.peak_of(motion) > _FAR * one.size for one in task.limits)
+    if name == "acceleration" and not near and peak > _HARD * cycloid:
         words += f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {HARD_REMEDY})"
     return words
 

@@ -113,7 +113,7 @@ def _parameter(entry: Field[Any]) -> str:
 def _problem(problem: NamedProblem) -> str:
     """The box of a problem, and what it has beyond two objectives."""
     errors = error_words(problem.task)
-    limits = ", ".join(f"{name} {most:g}" for name, most in problem.task.limits.items())
+    limits = ", ".join(map(str, problem.task.limits))
     return ", ".join([
         f"{problem.profile.size} coefficients from {-problem.bound:g} to {problem.bound:g}",
         *([f"limits {limits}"] if limits else []),

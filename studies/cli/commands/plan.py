@@ -8,14 +8,12 @@ from typing import Any
 
 import click
 from quietarm.ocp import (
-    InfeasibleTaskError,
     Plan,
     SolverFailedError,
     energy_floor,
     fastest_move,
     plan_move,
 )
-from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
@@ -26,6 +24,7 @@ from quietarm.studies.cli.options import (
     profile_options,
     quiet,
     refuse_typed,
+    residual_limit_option,
     seed_option,
     sensitivities_option,
     solver_option,
@@ -34,7 +33,7 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.plants import values_of_plant
 from quietarm.studies.cli.task import NAMES, TypedMove, task_options
-from quietarm.studies.cli.types import INPUT, LENGTH
+from quietarm.studies.cli.types import INPUT
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import File, drawing
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
@@ -56,11 +55,7 @@ _OF_SOLVERS = ("starts", "seed")
     "without a parametrisation (free), its acceleration continuous (free-smooth)",
 )  # fmt: skip
 @bound_option
-@click.option(
-    "--residual-limit", type=LENGTH,
-    help="Largest tip displacement after arrival. [default: at rest; with --error 5 % of how far "
-    "the plain cycloid bends the tip on its way]",
-)  # fmt: skip
+@residual_limit_option
 @starts_option
 @seed_option
 @solver_option
@@ -155,17 +150,14 @@ def _plan_freely(
 
 def _look_up(move: TypedMove, dataset: Path, output: Sequence[Path]) -> None:
     """A move between the cells of a sweep; one that breaks a limit is written, with status 1."""
-    from quietarm.studies.sweep.library import MoveLibrary
+    from quietarm.studies.sweep.library import plan_from
+    from quietarm.studies.sweep.store import Store
 
     kept = [name for name in NAMES if name not in ("parameters", *OF_MOVES)]
     move.refuse("is in the dataset of --from; leave it out", *kept)
     with working("interpolating between the cells", Console(stderr=True), quiet=quiet()):
-        library = MoveLibrary(dataset)
-        at = values_of_plant(library.grid.task.plant, move.given["parameters"])
+        plant = Store(dataset).definition.grid.task.plant
+        at = values_of_plant(plant, move.given["parameters"])
         at |= {name: move.given[name][0] for name in OF_MOVES if typed(name)}
-        found = library.plan(**at)
-        between = library.between()
-    broken = " and ".join(found.motion.exceeded(found.task.limits, OVERRUN))
-    words = f"between the cells the move breaks its limit of {broken}; sweep a finer grid"
-    trouble = InfeasibleTaskError(words) if broken else None
+        found, between, trouble = plan_from(dataset, **at)
     finish(plan_files(output, found), plan_rows(found), between.words, trouble=trouble)

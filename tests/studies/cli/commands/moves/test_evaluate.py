@@ -74,6 +74,13 @@ def test_a_path_that_cannot_be_is_refused(call, plan, change, words):
     assert re.search(words, err)
 
 
+def test_a_path_in_degrees_without_a_unit_is_asked_about(refused, folder):
+    rows = [f"{k / 10},{30 * k / 4}" for k in range(5)]
+    (folder / "path.csv").write_text("\n".join(["time_s,angle", *rows]))
+    message = refused("evaluate single-link --path path.csv")
+    assert "were degrees meant? name it angle_deg" in message
+
+
 # A table of results
 
 (REFERENCE,) = problem_of("single-link-30deg-0.8s-2-terms").fronts()
@@ -206,7 +213,9 @@ def test_a_table_without_a_motion_that_keeps_the_limits(call):
     written("f.csv", table(["a_1", "a_2"], X.tolist()))
     code, out, err = evaluate(call, "f.csv", "--torque-limit 0.001")
     assert (code, out) == (1, "")
-    (least,) = re.findall(r"keeps the limits best is (\S+), above 0.001; widen that limit", err)
+    (least,) = re.findall(
+        r"keeps the limits best is (\S+) N m, above 0.001 N m; widen that limit", err
+    )
     peaks = [rollout(TASK, CycloidPolynomial(2), x).motion.peak_torque for x in X]
     assert float(least) == pytest.approx(min(peaks), rel=1e-2)
     written("f.csv", "1e300,1\n")

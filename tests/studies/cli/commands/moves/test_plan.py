@@ -30,7 +30,7 @@ def test_a_plan_says_what_it_found_and_what_it_wrote(folder):
     assert sorted(path.name for path in folder.iterdir()) == ["move.csv", "move.svg", "plan.json"]
     found = Plan.load("plan.json")
     settings = found.provenance.settings
-    assert (settings.starts, settings.seed, found.task.limits) == (2, 3, {"torque": 0.4})
+    assert (settings.starts, settings.seed, found.task.torque_limit) == (2, 3, 0.4)
     assert "arm-on-flexible-link, -90 to 45 deg in 1 s" in ran.stdout
     assert f"{found.energy:.6g} J" in ran.stdout
     assert f"{found.motion.peak_torque:.4g} N m" in ran.stdout
@@ -134,9 +134,28 @@ def test_speeds_accelerations_and_states_have_units(call):
     )
     assert (code, err) == (0, "")
     task = Plan.load("e.json").task
-    assert task.limits == pytest.approx(
-        {"speed": math.pi / 3, "acceleration": math.pi / 2, "jerk": 2 * math.pi}, rel=1e-15
-    )
+    limits = task.speed_limit, task.acceleration_limit, task.jerk_limit
+    assert limits == pytest.approx((math.pi / 3, math.pi / 2, 2 * math.pi), rel=1e-15)
     assert (task.initial.W, task.initial.dW) == ((0.005, -0.01), (0.0, 0.04))
     assert (task.final.W, task.final.dW) == ((0.0, 0.01), (0.0, 0.0))
     assert task.residual_window == 0.5
+
+
+def test_limits_of_a_drive_by_direction_and_by_speed(call):
+    line = f"evaluate {MOVE} --set zeta=1% --coefficients=0"
+    typed = (
+        "--acceleration-limit=-300deg:40 --torque-limit=-200mNm:0.3 --torque-speed 1.5Nm@0,1@190rpm"
+    )
+    assert call(f"{line} {typed} --output plan.json")[0] == 0
+    task = Plan.load("plan.json").task
+    assert task.acceleration_limit == pytest.approx((-5 * math.pi / 3, 40.0), rel=1e-12)
+    assert task.torque_limit == (-0.2, 0.3)
+    assert task.torque_speed == ((1.5, 0.0), (1.0, pytest.approx(19.8968, rel=1e-5)))
+
+
+@pytest.mark.parametrize(("limit", "warned"), [("", True), ("57", True), ("1.5", False)])
+def test_a_limit_far_off_does_not_silence_the_warning_of_high_acceleration(call, limit, warned):
+    given = f"--torque-limit {limit}" if limit else ""
+    code, out, _ = call(f"plan {MOVE} --starts 1 {given}")
+    assert code == 0
+    assert ("times the plain cycloid's" in out) is warned
