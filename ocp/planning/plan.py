@@ -6,7 +6,7 @@ import io
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
@@ -60,6 +60,10 @@ class Plan(MotionAnswer):
     worst : Worst or None
         Of a plant that is uncertain, the errors within its ranges at which the motion leaves most,
         between the samples as well; else None.
+    shadow_prices : mapping of str to float
+        By how much the least energy falls if a limit is widened [J by the limit's unit]: sums of
+        multipliers, by the limit's name. Of the residual, too, where rest on arrival was asked for;
+        empty where nothing was optimised.
     """
 
     kind: ClassVar[str] = "plan"
@@ -73,8 +77,11 @@ class Plan(MotionAnswer):
     verification: Verification
     provenance: Provenance[SolveSettings | None]
     worst: Worst | None = None
+    shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
+        prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
+        object.__setattr__(self, "shadow_prices", prices)
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
 
     @property

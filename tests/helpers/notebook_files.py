@@ -113,10 +113,11 @@ def differences(committed, anew):
 
     Whole numbers are counts and equal; others agree in all digits but the last, or to 0.1 %.
     """
-    one, other = ([NUMBER.sub("#", text).split(), NUMBER.findall(text)] for text in (committed, anew))
-    if one[0] != other[0]:
+    words = [NUMBER.sub("#", text).split() for text in (committed, anew)]
+    if words[0] != words[1]:
         return [(committed, anew)]
-    return [pair for pair in zip(one[1], other[1], strict=True) if not _same(*pair)]
+    pairs = zip(NUMBER.findall(committed), NUMBER.findall(anew), strict=True)
+    return [pair for pair in pairs if not _same(*pair)]
 
 
 def _same(one, other):
