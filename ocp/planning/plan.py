@@ -20,7 +20,7 @@ from quietarm.ocp.files import write_whole
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
-from quietarm.ocp.record import Provenance, Setting, SolveSettings, Verification
+from quietarm.ocp.record import REST, Provenance, Setting, SolveSettings, Verification
 from quietarm.ocp.robustness.perturbed import Sensitivity, Worst, sensitivities, worst_of
 from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.free_vibration import after_arrival
@@ -28,6 +28,7 @@ from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.batch import batch
+from quietarm.ocp.tables import to_html
 from quietarm.ocp.task import PointToPoint
 
 _LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
@@ -132,6 +133,25 @@ class Plan(MotionAnswer):
     def sampled(self, times: ArrayLike) -> Trajectory:
         """The motion at given times by CVODES; see `Candidate.sample`."""
         return self.candidate.sample(times)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        task, motion = self.task, self.motion
+        residual = f"{motion.residual:.3g} m" if motion.residual > REST else "none"
+        prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
+        rows = {
+            "plant": task.plant.name,
+            "move": f"{task.start:.4g} to {task.target:.4g} rad in {task.duration:.4g} s",
+            "energy F2": f"{motion.energy:.5g} J",
+            "residual vibration F1": residual,
+            "peak torque": f"{motion.peak_torque:.4g} N m",
+            "peak speed": f"{motion.peak_speed:.4g} rad/s",
+            "peak acceleration": f"{motion.peak_acceleration:.4g} rad/s\u00b2",
+            "shadow prices [J per SI unit of the limit]": ", ".join(prices) or "-",
+            "coefficients": ", ".join(f"{a:.4g}" for a in self.coefficients) or "-",
+            "status": self.status.text,
+        }
+        return to_html(rows.items())
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
         """Write the move as a table to drive a joint with, so many rows a second [Hz].

@@ -67,7 +67,9 @@ def printed(cell):
         if output.output_type == "stream":
             text += output.text if output.name == "stdout" else ""
         elif not {"image/png", WIDGET} & set(output.get("data", {})):
-            text += output.get("data", {}).get("text/plain", "") + "\n"
+            data = output.get("data", {})
+            table = re.sub(r"<[^>]*>", " ", data.get("text/html", ""))
+            text += (table or data.get("text/plain", "")) + "\n"
     return text
 
 
@@ -104,7 +106,10 @@ def execute(path, folder, client):
         for output in cell.outputs:
             if "execution_count" in output:
                 output.execution_count = number
-            output.get("data", {}).pop(WIDGET, None)
+            data = output.get("data", {})
+            data.pop(WIDGET, None)
+            if "text/html" in data:
+                data.pop("text/plain", None)
     return Executed(notebook, [printed(cell) for cell in extra])
 
 
