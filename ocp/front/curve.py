@@ -116,8 +116,10 @@ class Curve:
     def point_of(self, found: Certified[Any]) -> Certificate:
         """A certified solution as a point."""
         coefficients = self.transcription.profile.checked(found.solution.coefficients)
-        point = FrontPoint(coefficients, found.checked.residual, found.checked.energy)
-        return Certificate(point, found.solution.iterations)
+        solution, checked = found.solution, found.checked
+        prices = solution.shadow_prices
+        point = FrontPoint(coefficients, checked.residual, checked.energy, prices)
+        return Certificate(point, solution.iterations)
 
     def certify_all(
         self, found: Sequence[tuple[Solution, Mapping[str, float]]]

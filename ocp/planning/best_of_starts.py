@@ -142,5 +142,6 @@ def plan_from_starts(
             certified.steps, solution.energy, solution.residual, motion
         ),
         provenance=Provenance(settings.solver, settings, seconds=time.perf_counter() - began),
+        shadow_prices=solution.shadow_prices,
     )
     return plan, [one.coefficients for one in solved]

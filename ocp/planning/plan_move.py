@@ -51,7 +51,7 @@ def plan_move(
     steps: int | None = None,
     guess: ArrayLike | None = None,
     solver: SolverName = "sqp",
-    print_level: int = 0,
+    log: bool = False,
 ) -> Plan:
     """Find the motion of least energy whose residual vibration is within a limit.
 
@@ -85,8 +85,9 @@ def plan_move(
     solver : {"sqp", "ipopt"}
         Sequential quadratic programs, all starts at once, or IPOPT, one after another. Where the
         first solves no start, IPOPT takes over.
-    print_level : int
-        How much of its log IPOPT prints, 0 to 12.
+    log : bool
+        Whether the solver prints a line for each of its iterations. Of the quadratic programs it is
+        about the start whose objective is least.
 
     Returns
     -------
@@ -107,7 +108,7 @@ def plan_move(
     if guess is not None:
         guess = profile.checked(guess)
     least = 0.0 if residual_limit is None else residual_limit
-    settings = SolveSettings(least, bound, starts, seed, steps, guess, solver, print_level)
+    settings = SolveSettings(least, bound, starts, seed, steps, guess, solver, log)
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
     if task.uncertainty is not None:
