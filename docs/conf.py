@@ -19,7 +19,7 @@ from latex2mathml.converter import convert
 from quietarm.models.version import __version__
 from quietarm.studies.cli.application import COMMANDS
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "notebooks" / "shared"))
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "helpers"))
 from notebook_files import EXECUTED, execute_those_that_changed
 
 project, author, release = "quietarm", "The quietarm developers", __version__
@@ -38,6 +38,7 @@ include_patterns = [
     "notebooks/README.md",
     "README.md",
     "CHANGELOG.md",
+    "CONTRIBUTING.md",
 ]
 exclude_patterns = ["docs/_*"]
 html_theme, html_title = "furo", "quietarm"
@@ -55,14 +56,11 @@ autodoc_member_order = "groupwise"
 autodoc_typehints = "none"
 napoleon_numpy_docstring, napoleon_google_docstring = True, False
 suppress_warnings = ["ref.python"]  # a shape as (points, 2) looks like a name
-_PACKAGES = {
-    "models": "Plants",
-    "ocp": "Tasks, plans and fronts",
-    "metaheuristics": "Searches and problems",
-    "studies.figures": "Pictures",
-    "studies.identify": "Identification",
-    "studies.sweep": "Grids of moves",
-    "studies.contest": "Contests",
+_STUDIES = {
+    "figures": "Pictures",
+    "identify": "Identification",
+    "sweep": "Grids of moves",
+    "contest": "Contests",
 }
 _TAG = re.compile(r"\\tag\{(.*?)\}")
 
@@ -123,14 +121,19 @@ def _fill(app, docname, source):
             command = f"quietarm.studies.cli.commands.{own}:{own}"
             directive = f".. click:: {command}\n   :prog: quietarm {name}"
             source[0] += f"\n```{{eval-rst}}\n{directive}\n```\n"
-    if docname == "docs/reference":
-        for package, title in _PACKAGES.items():
-            source[0] += f"\n## {title}\n\n```{{eval-rst}}\n"
-            module = import_module(f"quietarm.{package}")
-            for name in sorted({*module.__all__} - {"__version__"}, key=str.lower):
-                value = getattr(module, name)
-                source[0] += _described(package, name, value)
-            source[0] += "```\n"
+    if docname == "docs/reference/studies":
+        for name, title in _STUDIES.items():
+            source[0] += f"\n## {title}\n{_reference(f'studies.{name}')}"
+    elif docname.startswith("docs/reference/"):
+        source[0] += _reference(Path(docname).name)
+
+
+def _reference(package):
+    """What autodoc is asked for all public names of a package."""
+    module = import_module(f"quietarm.{package}")
+    names = sorted({*module.__all__} - {"__version__"}, key=str.lower)
+    described = "".join(_described(package, name, getattr(module, name)) for name in names)
+    return f"\n```{{eval-rst}}\n{described}```\n"
 
 
 def _as_code(app, ctx, lines):

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from quietarm.models import Body
 from quietarm.ocp import Plan
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.animation.cast import cast_of
 from quietarm.studies.display.words import raised
 from quietarm.studies.explore.state import Explored
 from quietarm.studies.figures import Line
 from quietarm.studies.figures.looks import BLUE, RED
+from quietarm.studies.figures.structure import structures_of
 
 Numbers = list[float]
 GREY, INK = "#9e9e9e", "#404040"
@@ -102,7 +102,7 @@ def film(plan: Plan) -> Film:
     """The structure of a plan from its start to the end of the residual window."""
     end = plan.task.duration + plan.task.residual_window
     times = np.arange(0.0, end, 1 / FRAMES)
-    (actor,) = cast_of([Line(plan, "")], times, end)
+    (actor,) = structures_of([Line(plan, "")], times, end)
     of_bodies = [
         np.array([_drawable(body) for body in frames]) for frames in zip(*actor.bodies, strict=True)
     ]

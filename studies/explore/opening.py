@@ -60,7 +60,7 @@ def _of_library(library: MoveLibrary) -> Explored:
     """The cell in the middle of a grid."""
     middle = {axis.name: float(np.sort(axis.values)[len(axis.values) // 2])
               for axis in library.grid.axes}  # fmt: skip
-    return Explored(library.plan(solve=False, **middle), library=library)
+    return Explored(library.plan(**middle), library=library)
 
 
 def _kind(path: Path) -> object:

@@ -25,7 +25,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.front.curve import Report, no_report
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.export import export_plan
+from quietarm.studies.export.formats import export_plan
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary
 
@@ -150,7 +150,7 @@ class Explored:
         method = "given coefficients"
         if self.library and not held.keys().isdisjoint(self._axes):
             at = {name: values[name] for name in self._axes}
-            coefficients, method = self.library.coefficients(**at), "lookup"
+            coefficients, method = self.library.coefficients(**at), "interpolated"
             task = replace(self.library.task(**at), **limits)
         plan = evaluate_coefficients(task, coefficients, profile=self.plan.profile, method=method)
         same = task == self.task and values["bound"] == self.bound

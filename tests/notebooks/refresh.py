@@ -9,7 +9,7 @@ from pathlib import Path
 
 import nbformat
 
-sys.path.insert(0, str(Path(__file__).parent / "shared"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "helpers"))
 
 from notebook_files import PATHS, SOLUTION, execute, kernel, solutions
 from slides import slide_types

@@ -1,4 +1,4 @@
-"""Where every structure of an animation is at every frame."""
+"""Where structures are at the frames of a film."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Body
 from quietarm.ocp import Candidate, Floor, Plan, Trajectory
-from quietarm.studies.figures import Line
+from quietarm.studies.figures.motion import Line
 
 Array = NDArray[np.float64]
 
@@ -21,8 +21,8 @@ _SAMPLES = 1500
 
 
 @dataclass(frozen=True)
-class Actor:
-    """One motion of an animation."""
+class Structure:
+    """A structure that moves as one motion has it."""
 
     line: Line
     trajectory: Trajectory
@@ -74,17 +74,17 @@ class Actor:
         ]
 
 
-def cast_of(
+def structures_of(
     lines: Sequence[Line], times: Array, end: float, scale: float | None = None
-) -> list[Actor]:
+) -> list[Structure]:
     """The motions of lines at the times of frames; those of one plant have one scale."""
-    cast = [Actor(line, _until(line.plan, end), times) for line in lines]
+    structures = [Structure(line, _until(line.plan, end), times) for line in lines]
 
     def fitting(plant: str) -> float:
-        share = max(a.largest_share for a in cast if a.line.plan.task.plant.name == plant)
+        share = max(a.largest_share for a in structures if a.line.plan.task.plant.name == plant)
         return max([s for s in _SCALES if s * share <= _BENT], default=1.0)
 
-    return [replace(a, scale=scale or fitting(a.line.plan.task.plant.name)) for a in cast]
+    return [replace(a, scale=scale or fitting(a.line.plan.task.plant.name)) for a in structures]
 
 
 def _until(motion: Plan | Floor, end: float) -> Trajectory:

@@ -1,0 +1,35 @@
+"""Reports on a terminal, however narrow."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from quietarm.studies.display.words import print_lines
+from quietarm.studies.report.report import Report
+from rich.console import Console
+from rich.markdown import Markdown
+from rich.table import Table
+from rich.text import Text
+
+_LEAST_VALUE = 30
+"""Least width of the column of values; below it they would be broken up."""
+
+
+def show(console: Console, report: Report) -> None:
+    """Print a report without its pictures."""
+    lines = [line for line in report.markdown().splitlines() if not line.startswith("![")]
+    console.print(Markdown("\n".join(lines)))
+
+
+def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
+    """Print names and values in two columns, or one below the other on a narrow console."""
+    if console.width < max(len(name) for name, _ in rows) + _LEAST_VALUE:
+        for name, value in rows:
+            print_lines(console, name, f"  {value}")
+        return
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, value in rows:
+        table.add_row(Text(name), Text(value))
+    console.print(table)
