@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.limits import QUANTITIES, Limit
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.robust import EXCESS
+from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.record import AGREEMENT
 from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
 from quietarm.studies.document.blocks import Document, Facts, Lines
