@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve
+from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.best_of_starts import SAME, best_of_starts, solve_from_starts
 from quietarm.ocp.planning.certify import OF_A_PLAN, Tolerances, certify
 from quietarm.ocp.planning.feasibility import least_peaks_of
 from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution
-from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL, STILL, Transcription
+from quietarm.ocp.solvers.transcription import ENERGY, STILL, Transcription
 
 _ENERGY_WEIGHTS = (1.0, 0.1, 0.02, 2e-3)
 """Weights of the energy beside the residual, one solve after the other, on the way to the still end
@@ -107,14 +107,13 @@ def _least_residual(curve: Curve, cheapest: Solution) -> tuple[Solution, Certifi
     if least is None:
         return cheapest, _certify_cheapest(curve, cheapest)
     transcription, asked = curve.problem(minimise={RESIDUAL: 1.0})
-    limits, solver = {**curve.task.limits, RESIDUAL: np.inf}, curve.solver
+    limits, solver = curve.limits(), curve.solver
     try:
         reached = certify(Problem(transcription, asked), least, solver, limits=limits)
         transcription, asked = reached.problem
-        limit = reached.solution.residual * (1 + _SAMPLING)
-        asked = asked._replace(
-            limits={**asked.limits, RESIDUAL: limit}, minimise=LEAST_ENERGY, offset=None
-        )
+        residual = Limit.of_residual(reached.solution.residual * (1 + _SAMPLING))
+        others = [limit for limit in asked.limits if limit.name != RESIDUAL]
+        asked = asked._replace(limits=(*others, residual), minimise=LEAST_ENERGY, offset=None)
         problem = Problem(transcription, asked)
         (found,) = solver.solve([problem], [reached.solution.coefficients], warm=True)
         still = found if found.status.solved else reached.solution

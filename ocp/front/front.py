@@ -272,7 +272,7 @@ class Front(Saved):
             return f"{none} the motions of all {self.failed} candidates overflow; narrow the bound"
         if self.infeasible == 0:
             return f"{none} search longer or widen the bound"
-        limits = ", ".join(f"{name} {limit:g}" for name, limit in self.task.limits.items())
+        limits = ", ".join(map(str, self.task.limits))
         overflow = f" and the motions of {self.failed} overflow" if self.failed else ""
         return (
             f"{none} {self.infeasible} of {self.evaluations} candidates break the limits ({limits})"

@@ -166,7 +166,7 @@ def evaluated(
         except SolverFailedError:
             failed += 1
             continue
-        if all(motion.peak(name) <= most * (1 + _KEPT) for name, most in task.limits.items()):
+        if not motion.exceeded(task.limits, _KEPT):
             points.append(FrontPoint(coefficients, motion.residual, motion.energy))
         else:
             infeasible += 1

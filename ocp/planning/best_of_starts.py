@@ -9,6 +9,7 @@ from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.certify import certify
 from quietarm.ocp.planning.feasibility import explain, least_peaks_of
 from quietarm.ocp.planning.plan import Plan
@@ -17,7 +18,7 @@ from quietarm.ocp.record import Provenance, SolveSettings, Verification
 from quietarm.ocp.solvers.choice import Solver, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
-from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL, Transcription
+from quietarm.ocp.solvers.transcription import ENERGY, Transcription
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
@@ -126,7 +127,7 @@ def plan_from_starts(
     began, solver = time.perf_counter(), solver_of(settings)
     starts = start_coefficients(profile, settings) if starts is None else starts
     transcription = Transcription.of(task, profile, settings.steps)
-    limits = {RESIDUAL: settings.residual_limit, **task.limits}
+    limits = (Limit.of_residual(settings.residual_limit), *task.limits)
     problem = Problem(transcription, Scalarization(limits, settings.bound))
     best, solved = solve_from_starts(problem, starts, solver)
     certified = certify(problem, best, solver)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.simulation.objective import WithPeaks
+from quietarm.ocp.limits import Limit, Ranged
 from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.transcription import (
@@ -83,7 +83,7 @@ def certify(
     solution: Solution,
     solver: Solver,
     tolerances: Tolerances = OF_A_PLAN,
-    limits: Mapping[str, float] | None = None,
+    limits: Sequence[Limit] | None = None,
 ) -> Certified[Candidate]:
     """Compare with CVODES; correct the arrival, double the steps, tighten what is exceeded.
 
@@ -101,7 +101,7 @@ def certify(
         What solves it again.
     tolerances : Tolerances
         When both count as equal.
-    limits : mapping of str to float, optional
+    limits : sequence of Limit, optional
         What has to hold by CVODES; the problem's own limits by default.
 
     Raises
@@ -110,7 +110,7 @@ def certify(
         When a limit is exceeded all the same.
     """
     (transcription, asked), best = problem, solution
-    limits, tightened = asked.limits if limits is None else limits, dict(asked.limits)
+    limits, tightened = asked.limits if limits is None else limits, asked.limits
     still = max(STILL, STILL_SHARE * transcription.plain_residual)
     tolerated = max(AT_REST * still, _RESIDUAL_AGREEMENT * asked.residual_limit)
     tried: list[Certified[Candidate]] = []
@@ -137,7 +137,7 @@ def certify(
             transcription = transcription.refine()
             problem = Problem(transcription, asked)
             (again,) = solve_again([problem], [best], solver)
-            tightened = dict(asked.limits)
+            tightened = asked.limits
             if not again.status.solved:
                 break
         best, simulated = again, check(problem, again)
@@ -168,36 +168,35 @@ def judge(transcription: Transcription, coefficients: NDArray[np.float64]) -> Ca
     return Candidate.of_profile(transcription.task, transcription.profile, coefficients)
 
 
-def tighten(
-    limits: Mapping[str, float], motion: WithPeaks, kept: Mapping[str, float]
-) -> dict[str, float]:
+def tighten(limits: Sequence[Limit], motion: Ranged, kept: Sequence[Limit]) -> tuple[Limit, ...]:
     """The limits to give the solver, each less by as much as the verified motion exceeds it."""
     exceeded = motion.exceeded(kept)
-    return {
-        name: limit / (_BELOW * exceeded[name]) if name in exceeded else limit
-        for name, limit in limits.items()
-    }
+    return tuple(
+        one.tightened(_BELOW * exceeded[one.name]) if one.name in exceeded else one
+        for one in limits
+    )
 
 
 def refuse_exceeded(
-    motion: WithPeaks, limits: Mapping[str, float], remedy: str, still: float = 0.0
+    motion: Ranged, limits: Sequence[Limit], remedy: str, still: float = 0.0
 ) -> None:
     """Refuse a verified motion that exceeds a limit although limits were tightened."""
-    for name, limit in limits.items():
-        if motion.peak(name) > max(limit * (1 + OVERRUN), still):
+    for limit in limits:
+        peak = limit.peak_of(motion)
+        if not limit.keeps(peak, OVERRUN, still):
             raise SolverFailedError(
-                f"the verified {name} is {motion.peak(name):.4g}, above its limit of {limit:g}: "
-                + remedy
+                f"the verified {limit.name} is {limit.describe(peak)}, above its limit of "
+                f"{limit.bounds}: {remedy}"
             )
 
 
 def _cheapest_kept(
-    tried: list[Certified[Candidate]], kept: Mapping[str, float], still: float
+    tried: list[Certified[Candidate]], kept: Sequence[Limit], still: float
 ) -> Certified[Candidate]:
     """The cheapest of the verified motions that keep every limit; else the last."""
     keeping = [
         one
         for one in tried
-        if all(one.checked.peak(name) <= max(limit, still) for name, limit in kept.items())
+        if all(limit.keeps(limit.peak_of(one.checked), at_rest=still) for limit in kept)
     ]
     return min(keeping, key=lambda one: one.checked.energy) if keeping else tried[-1]

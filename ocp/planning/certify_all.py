@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.limits import QUANTITIES, Limit, Quantity
 from quietarm.ocp.planning.certify import (
     AT_REST,
     OF_A_PLAN,
@@ -24,7 +25,6 @@ from quietarm.ocp.solvers.batch import Batch, Values, batch
 from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.transcription import STILL, Transcription, transcribe
-from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
 _EVERY, _AGREEMENT = 10, 1e-6
@@ -39,7 +39,7 @@ def certify_all(
     solutions: Sequence[Solution],
     solver: Solver,
     tolerances: Tolerances = OF_A_PLAN,
-    limits: Mapping[str, float] | None = None,
+    limits: Sequence[Limit] | None = None,
 ) -> list[Outcome]:
     """Certify solved problems of one plant and profile; arguments as for `certify`.
 
@@ -153,12 +153,12 @@ def _finer_values(rows: Sequence[_Row]) -> Values:
 
 def finer_peaks(of: Sequence[Transcription], coefficients: Array) -> dict[str, Array]:
     """Peaks of every quantity of one motion of each task, at the nodes of these steps."""
-    finer = _finer(of[0], tuple(QUANTITIES))
+    finer = _finer(of[0], tuple(QUANTITIES.values()))
     limited = _values(finer, of, coefficients).limited
     return {name: np.abs(limited[:, place]).max(axis=1) for name, place in finer.places.items()}
 
 
-def _finer(one: Transcription, quantities: tuple[str, ...] = ()) -> Batch:
+def _finer(one: Transcription, quantities: tuple[Quantity, ...] = ()) -> Batch:
     steps = max(default_steps(one.task), _FINER * one.steps)
     return batch(one.task.plant, one.profile, steps, quantities, energy=one.task.energy)
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 from quietarm.ocp.errors import InfeasibleTaskError
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import plan_from_starts
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.feasibility import UNITS
 from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
 from quietarm.ocp.planning.robust import plan_robustly
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.choice import SolverName
-from quietarm.ocp.solvers.transcription import RESIDUAL, STILL
+from quietarm.ocp.solvers.transcription import STILL
 from quietarm.ocp.task import PointToPoint
 
 
@@ -24,11 +24,12 @@ def only_motion(
     """The figures of the only motion that a profile has, within the task's limits."""
     asked = {} if residual_limit is None else {"residual_limit": residual_limit}
     plan = evaluate_coefficients(task, [], profile=profile, method="evaluated", settings=asked)
-    residual = {} if residual_limit is None else {RESIDUAL: max(residual_limit, STILL)}
-    limits = {**residual, **task.limits}
+    residual = [] if residual_limit is None else [Limit.of_residual(max(residual_limit, STILL))]
+    limits = {limit.name: limit for limit in (*residual, *task.limits)}
     broken = [
-        f"its {name} reaches {plan.motion.peak(name):.4g} {UNITS[name]}, above {limits[name]:g}"
-        for name in plan.motion.exceeded(limits, OVERRUN)
+        f"its {name} reaches {limits[name].describe(limits[name].peak_of(plan.motion))}, above "
+        f"{limits[name].bounds}"
+        for name in plan.motion.exceeded(limits.values(), OVERRUN)
     ]
     if broken:
         raise InfeasibleTaskError(

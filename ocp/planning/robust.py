@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
+from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
     plan_from_starts,
@@ -23,7 +24,7 @@ from quietarm.ocp.robustness.measures import quiet_residual
 from quietarm.ocp.robustness.perturbed import Worst, peaks_between, worst_of
 from quietarm.ocp.solvers.choice import solver_of
 from quietarm.ocp.solvers.problem import Problem, Scalarization
-from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
+from quietarm.ocp.solvers.transcription import Transcription
 from quietarm.ocp.task import PointToPoint
 
 EXCESS = 0.05

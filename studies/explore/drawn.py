@@ -59,10 +59,10 @@ def panels(explored: Explored) -> dict[str, list[Curve]]:
                 for one in values
             ]
     ends = _plain(np.array([0.0, explored.task.duration]))
-    for name, limit in explored.task.limits.items():
-        if explored.plan.motion.peak(name) >= _IN_SIGHT * limit:
-            level = _factor(name) * limit * np.ones(2)
-            found[name] += [Curve(ends, _plain(side * level), RED, "dashed") for side in (1, -1)]
+    for limit in explored.task.limits:
+        if limit.name in found and limit.peak_of(explored.plan.motion) >= _IN_SIGHT * limit.size:
+            levels = (_factor(limit.name) * one * np.ones(2) for one in (limit.upper, limit.lower))
+            found[limit.name] += [Curve(ends, _plain(one), RED, "dashed") for one in levels]
     for curves in found.values():
         ends = [pick(y for curve in curves for y in curve.y) for pick in (min, max)]
         curves.append(Curve([explored.task.duration] * 2, ends, INK, "dotted"))

@@ -35,7 +35,10 @@ def c_files(plan: Plan, name: str) -> tuple[str, str]:
         "move", name, *statements(plan.profile, ["t", *map(number, given)]),
         move=f"{moved(plan.task)}, {move_of(plan.task)}".replace("*/", ""),
         version=plan.provenance.versions.get("quietarm", ""),
-        figures=f"energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
+        figures=", ".join([
+            f"energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
+            *(f"{limit.name} within {limit.bounds}" for limit in plan.task.limits),
+        ]),
         values=plan.task.move,
     )  # fmt: skip
 

@@ -65,7 +65,7 @@ class Sweep:
         units |= {f"peak_{name}": quantity.unit for name, quantity in QUANTITIES.items()}
         units[f"price_{RESIDUAL}"] = "J/m"
         limits = self.grid.task.limits
-        units |= {f"price_{name}": f"J/({QUANTITIES[name].unit})" for name in limits}
+        units |= {f"price_{one.name}": f"J/({one.quantity.unit or '1'})" for one in limits}
         units |= {f"energy_by_{name}": "J" for name in OF_MODES}
         units |= {f"residual_by_{name}": "m" for name in OF_MODES}
         units |= {"iterations": "1", "cold_excess": "1"}
