@@ -3,7 +3,7 @@
     python notebooks/offline.py [--slides] [--output FOLDER] NOTEBOOK...
 
 Slides show headings, equations, lists, questions and programs; all other sentences are speaker
-notes (key S), and what a cell shows appears when you go on. Of cells that draw there is the picture.
+notes (key S). What a cell shows appears when you go on; of cells that draw there is the picture.
 """
 
 import argparse
