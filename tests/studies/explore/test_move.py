@@ -5,6 +5,8 @@ import math
 import pytest
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
+    CycloidPolynomial,
+    CycloidSpline,
     InfeasibleTaskError,
     PointToPoint,
     epsilon_front,
@@ -67,6 +69,16 @@ def test_a_point_of_the_front_is_picked_and_another_move_has_none(begun):
     assert picked.change({"a1": 0.1}).front is now.front
     assert picked.change({"duration": 0.9}).front is None
     assert picked.change({"bound": None}).front is None
+
+
+def test_another_profile_begins_from_its_plain_motion_and_terms_are_refused_by_name(begun):
+    now = begun.keep().choose_profile("spline", 8)
+    assert (now.profile, len(now.coefficients), now.kept) == ("spline", 8, begun.plan)
+    assert now.plan.coefficients == tuple(CycloidSpline(8).plain)
+    assert begun.choose_terms(4).plan.profile == CycloidPolynomial(4)
+    assert begun.keep().keep().kept is None
+    with pytest.raises(ValueError, match="give a whole number from 4 up"):
+        now.choose_terms(2)
 
 
 def test_a_plan_and_a_front_are_opened_with_what_they_were_asked_for(tmp_path):
