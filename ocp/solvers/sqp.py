@@ -34,9 +34,17 @@ _STATUS = {
 
 @dataclass(frozen=True)
 class Sqp:
-    """Sequential quadratic programming, as `funnel` has it; all problems of one form at once."""
+    """Sequential quadratic programming, as `funnel` has it; all problems of one form at once.
+
+    Parameters
+    ----------
+    log : bool
+        Whether a line is printed for each iteration.
+    """
 
     name: ClassVar[str] = "sqp"
+
+    log: bool = False
 
     def solve(
         self,
@@ -83,6 +91,7 @@ class Sqp:
                 groups=None if groups is None else np.array([groups[i] for i in places]),
                 widths=SHARP if warm else WIDTHS,
                 reach=_WARM_REACH if warm else _REACH,
+                log=self.log,
             )
             solutions.update(zip(places, _in_units(programs, ended, own), strict=True))
         return [solutions[i] for i in range(len(problems))]

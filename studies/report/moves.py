@@ -11,7 +11,7 @@ from quietarm.ocp import CycloidPolynomial, Floor, Motion, Plan, PointToPoint, S
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.robust import EXCESS
+from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.record import AGREEMENT
 from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
 

@@ -205,12 +205,13 @@ def _compile_with_wrong_gradient(nlp, options):
     return ca.nlpsol("wrong", "ipopt", nlp, {**chosen, "ipopt": dict(options)})
 
 
-def test_the_log_of_ipopt_can_be_shown(link_and_arm, capfd):
-    steps, _, box = link_and_arm["arm"]
-    quiet = _solved(steps, _ask(AT_REST, box), Ipopt())
+@pytest.mark.parametrize(("solver", "column"), [("sqp", "violation"), ("ipopt", "inf_pr")])
+def test_the_log_of_either_solver_can_be_shown(link_and_arm, capfd, solver, column):
+    task = link_and_arm["arm"][0].task
+    quiet = qa.plan_move(task, bound=0.5, starts=1, solver=solver)
     assert capfd.readouterr().out == ""
-    shown = _solved(steps, _ask(AT_REST, box), Ipopt(print_level=5))
-    assert "inf_pr" in capfd.readouterr().out  # a column of IPOPT's table of iterations
+    shown = qa.plan_move(task, bound=0.5, starts=1, solver=solver, log=True)
+    assert column in capfd.readouterr().out
     assert shown.energy == quiet.energy
 
 
