@@ -266,10 +266,10 @@ def _does_not_hang_on_choices(result: Reproduction) -> Verdict:
     if len(energies) > 1:
         first = Searched(case, SIX_TERMS, found.fronts[: (len(energies) + 1) // 2])
         finite = np.where(np.isfinite(energies), energies, 10 * printed)
-        p = wilcoxon(finite - printed, alternative="less").pvalue
+        p = wilcoxon(finite - printed).pvalue
         figures.append(
-            f"the first {len(first.fronts)} seeds alone: {_found(first)}; Wilcoxon's one-sided p "
-            f"that the median is below the printed energy: {p:.2g}"
+            f"the first {len(first.fronts)} seeds alone: {_found(first)}; Wilcoxon's p that "
+            f"the median is the printed energy: {p:.2g}"
         )
     return Verdict(
         "The energy of Table 3 hangs neither on seeds nor on constants of VEPSO (implied).",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.files import FOLDER, output_option, report_files
+from quietarm.studies.cli.files import FOLDER, ending_of, output_option, report_files
 from quietarm.studies.cli.options import command, quiet
 from quietarm.studies.cli.types import WHOLE
 from rich.console import Console
@@ -19,6 +19,9 @@ from rich.console import Console
 @output_option({FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"})
 def reproduce(full: bool, seeds: int | None, workers: int | None, output: Sequence[Path]) -> None:
     """Recompute the paper's Tables 2, 3, 5 and 6 and its figures; --full also judges its claims.
+
+    Fronts are kept in the folder's `fronts` as they are found: the same line goes on after an
+    interruption.
 
     \b
     Examples:
@@ -36,5 +39,6 @@ def reproduce(full: bool, seeds: int | None, workers: int | None, output: Sequen
     effort = Effort(full=full, seeds=number)
     processes = joblib.cpu_count() if workers is None else whole("workers", workers, 1)
     with progress(number_of_pieces(effort), Console(stderr=True), quiet=quiet()) as begin:
-        report = reproduction_report(recompute_paper(effort, processes, begin))
+        folder = next((path / "fronts" for path in output if ending_of(path) == FOLDER), None)
+        report = reproduction_report(recompute_paper(effort, processes, begin, folder))
     finish(report_files(output, report), report)
