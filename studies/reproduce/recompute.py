@@ -270,7 +270,7 @@ def _systems(found: Reproduction, case: Case, begin: Callable[[str], object]) ->
     moved: dict[str, Plan | Floor | str] = {
         "paper": plan or f"prints {printed.energy:.4g} J, and no coefficients",
         **{name: found.answers["other", case, name] for name in (case.earlier[1], "spline")},
-        case.search: middle or "the middle seed has no such small residual",
+        case.search_label: middle or "the middle seed has no such small residual",
         "gradient, in the box": found.in_box(case, SIX_TERMS),
         "gradient": found.free(case, SIX_TERMS),
         "robust plan": robust,
