@@ -197,8 +197,8 @@ def _gaussians_like_two_terms(result: Reproduction) -> Verdict:
         )
         holds = two < six
         figures.append(
-            f"the joint's path with the {name} by {case.search_label} is {two:.3f} rad (rms) from that "
-            f"of the printed N = 2, {six:.3f} rad from N = 6"
+            f"the joint's path with the {name} by {case.search_label} is {two:.3f} rad (rms) from "
+            f"that of the printed N = 2, {six:.3f} rad from N = 6"
         )
     claim = f"The motion of ref. [{reference}] is like that of two terms (Fig. 6)."
     return Verdict(claim, holds, figures)
@@ -218,8 +218,8 @@ def _each_case(
             claim,
             all(holds(earlier, six) for earlier, six in pairs.values()),
             [
-                f"{case.name}, {case.search_label}: {tell(six)} with six terms; {tell(earlier)} with the "
-                f"{case.earlier[1]} of {earlier.fronts[0].profile.size} parameters"
+                f"{case.name}, {case.search_label}: {tell(six)} with six terms; {tell(earlier)} "
+                f"with the {case.earlier[1]} of {earlier.fronts[0].profile.size} parameters"
                 for case, (earlier, six) in pairs.items()
             ],
         )
@@ -260,8 +260,8 @@ def _does_not_hang_on_choices(result: Reproduction) -> Verdict:
     energies = np.nan_to_num(found.each, nan=np.inf)
     above = int((energies > printed).sum())
     figures = [
-        f"{case.name}, printed {printed:.4g} J; {case.search_label}: {_found(found)}, {above} above the "
-        "printed energy",
+        f"{case.name}, printed {printed:.4g} J; {case.search_label}: {_found(found)}, {above} "
+        "above the printed energy",
         f"with the constants of 2002: {_found(old)}",
     ]
     if len(energies) > 1:
@@ -290,8 +290,8 @@ def _networks_cost_more(result: Reproduction) -> Verdict:
         )
         dearer = dearer and network > (1 + _DEARER) * six
         figures.append(
-            f"{case.name}, {case.search_label}, fastest seed: {network:.2f} s with the {name}, {six:.2f} "
-            "s with six terms"
+            f"{case.name}, {case.search_label}, fastest seed: {network:.2f} s with the {name}, "
+            f"{six:.2f} s with six terms"
         )
     return Verdict("Networks cost more to compute.", dearer, figures)
 
