@@ -10,6 +10,7 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.feasibility import UNITS
 from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
 from quietarm.ocp.planning.robust import plan_robustly
+from quietarm.ocp.planning.terms import plan_with_chosen_terms
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
@@ -59,8 +60,10 @@ def plan_move(
     task : PointToPoint
         The move and its limits.
     profile : JointProfile, optional
-        How the joint moves; by default the cycloid of a polynomial of six terms. The only motion
-        of a profile without coefficients, such as `shaped_cycloid`, is evaluated, not optimised.
+        How the joint moves; by default the cycloid of a polynomial, of six terms without limits,
+        and of 18 or 24 within limits (`ocp.planning.terms`); the plan's record then says what six
+        would cost. The only motion of a profile without coefficients, such as `shaped_cycloid`, is
+        evaluated, not optimised.
     residual_limit : float, optional
         Largest F1 [m]; 0 asks for rest on arrival, or for the task's `final` state, where there
         are coefficients to choose. By default 0; of an uncertain task, which hardly ever arrives
@@ -80,7 +83,8 @@ def plan_move(
         Steps of the solver's discretisation, chosen from the task by default; they are doubled
         while the verification disagrees.
     guess : array_like, shape (profile.size,), optional
-        Coefficients to start from first, such as a metaheuristic's, to be improved.
+        Coefficients to start from first, such as a metaheuristic's, to be improved; six without a
+        profile.
     solver : {"sqp", "ipopt"}
         Sequential quadratic programs, all starts at once, or IPOPT, one after another. Where the
         first solves no start, IPOPT takes over.
@@ -102,6 +106,7 @@ def plan_move(
         When no motion of this profile meets the task, with what would be feasible; when no start
         ended at an optimum for another reason.
     """
+    chosen = profile is None and guess is None
     profile = CycloidPolynomial() if profile is None else profile
     if guess is not None:
         guess = profile.checked(guess)
@@ -109,6 +114,10 @@ def plan_move(
     settings = SolveSettings(least, bound, starts, seed, steps, guess, solver, print_level)
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
-    if task.uncertainty is not None:
-        return plan_robustly(task, profile, settings, residual_limit)
-    return plan_from_starts(task, profile, settings)[0]
+
+    def plan(profile: JointProfile, settings: SolveSettings) -> Plan:
+        if task.uncertainty is not None:
+            return plan_robustly(task, profile, settings, residual_limit)
+        return plan_from_starts(task, profile, settings)[0]
+
+    return plan_with_chosen_terms(task, settings, plan) if chosen else plan(profile, settings)

@@ -6,7 +6,9 @@ import math
 from collections.abc import Sequence
 
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
+from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.robust import EXCESS
+from quietarm.ocp.planning.terms import CHOSEN, OF_SIX
 from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
@@ -29,6 +31,7 @@ def plan_document(plan: Plan, notes: Sequence[str] = (), sensitive: bool = False
     rows = [
         *move_rows(plan.task, motion, _residual_limit(plan)),
         _choice(plan),
+        *_terms_rows(plan),
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(plan.task, motion),
         *([("turns back", f"by {back:.3g} rad on the way")] if back > _SEEN else []),
@@ -164,6 +167,22 @@ def _choice(plan: Plan) -> tuple[str, str]:
     if not isinstance(plan.profile, CycloidPolynomial):
         return "profile", f"{plan.profile.label}: {coefficients}"
     return "coefficients", coefficients or "none: the plain cycloid"
+
+
+def _terms_rows(plan: Plan) -> list[Row]:
+    """How many terms the plan chose, and what six would cost; none where they were given."""
+    found = plan.provenance.search
+    if CHOSEN not in found:
+        return []
+    energy, duration = (float(found.get(name) or 0) for name in (OF_SIX, DURATION_OF_SIX))
+    six = "six terms find no motion" if not found.get(OF_SIX) else ""
+    if plan.worst is not None:
+        six = ""
+    if energy:
+        six = f"six would take {energy:.4g} J ({energy / plan.energy - 1:+.0%})"
+    if duration:
+        six = f"six would take {duration:.4g} s"
+    return [("terms", ", ".join(filter(None, [f"{found[CHOSEN]}, chosen for the limits", six])))]
 
 
 def _tip(task: PointToPoint) -> str:

@@ -39,7 +39,7 @@ from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import File
 from quietarm.studies.display.search_progress import search_display
 from quietarm.studies.registry.methods import METHODS, Kind, methods_of
-from quietarm.studies.registry.profiles import FAMILIES, profile_of
+from quietarm.studies.registry.profiles import FAMILIES, chooses_terms, profile_of
 from quietarm.studies.reports.plan import plan_document
 from rich.console import Console
 
@@ -110,6 +110,7 @@ def plan(
             "--duration fastest is for the gradient and profiles with coefficients; give a time"
         )
     motions, notes = profile_of(profile, task, terms), list[str]()
+    chosen = None if chooses_terms(profile, terms) else motions
     if method != GRADIENT:
         found = _by_search(task, method, motions, settings_of_one(setting), polish, quiet, **asked)
         if not (polish or asked["residual_limit"] or found.worst):
@@ -120,12 +121,12 @@ def plan(
     elif fastest:
         del asked["starts"]
         with working("looking for the shortest duration", Console(stderr=True), quiet=quiet):
-            shortest = fastest_move(task, motions, **asked)
+            shortest = fastest_move(task, chosen, **asked)
         found = shortest.plan
         notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
     else:
         with working("solving", Console(stderr=True), quiet=quiet):
-            found = plan_move(task, motions, **asked)
+            found = plan_move(task, chosen, **asked)
     finish(files_of(found), plan_document(found, notes, sensitive))
 
 

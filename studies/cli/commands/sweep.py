@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from quietarm.ocp import QuietarmError, SolveSettings
+from quietarm.ocp.planning.terms import choose_profile
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import (
     family_option,
@@ -21,7 +22,7 @@ from quietarm.studies.cli.task import task_grid_options
 from quietarm.studies.cli.types import DATASET, LENGTH, PICTURE, RESIDUAL, WHOLE
 from quietarm.studies.display.progress import progress
 from quietarm.studies.display.saving import drawing
-from quietarm.studies.registry.profiles import profile_of
+from quietarm.studies.registry.profiles import chooses_terms, profile_of
 from quietarm.studies.sweep.grid import Grid
 from rich.console import Console
 
@@ -103,6 +104,8 @@ def sweep(
     if refine is not None and part != (1, 1):
         raise ValueError("--refine is for a whole grid; leave --part out, or refine afterwards")
     motions, errors = profile_of(profile, grid.task, terms), Console(stderr=True)
+    if chooses_terms(profile, terms):
+        motions = choose_profile(grid.task)
     asked = Sweep(grid, motions, SolveSettings(**settings), front or 0, refine)
     troubles = list[Exception]()
 
