@@ -44,11 +44,12 @@ class Rival:
 
 
 def rivals(
-    task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
+    task: PointToPoint, profile: JointProfile | None, residual_limit: float | None = None
 ) -> Iterator[Rival]:
     """Every way to make a move, one after another; with errors of the plant a robust plan, too.
 
-    The residual limit is of that; those of the task are for the plans and for ruckig.
+    The residual limit is of that; those of the task are for the plans and for ruckig. Without a
+    profile the plans choose their number of terms.
     """
     for name, candidate_of in _ways(task, profile, residual_limit):
         try:
@@ -59,7 +60,7 @@ def rivals(
 
 
 def _ways(
-    task: PointToPoint, profile: JointProfile, residual_limit: float | None
+    task: PointToPoint, profile: JointProfile | None, residual_limit: float | None
 ) -> Iterator[tuple[str, Callable[[], Candidate]]]:
     """What moves the joint, by its name."""
     certain = task.certain

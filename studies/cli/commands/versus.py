@@ -45,7 +45,7 @@ def versus(
       quietarm versus flexible-beam --set omega=3.2Hz --target 60deg --duration 0.7 \\
           --torque-limit 1.5 --acceleration-limit 80 --error frequency=8% --output versus
     """  # noqa: D301  # \b is click's: do not rewrap
-    profile = profile_of(POLYNOMIAL, task, terms)
+    profile = None if terms is None else profile_of(POLYNOMIAL, task, terms)
     with working("planning and shaping", Console(stderr=True), quiet=quiet):
         found, complete = list[Rival](), False
         with suppress(KeyboardInterrupt):
