@@ -11,7 +11,7 @@ import numpy as np
 from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, TorqueSpeedLine
+from quietarm.ocp.limits import QUANTITIES, Limit, TorqueSpeedLine
 from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.feasibility import explain, least_peaks_of
 from quietarm.ocp.planning.plan import Plan
