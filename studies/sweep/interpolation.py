@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from scipy.interpolate import BarycentricInterpolator
 
 Array = NDArray[np.float64]
 ORDERS = (6, 4, 2)
@@ -107,8 +108,6 @@ class Interpolation:
 
     def _through(self, box: tuple[int, ...], places: Array) -> Array:
         """Values of the polynomial of a box; NaN where it has none."""
-        from scipy.interpolate import BarycentricInterpolator  # sweeps do without it
-
         order = int(self.orders[box])
         if order == 0:
             return np.full((len(places), self.cells.shape[-1]), np.nan)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
-NEEDS = f"the dataset of a sweep needs xarray, zarr and joblib; {install('sweep')}"
+NEEDS = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
 _FORMAT = "quietarm-sweep"
 
 
@@ -144,7 +144,6 @@ def damage_told(path: Path) -> Iterator[None]:
 
 def _xarray() -> Any:
     try:
-        import joblib  # noqa: F401
         import xarray
         import zarr  # noqa: F401
     except ImportError:
