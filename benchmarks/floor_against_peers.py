@@ -106,7 +106,7 @@ def by_rockit(steps: int) -> Answer:
         ocp.set_der(state, rate)
     ocp.subject_to(slack >= power, grid="integrator_roots", scale=UNITS[5])
     ocp.subject_to(slack >= -power, grid="integrator_roots", scale=UNITS[5])
-    limit = TASK.limits["acceleration"]
+    limit = LIMIT
     ocp.subject_to(-limit <= (acceleration <= limit), scale=UNITS[4])
     for state, unit, last in zip(states, UNITS, (TASK.target, 0, 0, 0), strict=False):
         ocp.subject_to(ocp.at_t0(state) == 0, scale=unit)

@@ -3,9 +3,8 @@
     python -m pip install -c constraints.txt ".[site]"
     sphinx-build -W --keep-going -c docs . build/site
 
-It is strict: a broken link, a name that cannot be documented or a cell that fails ends the build.
-A notebook is executed unless the tests, or an earlier build, have done so since it or the code last
-changed; all of them take a minute or two.
+It is strict: a broken link or a name that cannot be documented ends the build.
+Notebooks are shown as they are committed, with outputs that the tests hold against a fresh run.
 """
 
 import re
@@ -18,9 +17,6 @@ from docutils import nodes
 from latex2mathml.converter import convert
 from quietarm.models.version import __version__
 from quietarm.studies.cli.application import COMMANDS
-
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "helpers"))
-from notebook_files import EXECUTED, execute_those_that_changed
 
 project, author, release = "quietarm", "The quietarm developers", __version__
 copyright = f"2026, {author}"  # noqa: A001  # as Sphinx calls it
@@ -48,7 +44,7 @@ html_show_sphinx, html_copy_source, smartquotes = False, False, False
 html_theme_options = {"top_of_page_buttons": []}
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 4
-nb_execution_mode = "off"  # `_executed` does it as the tests do
+nb_execution_mode = "off"  # they are committed executed
 nb_ipywidgets_js = {}  # sliders move where a kernel runs; here a picture stands for each
 html_math_renderer = "mathml"
 default_role = "code"
@@ -105,16 +101,8 @@ def _home(name):
     raise ValueError(f"{name} is defined nowhere")
 
 
-def _executed(app):
-    """Execute the notebooks."""
-    execute_those_that_changed()
-
-
 def _fill(app, docname, source):
-    """Put every command, or every public name, on its page; and what notebooks show now."""
-    executed = EXECUTED / f"{Path(docname).name}.ipynb"
-    if docname.startswith("notebooks/") and executed.exists():
-        source[0] = executed.read_text(encoding="utf-8")
+    """Put every command, or every public name, on its page."""
     if docname == "docs/commands":
         for name in COMMANDS:
             own = f"{name}_" if iskeyword(name) else name
@@ -146,10 +134,9 @@ def _as_code(app, ctx, lines):
 
 
 def setup(app):
-    """Equations as MathML, notebooks executed, and the two pages that are made here."""
+    """Equations as MathML, and the pages that are made here."""
     app.add_html_math_renderer(
         "mathml", inline_renderers=(_inline, None), block_renderers=(_display, None)
     )
-    app.connect("builder-inited", _executed)
     app.connect("source-read", _fill)
     app.connect("sphinx-click-process-description", _as_code)

@@ -1,8 +1,9 @@
 """Write notebooks as pages or slides that need no network: one file each, with all that is in it.
 
-    python notebooks/offline.py [--slides [--code]] [--output FOLDER] NOTEBOOK...
+    python notebooks/offline.py [--slides] [--output FOLDER] NOTEBOOK...
 
-Equations become MathML, which browsers set themselves; slides carry reveal.js along.
+Slides show headings, equations, lists, questions and programs; all other sentences are speaker
+notes (key S). What a cell shows appears when you go on; of cells that draw there is the picture.
 """
 
 import argparse
@@ -16,6 +17,7 @@ from jinja2 import pass_context
 from latex2mathml.converter import convert
 from nbconvert import HTMLExporter, SlidesExporter
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
+from nbformat.v4 import new_markdown_cell
 
 WALL = {"reveal_width": "1152", "reveal_height": "648"}
 """Slides as wide and as high [pixels]; what shows them enlarges them."""
@@ -27,12 +29,27 @@ _FROM_THE_NETWORK = re.compile(
     re.DOTALL,
 )
 _UNDESCRIBED = re.compile(r'alt="No description[^"]*"')
+_HIDDEN = ("%matplotlib", "# Your attempt")
+"""How the code cells begin that are not on slides."""
+_SHOWN = re.compile(r"#|\||- |\d\. |```|<|\s*\$\$")
+"""How the blocks of text begin that are on slides as they stand."""
+_QUESTION = re.compile(r"\*\*[^*]+\?\*\*")
 _STYLE = """<style>
 .equation { display: flex; align-items: center; margin: 1em 0; }
 .equation div { flex: 1; }
 math { font-family: "STIX Two Math", "STIX Math", "Cambria Math", "Latin Modern Math", math; }
+mover > mo:last-child { font-size: 1.5em; font-weight: bold; line-height: 1; }
 details .highlight { margin-bottom: 0.7em; }
+.celltag_hide-input .jp-Cell-inputWrapper { margin: 0.5em 0; }
 </style>"""
+_FOLD = """<script>
+for (const input of document.querySelectorAll(".celltag_hide-input .jp-Cell-inputWrapper")) {
+  const fold = document.createElement("details");
+  fold.innerHTML = "<summary>Code of the picture</summary>";
+  input.replaceWith(fold);
+  fold.append(input);
+}
+</script></body>"""
 _ON_THE_WALL = """<style>
 :root { --jp-content-font-size1: 21px; --jp-code-font-size: 17px; }
 .reveal .slides section section { max-height: 100%; overflow-y: auto; padding: 0; }
@@ -46,12 +63,14 @@ _ON_THE_WALL = """<style>
 .reveal ul, .reveal ol { display: block; }
 .reveal math { font-size: 1.1em; }
 .reveal .equation { font-size: 1.1em; margin: 0.6em 0; }
-.reveal pre { margin: 0; width: 100%; box-shadow: none; }
+.reveal pre { margin: 0; width: 100%; box-shadow: none; line-height: 1.3; }
+.reveal .highlight pre { white-space: pre-wrap; }
 .reveal details pre { font-size: 15px; line-height: 18px; }
 .reveal img { display: block; margin: 0 auto; max-width: 100%; }
 .reveal .jp-Cell { padding: 0; }
 .reveal .jp-RenderedText pre { padding: 0; word-break: normal; overflow-wrap: anywhere; }
 .reveal :is(.jp-InputPrompt, .jp-OutputPrompt, .jp-Collapser) { display: none; }
+.reveal .celltag_hide-input .jp-Cell-inputWrapper { display: none; }
 .reveal .controls { font-size: 4px; }
 </style>"""
 _SCRIPTS = """<script>{reveal}</script>
@@ -62,16 +81,18 @@ const require = (options, addresses, begin) => begin(Reveal, RevealNotes);
 const MathJax = {{ Hub: {{ getAllJax: () => false }} }};
 const initialize = Reveal.initialize;
 Reveal.initialize = (options) => initialize({{ ...options, center: false, margin: 0.06 }});
-// pictures fill the room that the words leave
-async function fill({{ currentSlide: slide }}) {{
-  const pictures = [...slide.querySelectorAll("img:not([style*=width])")];
-  await Promise.all(pictures.map((one) => one.decode()));
-  const high = pictures.reduce((sum, one) => sum + one.offsetHeight, 0);
-  const times = Math.min(1.7, 1 + (Reveal.getConfig().height - slide.scrollHeight) / high);
-  for (const one of pictures) one.style.width = `${{times * one.offsetWidth}}px`;
+// a slide fills the wall: a program and what it shows get smaller, a picture alone larger
+async function fit({{ currentSlide: slide }}) {{
+  await Promise.all([...slide.querySelectorAll("img")].map((one) => one.decode()));
+  slide.style.zoom = 1;
+  for (let round = 0; round < 4; round++) {{
+    const high = slide.scrollHeight * slide.style.zoom;
+    const wanted = slide.style.zoom * Reveal.getConfig().height / high;
+    slide.style.zoom = Math.min(1.3, Math.max(0.5, wanted));
+  }}
 }}
-Reveal.on("ready", fill);
-Reveal.on("slidechanged", fill);
+Reveal.on("ready", fit);
+Reveal.on("slidechanged", fit);
 </script>"""
 
 
@@ -80,6 +101,49 @@ def alternatives(notebook):
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     pictures = [output for output in outputs if "image/png" in output.get("data", {})]
     return [one.metadata.get("image/png", {}).get("alt", "a picture") for one in pictures]
+
+
+def split_text(source):
+    """What of a text is on its slide, and what the speaker says."""
+    if "<details>" in source:
+        return source, ""
+    shown, said = [], []
+    for block in source.split("\n\n"):
+        questions = _QUESTION.findall(block)
+        if _SHOWN.match(block) or ("**" in block and not questions):
+            shown.append(block)
+        else:
+            shown += questions
+            said.append(block)
+    return "\n\n".join(shown), "\n\n".join(said)
+
+
+def as_slides(cells):
+    """The cells with their places on slides.
+
+    A slide begins at every heading, question and equation, and at each program after another.
+    """
+    placed, after_program = [], False
+    for cell in cells:
+        if cell.cell_type == "code":
+            hidden = cell.source.startswith(_HIDDEN)
+            _place(cell, "skip" if hidden else "subslide" if after_program else "-")
+            placed.append(cell)
+            after_program |= not hidden
+            continue
+        shown, said = split_text(cell.source)
+        if shown:
+            cell.source, after_program = shown, False
+            _place(cell, "slide" if shown.startswith(("# ", "## ")) else "subslide")
+            placed.append(cell)
+        if said:
+            placed.append(_place(new_markdown_cell(said), "notes"))
+    return placed
+
+
+def _place(cell, place):
+    cell.metadata["slideshow"] = {"slide_type": place}
+    return cell
 
 
 class Typeset(IPythonRenderer):
@@ -98,6 +162,8 @@ class Typeset(IPythonRenderer):
 class _Offline:
     """What pages and slides have in common."""
 
+    head, foot = _STYLE, "</body>"
+
     @pass_context
     def markdown2html(self, context, source):
         return MarkdownWithMath(renderer=Typeset(escape=False)).render(source)
@@ -111,19 +177,26 @@ class _Offline:
         page = _FROM_THE_NETWORK.sub("", page)
         texts = map(escape, alternatives(nb))
         page = _UNDESCRIBED.sub(lambda _: f'alt="{next(texts)}"', page)
-        return page.replace("</head>", f"{self.head()}</head>", 1), resources
-
-    def head(self):
-        return _STYLE
+        page = page.replace("</head>", f"{self.head}</head>", 1)
+        return page.replace("</body>", self.foot), resources
 
 
 class Page(_Offline, HTMLExporter):
-    """A page."""
+    """A page; the code of its pictures is folded."""
+
+    foot = _FOLD
 
 
 class Slides(_Offline, SlidesExporter):
-    """Slides, which the arrow keys turn; what is higher than the wall scrolls."""
+    """Slides, which the arrow keys turn."""
 
+    def from_notebook_node(self, nb, *given, **settings):
+        nb.cells = as_slides(nb.cells)
+        page, resources = super().from_notebook_node(nb, *given, **settings)
+        output = 'class="jp-Cell-outputWrapper'
+        return page.replace(f'{output}"', f'{output} fragment"'), resources
+
+    @property
     def head(self):
         package = files("sphinx_revealjs") / "_static" / "revealjs"
         looks = [
@@ -142,23 +215,18 @@ def main():
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     words.add_argument("notebooks", nargs="+", type=Path, metavar="NOTEBOOK")
-    words.add_argument("--slides", action="store_true", help="slides, without the code")
-    words.add_argument("--code", action="store_true", help="slides with the code")
+    words.add_argument("--slides", action="store_true", help="slides in place of pages")
     words.add_argument("--output", type=Path, default=Path(), help="a folder; else the one here")
     asked = words.parse_args()
     for notebook in asked.notebooks:
         if not notebook.is_file():
             sys.exit(f"{notebook}: no such notebook")
-    exporter = (
-        Slides(exclude_input=not asked.code, exclude_output_prompt=True, **WALL)
-        if asked.slides
-        else Page()
-    )
+    exporter = Slides(exclude_output_prompt=True, **WALL) if asked.slides else Page()
     asked.output.mkdir(parents=True, exist_ok=True)
     for notebook in asked.notebooks:
         page, _ = exporter.from_filename(str(notebook))
         path = asked.output / f"{notebook.stem}{'.slides' * asked.slides}.html"
-        path.write_text(page)
+        path.write_text(page, encoding="utf-8")
         print("wrote", path)
 
 

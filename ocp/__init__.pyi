@@ -51,6 +51,7 @@ from .robustness.perturbed import Sensitivity as Sensitivity
 from .robustness.perturbed import Worst as Worst
 from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
+from .simulation.rollout import SymbolicRollout as SymbolicRollout
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .simulation.trajectory import Trajectory as Trajectory
 from .task import ModalState as ModalState

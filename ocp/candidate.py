@@ -17,15 +17,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import JointMotion
 from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.simulation.objective import Motion, WithPeaks
+from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
-from quietarm.ocp.task import QUANTITIES, PointToPoint, Quantity
+from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
 _STEPS, _SMOOTH_STEPS = 500, 250
@@ -41,7 +42,7 @@ _RADIANS_A_SAMPLE = 0.003
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate(WithPeaks):
+class Candidate(Ranged):
     """A motion of a task, judged by CVODES; what is asked for is computed once.
 
     On an uncertain task residual and deflection are the worst of all scenarios, all else is of the
@@ -113,34 +114,45 @@ class Candidate(WithPeaks):
         """All figures; peaks are those between the samples."""
         task, joint = self.task, self._samples.motion
         past_target = (self._largest(joint.angle[None]) - task.target) * np.sign(task.span)
-        peaks = {
-            quantity.peak: max(
-                one._peak(quantity) for one in (self.scenarios if quantity.in_scenarios else [self])
-            )
-            for quantity in QUANTITIES.values()
-            if quantity.name != "jerk" or self.path.has_jerk
-        }
+        known = [one for one in QUANTITIES.values() if one.name != "jerk" or self.path.has_jerk]
+        peaks = {one.peak: max(-low, high) for one in known for low, high in [self._range(one)]}
+        others = [
+            limit.quantity for limit in task.limits
+            if not limit.is_peak and (limit.quantity in known or limit.name not in QUANTITIES)
+        ]  # fmt: skip
         return Motion(
             residual=self.residual,
             energy=self.energy,
             net_work=self._run.net_work,
             overshoot=max(0.0, float(past_target.max())),
+            ranges={one.name: self._range(one) for one in others},
             **peaks,
         )
 
-    def _peak(self, quantity: Quantity) -> float:
-        """The largest absolute value of a quantity, between the samples as well."""
+    def range_of(self, quantity: Quantity) -> tuple[float, float]:
+        """As of `Ranged`, of residual and limited quantities."""
+        of_residual = -self.residual, self.residual
+        return of_residual if quantity.name == RESIDUAL else self.motion.range_of(quantity)
+
+    def _range(self, quantity: Quantity) -> tuple[float, float]:
+        """Least and largest value in the scenarios that count, between the samples as well."""
+        counted = self.scenarios if quantity.in_scenarios else (self,)
+        found = np.concatenate([one._ranges(quantity) for one in counted])
+        return float(found.min()), float(found.max())
+
+    def _ranges(self, quantity: Quantity) -> NDArray[np.float64]:
+        """The same of each of its values on this plant."""
         samples = self._samples
         values = quantity.of(samples.motion, list(samples.tips.T), samples.torque)
-        return float(np.abs(self._largest(np.array(values))).max())
+        return self._largest(np.array(values))
 
     def _largest(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
         """Least and largest value of each row of samples."""
         return extremes(self._grid.samples, rows)
 
     def peak(self, name: str) -> float:
-        """As of `WithPeaks`."""
-        return self.residual if name == "residual" else self.motion.peak(name)
+        """The residual, or the peak of a quantity, by name: infinite where it is not known."""
+        return self.residual if name == RESIDUAL else self.motion.peak(name)
 
     @property
     def trajectory(self) -> Trajectory:

@@ -46,7 +46,7 @@ class SolveSettings:
     steps: int | None = None
     guess: tuple[float, ...] | None = None
     solver: Literal["sqp", "ipopt"] = "sqp"
-    print_level: int = field(default=0, compare=False)
+    log: bool = field(default=False, compare=False)
 
     def __post_init__(self) -> None:
         if self.solver not in ("sqp", "ipopt"):

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models import Plant
 from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
+from quietarm.ocp.limits import QUANTITIES, Bounds, Limit, Quantity, TorqueSpeedLine
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
 
 
@@ -48,65 +50,6 @@ class ModalState:
             )
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """A quantity whose largest absolute value on the way a task may limit.
-
-    Attributes
-    ----------
-    name, unit, label : str
-        Its name, SI unit, and what it is in words.
-    of : callable
-        (joint's motion, tip displacements, joint torque) -> its values.
-    derivative : int or None
-        Which time derivative of the joint's angle it is; None where it follows from the modes.
-    in_scenarios : bool
-        Whether its limit holds in all scenarios of an uncertain task; else for the nominal plant.
-    """
-
-    name: str
-    unit: str
-    label: str
-    of: Callable[[JointMotion, Sequence[Expression], Expression], Sequence[Expression]]
-    derivative: int | None = None
-    in_scenarios: bool = False
-
-    @property
-    def limit(self) -> str:
-        """Name of its limit in a task."""
-        return f"{self.name}_limit"
-
-    @property
-    def peak(self) -> str:
-        """Name of its largest absolute value among a motion's diagnostics."""
-        return f"peak_{self.name}"
-
-    def rows(self, plant: Plant) -> int:
-        """How many values it has at one time."""
-        still = JointMotion(0.0, 0.0, 0.0, 0.0)
-        return len(self.of(still, plant.tip_displacements([0.0] * plant.modes), 0.0))
-
-
-QUANTITIES: Mapping[str, Quantity] = {
-    quantity.name: quantity
-    for quantity in (
-        Quantity("torque", "N m", "joint torque", lambda joint, tips, torque: [torque]),
-        Quantity("speed", "rad/s", "joint speed", lambda joint, *_: [joint[1]], 1),
-        Quantity("acceleration", "rad/s^2", "joint acceleration", lambda joint, *_: [joint[2]], 2),
-        Quantity("jerk", "rad/s^3", "joint jerk", lambda joint, *_: [joint[3]], 3),
-        Quantity("deflection", "m", "tip displacement", lambda joint, tips, _: tips, None, True),
-    )
-}
-"""Every quantity by its name; each has fields for its limit below and for its peak in `Motion`."""
-
-
-def ask_for_jerk(names: Container[str]) -> bool:
-    """Whether any of these quantities follows from the joint's jerk, which no plant needs."""
-    return "jerk" in names
-
-
-LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANTITIES.values()}
-"""The limits that a task may set, with their units."""
 _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual_window": "s"}
 _MOST = {"rad": 1e6, "s": 1e6}
 """Beyond these no joint moves, and double precision does not follow."""
@@ -124,9 +67,13 @@ class PointToPoint:
         What moves.
     target, duration, start : float
         Joint angle at the end [rad], travelling time [s], joint angle at the beginning [rad].
-    torque_limit, speed_limit, acceleration_limit, deflection_limit, jerk_limit : float, optional
+    torque_limit, speed_limit, acceleration_limit, deflection_limit, jerk_limit : optional
         Largest absolute joint torque [N m], speed [rad/s], acceleration [rad/s^2], tip displacement
-        [m] and rate of change of the joint's acceleration [rad/s^3] on the way.
+        [m] and rate of change of the joint's acceleration [rad/s^3] on the way; or of each the
+        least value and the largest one, as (-30, 40).
+    torque_speed : sequence of (float, float), optional
+        The most that the drive gives, torque [N m] at speed [rad/s], as [(1.5, 0), (0.8, 20)]: see
+        `TorqueSpeedLine`.
     residual_window : float, optional
         How long after arrival the residual vibration is watched [s]; eq (11) has 1 s.
     initial, final : ModalState, optional
@@ -152,16 +99,17 @@ class PointToPoint:
     target: float
     duration: float
     start: float = 0.0
-    torque_limit: float | None = None
-    speed_limit: float | None = None
-    acceleration_limit: float | None = None
-    deflection_limit: float | None = None
+    torque_limit: Bounds | None = None
+    speed_limit: Bounds | None = None
+    acceleration_limit: Bounds | None = None
+    deflection_limit: Bounds | None = None
     residual_window: float = 1.0
-    jerk_limit: float | None = None
+    jerk_limit: Bounds | None = None
     initial: ModalState | None = None
     final: ModalState | None = None
     energy: Energy = ABSOLUTE_POWER
     uncertainty: Uncertainty | None = None
+    torque_speed: tuple[tuple[float, float], ...] | None = None
 
     @one_at_a_time
     @keep_interrupts()  # casadi loses a Ctrl-C
@@ -169,12 +117,17 @@ class PointToPoint:
         self.plant.validate()
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)
-        limits = {name: unit for name, unit in LIMITS.items() if getattr(self, name) is not None}
-        for name, unit in (_UNITS | limits).items():
+        for name, unit in _UNITS.items():
             check = finite if unit == "rad" else positive
-            most = _MOST.get(unit, math.inf)
-            number = check(name.replace("_", " "), getattr(self, name), unit, most)
+            number = check(name.replace("_", " "), getattr(self, name), unit, _MOST[unit])
             object.__setattr__(self, name, number)
+        for quantity in QUANTITIES.values():
+            if getattr(self, quantity.limit) is not None:
+                bounds = _check_bounds(quantity, getattr(self, quantity.limit))
+                object.__setattr__(self, quantity.limit, bounds)
+        if self.torque_speed is not None:
+            line = TorqueSpeedLine(tuple(self.torque_speed))
+            object.__setattr__(self, "torque_speed", line.points)
         for name, angle in (("start", self.start), ("target", self.target)):
             if abs(angle) > 2 * math.pi and (2 * angle).is_integer():  # no multiple of pi is
                 warnings.warn(
@@ -264,7 +217,29 @@ class PointToPoint:
         return replace(self, uncertainty=Uncertainty(self.ranges, tuple(map(tuple, samples))))
 
     @property
-    def limits(self) -> dict[str, float]:
-        """The limits that are set, by name of the quantity, such as torque."""
-        every = {name: getattr(self, quantity.limit) for name, quantity in QUANTITIES.items()}
-        return {name: value for name, value in every.items() if value is not None}
+    def limits(self) -> tuple[Limit, ...]:
+        """The limits that are set."""
+        given = [(one, getattr(self, one.limit)) for one in QUANTITIES.values()]
+        limits = [Limit.within(one, bounds) for one, bounds in given if bounds is not None]
+        line = [] if self.torque_speed is None else [TorqueSpeedLine(self.torque_speed)]
+        return (*limits, *map(Limit.of_line, line))
+
+    def limit_of(self, name: str) -> Limit | None:
+        """The limit of a quantity by name; None where it has none."""
+        return next((limit for limit in self.limits if limit.name == name), None)
+
+
+def _check_bounds(quantity: Quantity, given: Any) -> Bounds:
+    """A positive number, or a negative and a positive one."""
+    name, unit = quantity.limit.replace("_", " "), quantity.unit
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        return positive(name, given, unit)
+    bounds: list[Any] = list(given)
+    if len(bounds) != 2:
+        raise ValueError(f"{name} is {given!r}; give one number, or the least and the largest")
+    lower, upper = (finite(name, one, unit) for one in bounds)
+    if not lower < 0 < upper:
+        raise ValueError(
+            f"{name} is {lower:g} to {upper:g} {unit}; give a negative and a positive number"
+        )
+    return upper if lower == -upper else (lower, upper)

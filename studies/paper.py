@@ -14,7 +14,7 @@ from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.checks import positive
-from quietarm.ocp.task import QUANTITIES
+from quietarm.ocp.limits import TORQUE_SPEED
 from quietarm.studies.registry.methods import NSGA2, VEPSO
 
 
@@ -135,6 +135,9 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
             same = isclose(value, wanted, rel_tol=_SAME)
         if not same:
             words.append(f"{name} is {_words(value, unit)}, not {_words(wanted, unit)}")
+    lines = [task.limit_of(TORQUE_SPEED) for task in (one, other)]
+    if lines[0] != lines[1]:
+        words.append("torque-speed line is {}, not {}".format(*(x and x.bounds for x in lines)))
     if one.energy != other.energy:
         words.append(f"energy is {one.energy.label}, not {other.energy.label}")
     if not words and one.scenarios != other.scenarios:
@@ -151,8 +154,10 @@ def _quantities(task: PointToPoint) -> dict[str, tuple[float | None, str]]:
         table[name] = (getattr(task, name), "rad")
     for name in ("duration", "residual_window"):
         table[name.replace("_", " ")] = (getattr(task, name), "s")
-    for name, quantity in QUANTITIES.items():
-        table[f"{name} limit"] = (getattr(task, quantity.limit), quantity.unit)
+    for limit in task.limits:
+        unit = limit.quantity.unit
+        table[f"{limit.name} limit"] = (limit.upper, unit)
+        table |= {} if limit.both_ways else {f"least {limit.name}": (limit.lower, unit)}
     return table
 
 

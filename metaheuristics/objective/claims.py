@@ -52,7 +52,7 @@ def check_figures(front: Front, name: str, remedy: str = "find the front again")
 
 def _check_points(front: Front, table: NDArray[np.float64]) -> None:
     """Evaluate some rows again, and refuse those that give other figures or break a limit."""
-    count, limits = len(table), front.task.limits.items()
+    count, limits = len(table), front.task.limits
     places = np.unique(np.linspace(0, count - 1, min(count, _SAMPLE)).round().astype(int))
     with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused below
         values = objective_of(front.task, front.profile)(table[places])
@@ -67,12 +67,11 @@ def _check_points(front: Front, table: NDArray[np.float64]) -> None:
                     f"{which} states {figure} {stated:.4g} {unit}, but its coefficients give "
                     f"{gives}"
                 )
-        for (quantity, limit), passed in zip(limits, violations, strict=True):
+        for limit, passed in zip(limits, violations, strict=True):
             if not passed <= OVERRUN:
                 raise ValueError(
-                    f"{which} breaks the {quantity} limit of {limit:g} "
-                    f"{QUANTITIES[quantity].unit}: its coefficients give "
-                    f"{limit * (1 + passed):.4g}"
+                    f"{which} breaks the {limit.name} limit of {limit.bounds}: its coefficients "
+                    f"give {limit.describe(limit.size * (1 + passed))}"
                 )
 
 

@@ -84,7 +84,7 @@ class PopulationObjective:
     def _batch(self) -> Batch:
         """Kept by whoever asks for it, since casadi's functions can be neither copied nor sent."""
         task = self.task
-        limited, names = tuple(task.limits), task.error_names
+        limited, names = tuple(limit.quantity for limit in task.limits), task.error_names
         return batch(task.plant, self.profile, self.steps, limited, names, task.energy)
 
     @keep_interrupts()
@@ -123,10 +123,11 @@ class PopulationObjective:
         each = zip(missed, self._tip_rows, strict=True)
         residual = np.max([np.abs(z @ tips.T).max(axis=1) for z, tips in each], axis=0)
         violations = np.empty((count, len(self.task.limits)))
-        for i, (name, part) in enumerate(self._batch.places.items()):
-            peak = np.abs(found.limited[:, part]).max(axis=1).reshape(scenarios, count)
-            largest = peak.max(axis=0) if name == "deflection" else peak[0]
-            violations[:, i] = largest / self.task.limits[name] - 1
+        for i, limit in enumerate(self.task.limits):
+            values = found.limited[:, self._batch.places[limit.name]]
+            peak = limit.peak(values.min(axis=1), values.max(axis=1)).reshape(scenarios, count)
+            largest = peak.max(axis=0) if limit.quantity.in_scenarios else peak[0]
+            violations[:, i] = largest / limit.size - 1
         return PopulationValues(residual, found.energy[:count], violations)
 
 

@@ -14,13 +14,14 @@ import numpy as np
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
 from quietarm.ocp import Front, PointToPoint, QuietarmError
-from quietarm.ocp.planning.best_of_starts import plan_from_starts
+from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.certify import judge
+from quietarm.ocp.planning.plan_move import plan_from_starts
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
 from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
 from quietarm.ocp.solvers.sqp import Sqp
-from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, Transcription
+from quietarm.ocp.solvers.transcription import STILL, Transcription
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.problems.catalogue import NamedProblem
@@ -119,7 +120,10 @@ def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProble
     steps = Transcription.of(task, front.profile, LIMITED_STEPS if task.limits else None)
     problems = [
         Problem(
-            steps, Scalarization({RESIDUAL: r if r > STILL else 0.0, **task.limits}, problem.bound)
+            steps,
+            Scalarization(
+                (Limit.of_residual(r if r > STILL else 0.0), *task.limits), problem.bound
+            ),
         )
         for r in front.residuals.tolist()
     ]
@@ -163,7 +167,7 @@ def _gained(front: Front, found: Sequence[tuple[int, Problem, Solution]]) -> flo
             return max(gained, min(shares[k], _TELLING))
         i, (steps, asked), one = found[k]
         settings = SolveSettings(
-            asked.limits[RESIDUAL], asked.bound, 1, steps=steps.steps,
+            asked.residual_limit, asked.bound, 1, steps=steps.steps,
             guess=tuple(one.coefficients.tolist()),
         )  # fmt: skip
         with suppress(QuietarmError):
@@ -175,6 +179,6 @@ def _gained(front: Front, found: Sequence[tuple[int, Problem, Solution]]) -> flo
 def _priced(problem: Problem, found: Solution, energy: float) -> float:
     """The share by which a solution is cheaper at the price of what it passes its limits by."""
     checked, limits = judge(problem.transcription, found.coefficients), problem.scalarization.limits
-    over = {name: max(0.0, checked.peak(name) - limit) for name, limit in limits.items()}
+    over = {one.name: max(0.0, one.peak_of(checked) - one.size) for one in limits}
     priced = sum(found.shadow_prices.get(name, 0.0) * most for name, most in over.items())
     return 1 - (checked.energy + priced) / energy

@@ -78,18 +78,25 @@ class MoveFunction:
         self.variables = tuple(f"a_{i + 1}" for i in range(profile.size))
         self.objectives = ("residual", "energy", *(f"peak_{name}" for name in self.peaks))
         self.units = ("m", "J", *(QUANTITIES[name].unit for name in self.peaks))
-        self.constraints = tuple(QUANTITIES[name].limit for name in task.limits)
+        self.constraints = tuple(limit.quantity.limit for limit in task.limits)
         # a peak is read from its violation of a limit; one that has no limit gets 1
-        limits = {QUANTITIES[name].limit: 1.0 for name in self.peaks if name not in task.limits}
+        limited = {limit.name: limit for limit in task.limits}
+        limits = {QUANTITIES[name].limit: 1.0 for name in self.peaks if name not in limited}
+        for name in self.peaks:
+            if name in limited and not limited[name].is_peak:
+                raise ValueError(
+                    f"{limited[name]} differs by direction, so that its peak is no objective; give "
+                    "one number"
+                )
         measured: Any = replace(task, **limits)
         self._objective = PopulationObjective(
             measured, profile, steps=default_steps(task) if steps is None else steps,
             threads=threads,
         )  # fmt: skip
-        measures = list(measured.limits)
-        self._limited = [measures.index(name) for name in task.limits]
+        measures = [limit.name for limit in measured.limits]
+        self._limited = [measures.index(name) for name in limited]
         self._peaked = [measures.index(name) for name in self.peaks]
-        self._sizes = np.array([measured.limits[name] for name in self.peaks])
+        self._sizes = np.array([measured.limits[i].size for i in self._peaked])
 
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
         """Evaluate candidates.

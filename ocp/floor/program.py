@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -13,6 +13,7 @@ from quietarm.models import Expression, Plant
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.limits import Limit, Quantity
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
@@ -21,7 +22,7 @@ from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import march
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.transcription import ENERGY
-from quietarm.ocp.task import QUANTITIES, PointToPoint, ask_for_jerk
+from quietarm.ocp.task import PointToPoint
 
 _AT_AN_END, _SHRINK = 3, 4.0
 """The first and last interval are cut at 1/4, 1/16 and 1/64 of their length: without a limit
@@ -58,7 +59,9 @@ def finer(free: FreeMotion) -> FreeMotion:
     return free.split(parts)
 
 
-def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy) -> ca.Function:
+def _interval(
+    plant: Plant, smooth: bool, quantities: Sequence[Quantity], energy: Energy
+) -> ca.Function:
     """(column, length) -> state after, collocation equations, power, smooth energy, quantities.
 
     A column is the state before the interval (joint, W, W'), the last derivative of the joint, and
@@ -72,8 +75,7 @@ def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy
     W, dW, *ddW = map(ca.vertsplit, ca.vertsplit(modal, modes))
     one = Step(h, [], modes)
     equations, power, rest = list[Expression](), list[Expression](), list[Expression]()
-    derivatives = {name: QUANTITIES[name].derivative for name in names}
-    limited = {name: [] if of is None else [begun[of]] for name, of in derivatives.items()}
+    limited = [[] if one.derivative is None else [begun[one.derivative]] for one in quantities]
     for share, node in zip(GAUSS_NODES, one.nodes(W, dW, ddW), strict=True):
         joint = joint_after(begun, share * h)
         by_plant = plant.modal_accelerations(joint, node.W, node.dW)
@@ -82,12 +84,12 @@ def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy
         power.append(power_of(torque, joint.speed))
         rest.append(energy.smooth(torque, joint.speed))
         tips = plant.tip_displacements(node.W)
-        for name in names:
-            if derivatives[name] is None:
-                limited[name] += QUANTITIES[name].of(joint, tips, torque)
+        for quantity, values in zip(quantities, limited, strict=True):
+            if quantity.derivative is None:
+                values += quantity.of(joint, tips, torque)
     W_after, dW_after = one.end(W, dW, ddW)
     after = [*joint_after(begun, h)[:orders], *W_after, *dW_after]
-    outputs = [ca.vertcat(*rows) for rows in (after, equations, power, rest, *limited.values())]
+    outputs = [ca.vertcat(*rows) for rows in (after, equations, power, rest, *limited)]
     return ca.Function("interval", [x, h], outputs, {"cse": True})
 
 
@@ -111,15 +113,17 @@ class FloorProgram:
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, task: PointToPoint, smooth: bool) -> None:
-        if ask_for_jerk(task.limits) and not smooth:
+        jerk = task.limit_of("jerk")
+        if jerk is not None and not smooth:
             raise ValueError(
-                f"jerk limit is {task.jerk_limit:g} rad/s^3 and the acceleration of this floor "
-                "jumps; ask for a smooth floor (smooth=True, or --smooth)"
+                f"jerk limit is {jerk.bounds} and the acceleration of this floor jumps; ask for a "
+                "smooth floor (smooth=True, or --smooth)"
             )
-        self.task, self.smooth, self._names = task, smooth, tuple(task.limits)
+        self.task, self.smooth, self._limits = task, smooth, task.limits
         self._states = 2 + smooth + 2 * task.plant.modes
         self._parts = NODES if task.energy.absolute else 0
-        self._interval = _interval(task.plant, smooth, self._names, task.energy)
+        quantities = [limit.quantity for limit in task.limits]
+        self._interval = _interval(task.plant, smooth, quantities, task.energy)
         self._solver = lru_cache(maxsize=4)(self._build)
         cycloid = self.along(CycloidPolynomial(0).path([], *task.move), first_grid(_SCALE_STEPS))
         columns, (power, rest, *limited) = self._simulate(cycloid)
@@ -127,7 +131,12 @@ class FloorProgram:
         self._scale[0] = abs(task.span)
         self._scale[self._scale == 0] = 1.0
         energy = task.energy.absolute * np.abs(power) + np.abs(rest)
-        self._measures = np.array([np.abs(of).max() or 1.0 for of in (energy, *limited)])
+        self._measures = np.array([energy.max() or 1.0, *(x or 1.0 for x in self._peaks(limited))])
+
+    def _peaks(self, limited: Sequence[Array]) -> list[float]:
+        """The peak of each limited quantity, of its values."""
+        each = zip(self._limits, limited, strict=True)
+        return [float(limit.peak(values.min(), values.max())) for limit, values in each]
 
     def _build(self, steps: int, warm: bool) -> tuple[ca.Function, Array]:
         """IPOPT, of lengths and weights of what is least, and its constraints' upper bounds."""
@@ -149,8 +158,12 @@ class FloorProgram:
         if parts:
             spent += self.task.energy.absolute * (forward + backward)
             equal.append(forward - backward - power / of_energy)
-        scaled = zip(ca.vertsplit(peaks), values, measures, strict=True)
-        positive = [peak + sign * value / of for peak, value, of in scaled for sign in (-1, 1)]
+        positive = list[ca.MX]()
+        for limit, peak, value, of in zip(
+            self._limits, ca.vertsplit(peaks), values, measures, strict=True
+        ):
+            below, above = limit.sides
+            positive += [above * peak - value / of, value / of - below * peak]
         mean = ca.dot(lengths, (ca.DM(GAUSS_WEIGHTS).T @ spent).T) / ca.sum1(lengths)
         problem = {
             "x": ca.vertcat(peaks, ca.vec(x)),
@@ -175,12 +188,12 @@ class FloorProgram:
     def solve(
         self,
         free: FreeMotion,
-        limits: Mapping[str, float],
+        limits: Sequence[Limit],
         minimise: str = ENERGY,
         warm: bool = False,
     ) -> FreeSolution:
         """Run the solver from one motion, on its grid."""
-        names, units = self._names, np.eye(1 + len(self._names))
+        names, units = [one.name for one in self._limits], np.eye(1 + len(self._limits))
         solver, upper = self._solver(free.steps, warm)
         stop = run_ipopt(
             solver,
@@ -204,19 +217,20 @@ class FloorProgram:
 
     def _guess(self, free: FreeMotion) -> Array:
         columns, (power, _, *limited) = self._simulate(free)
-        peaks = [np.abs(of).max() for of in limited] / self._measures[1:]
+        peaks = self._peaks(limited) / self._measures[1:]
         power = np.concatenate([power, -power])[: 2 * self._parts] / self._measures[0]
         return _flat(
             peaks, np.vstack([columns / self._scale[:, None], np.maximum(power, 0.0) + _ROOM])
         )
 
-    def _bounds(self, limits: Mapping[str, float], steps: int) -> tuple[Array, Array]:
+    def _bounds(self, limits: Sequence[Limit], steps: int) -> tuple[Array, Array]:
         upper = np.full((len(self._scale) + 2 * self._parts, steps), np.inf)
         lower = -upper
         lower[len(self._scale) :] = 0.0
         begun = self._resting(self.task.start, self.task.initial_state)
         lower[: self._states, 0] = upper[: self._states, 0] = begun
-        most = [limits.get(name, np.inf) for name in self._names] / self._measures[1:]
+        sizes = {limit.name: limit.size for limit in limits}
+        most = [sizes.get(one.name, np.inf) for one in self._limits] / self._measures[1:]
         return _flat(np.zeros(len(most)), lower), _flat(most, upper)
 
     def _resting(self, angle: float, modes: tuple[float, ...]) -> Array:

@@ -16,7 +16,7 @@ from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import SAME
 from quietarm.ocp.planning.certify import refuse_exceeded, tighten
-from quietarm.ocp.planning.feasibility import keeps, least_peaks, true_peaks, unmet
+from quietarm.ocp.planning.feasibility import least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath
@@ -130,11 +130,14 @@ def _solve_from_starts(program: FloorProgram, settings: FloorSettings) -> list[F
             limits,
             lambda others, name: [program.solve(one.free, others, name) for one in tried[:2]],
         )
-        within = [one.free for name, one in least.items() if keeps(one.peaks[name], name, limits)]
+        within = [least[one.name].free for one in limits
+                  if one.name in least and one.keeps(least[one.name].peaks[one.name])]  # fmt: skip
         tried += [program.solve(free, limits) for free in within]
     solved = [found for found in tried if found.status.solved]
     if not solved:
-        peaks = true_peaks(least, lambda found: Candidate.of_free_motion(task.certain, found.free))
+        peaks = true_peaks(
+            limits, least, lambda found: Candidate.of_free_motion(task.certain, found.free)
+        )
         raise unmet(
             "motion at all", limits, tried, peaks, "a longer duration",
             otherwise="try another seed, more starts or a longer duration.",
@@ -188,7 +191,7 @@ def _certify_least(
 def _certify(program: FloorProgram, found: FreeSolution) -> tuple[FreeSolution, Motion]:
     """Compare with CVODES; tighten limits that are exceeded between the solver's nodes."""
     task, limits = program.task.certain, program.task.limits
-    motion, tightened = Candidate.of_free_motion(task, found.free), dict(limits)
+    motion, tightened = Candidate.of_free_motion(task, found.free), limits
     for _ in range(_ROUNDS):
         if not motion.exceeded(limits, _KEPT):
             break

@@ -9,11 +9,11 @@ from quietarm.ocp.front.curve import Curve, Report, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN, judge
 from quietarm.ocp.record import number_of_points
 from quietarm.ocp.solvers.choice import SolverName
 from quietarm.ocp.solvers.problem import Problem
-from quietarm.ocp.solvers.transcription import RESIDUAL
 
 _SAME = 1e-6
 """Energies that differ by no more than this share agree."""
@@ -96,12 +96,12 @@ def _compare(curve: Curve, point: FrontPoint) -> Compared:
     peaks = transcription.peaks(transcription.evaluate(np.array(point.coefficients)))
     own = judge(transcription, np.array(point.coefficients))
     # a limit that the point is at was tightened until it held between the nodes as well
-    limits = {
-        name: peaks[name] if own.peak(name) > limit * (1 - OVERRUN) else limit
-        for name, limit in curve.task.limits.items()
-    }
-    limits[RESIDUAL] = peaks[RESIDUAL]
-    problem, best = Problem(transcription, asked._replace(limits=limits)), np.nan
+    limits = [
+        one if one.keeps(one.peak_of(own), -OVERRUN) else one.tightened(one.size / peaks[one.name])
+        for one in curve.task.limits
+    ]
+    limits.append(Limit.of_residual(peaks[RESIDUAL]))
+    problem, best = Problem(transcription, asked._replace(limits=tuple(limits))), np.nan
     starts = [(start, False) for start in curve.starts]
     for start, warm in [*starts, (np.array(point.coefficients), True)]:
         (found,) = curve.solver.solve([problem], [start], warm=warm)

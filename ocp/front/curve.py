@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
+from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import start_coefficients
-from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
-from quietarm.ocp.planning.certify_all import certify_all
+from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Outcome, Tolerances, certify
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, SolveSettings
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Scalarization, Solution
-from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
+from quietarm.ocp.solvers.transcription import Transcription
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
@@ -80,12 +80,15 @@ class Curve:
         """Of points between the ends: less exact than a plan; steps are doubled once."""
         return Tolerances(energy=1e-4, most_steps=2 * self.transcription.steps)
 
+    def limits(self, residual: float = np.inf) -> tuple[Limit, ...]:
+        """The task's limits, and one of the residual [m]."""
+        return (*self.task.limits, Limit.of_residual(residual))
+
     def problem(
         self, residual_limit: float = np.inf, minimise: Mapping[str, float] = LEAST_ENERGY
     ) -> Problem:
         """The problem at a residual limit [m]."""
-        limits = {**self.task.limits, RESIDUAL: residual_limit}
-        asked = Scalarization(limits, self.settings.bound, minimise)
+        asked = Scalarization(self.limits(residual_limit), self.settings.bound, minimise)
         return Problem(self.transcription, asked)
 
     def certify(
@@ -101,19 +104,25 @@ class Curve:
         Its residual is its limit, unless it is the cheapest of all, whose residual is free.
         """
         problem = self.problem(np.inf if free else solution.residual)
-        limits = {**self.task.limits, RESIDUAL: most_residual}
+        limits = self.limits(most_residual)
         tolerances = OF_A_PLAN if free else self.tolerances
-        try:
-            found = certify(problem, solution, self.solver, tolerances, limits)
-        except SolverFailedError as error:
-            return Certificate(FailedPoint(asked, str(error)), solution.iterations)
+        (found,) = certify([problem], [solution], self.solver, tolerances, limits)
+        return self._certificate(found, asked, solution)
+
+    def _certificate(
+        self, found: Outcome, asked: Mapping[str, float], solution: Solution
+    ) -> Certificate:
+        if isinstance(found, SolverFailedError):
+            return Certificate(FailedPoint(asked, str(found)), solution.iterations)
         return self.point_of(found)
 
-    def point_of(self, found: Certified[Any]) -> Certificate:
+    def point_of(self, found: Certified) -> Certificate:
         """A certified solution as a point."""
         coefficients = self.transcription.profile.checked(found.solution.coefficients)
-        point = FrontPoint(coefficients, found.checked.residual, found.checked.energy)
-        return Certificate(point, found.solution.iterations)
+        solution, checked = found.solution, found.checked
+        prices = solution.shadow_prices
+        point = FrontPoint(coefficients, checked.residual, checked.energy, prices)
+        return Certificate(point, solution.iterations)
 
     def certify_all(
         self, found: Sequence[tuple[Solution, Mapping[str, float]]]
@@ -121,12 +130,9 @@ class Curve:
         """Certify many solutions, each with what was asked for."""
         solutions = [solution for solution, _ in found]
         problems = [self.problem(solution.residual) for solution in solutions]
-        limits = {**self.task.limits, RESIDUAL: np.inf}
-        outcomes = certify_all(problems, solutions, self.solver, self.tolerances, limits)
+        outcomes = certify(problems, solutions, self.solver, self.tolerances, self.limits())
         return [
-            Certificate(FailedPoint(asked, str(outcome)), solution.iterations)
-            if isinstance(outcome, SolverFailedError)
-            else self.point_of(outcome)
+            self._certificate(outcome, asked, solution)
             for (solution, asked), outcome in zip(found, outcomes, strict=True)
         ]
 

@@ -24,8 +24,9 @@ from quietarm.ocp.front.points import (
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import Setting, settings_given, versions
+from quietarm.ocp.record import REST, Setting, settings_given, versions
 from quietarm.ocp.saved import Saved
+from quietarm.ocp.tables import to_html
 from quietarm.ocp.task import PointToPoint
 
 if TYPE_CHECKING:
@@ -137,6 +138,20 @@ class Front(Saved):
         coefficients = np.array([point.coefficients for point in self.points]).reshape(shape)
         named = {f"a_{i + 1}": column for i, column in enumerate(coefficients.T)}
         return {"residual_m": self.residuals, "energy_J": self.energies, **named}
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        head = "residual F1 [m]", "energy F2 [J]", "shadow price [J/m]", "coefficients"
+        rows = [
+            (
+                f"{point.residual:.3g}" if point.residual > REST else "0",
+                f"{point.energy:.5g}",
+                f"{point.shadow_prices.get('residual', 0.0):.3g}" if point.shadow_prices else "-",
+                ", ".join(f"{a:.4g}" for a in point.coefficients),
+            )
+            for point in self.points
+        ]
+        return to_html(rows, head)
 
     def to_frame(self) -> pandas.DataFrame:
         """The points as a data frame of pandas, stillest first, with the columns of `columns`."""
@@ -257,7 +272,7 @@ class Front(Saved):
             return f"{none} the motions of all {self.failed} candidates overflow; narrow the bound"
         if self.infeasible == 0:
             return f"{none} search longer or widen the bound"
-        limits = ", ".join(f"{name} {limit:g}" for name, limit in self.task.limits.items())
+        limits = ", ".join(map(str, self.task.limits))
         overflow = f" and the motions of {self.failed} overflow" if self.failed else ""
         return (
             f"{none} {self.infeasible} of {self.evaluations} candidates break the limits ({limits})"

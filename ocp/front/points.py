@@ -24,14 +24,19 @@ at each, where they can."""
 class FrontPoint:
     """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J].
 
-    Any numbers will do, NumPy's as well. `Front` checks which points it may have.
+    Any numbers will do, NumPy's as well. `Front` checks which points it may have. The
+    `shadow_prices` are by how much the least energy falls if a limit is widened [J by its unit], as
+    of a `Plan`: that of the residual is the front's slope. They are empty where it is not known.
     """
 
     coefficients: tuple[float, ...]
     residual: NotNegative
     energy: NotNegative
+    shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
+        prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
+        object.__setattr__(self, "shadow_prices", prices)
         object.__setattr__(self, "coefficients", tuple(map(float, self.coefficients)))
         object.__setattr__(self, "residual", float(self.residual))
         object.__setattr__(self, "energy", float(self.energy))
@@ -161,7 +166,7 @@ def evaluated(
         except SolverFailedError:
             failed += 1
             continue
-        if all(motion.peak(name) <= most * (1 + _KEPT) for name, most in task.limits.items()):
+        if not motion.exceeded(task.limits, _KEPT):
             points.append(FrontPoint(coefficients, motion.residual, motion.energy))
         else:
             infeasible += 1

@@ -10,12 +10,13 @@ from typing import Any
 from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.limits import QUANTITIES, TorqueSpeedLine
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import FreeVibration
-from quietarm.ocp.task import LEAST_DURATION, LIMITS, PointToPoint
+from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 TOLERANCE = 1e-3
 _SHORTER = (0.97, 0.9, 0.8)
@@ -86,7 +87,7 @@ def fastest_move(
     positive("tolerance", tolerance)
     profile.refuse_no_choice()
     if not task.limits:
-        names = ", ".join(name.removesuffix("_limit") for name in LIMITS)
+        names = ", ".join(QUANTITIES)
         raise ValueError(f"nothing limits how fast the move may be; give a limit of {names}")
     begin = time.perf_counter()
     search = _Search(task, profile, {
@@ -161,9 +162,13 @@ class _Search:
 
 def _least_duration(task: PointToPoint) -> float:
     """What the limits of speed and acceleration allow a rigid joint [s]."""
-    span, least = abs(task.span), 0.0
-    if task.speed_limit is not None:
-        least = span / task.speed_limit
-    if task.acceleration_limit is not None:
-        least = max(least, 2 * math.sqrt(span / task.acceleration_limit))
-    return least
+    span, speeds, least = abs(task.span), list[float](), 0.0
+    forward = task.span > 0
+    for limit in task.limits:
+        if limit.name == "speed":
+            speeds.append(limit.upper if forward else -limit.lower)
+        if limit.name == "acceleration":  # the one, then the other
+            least = math.sqrt(2 * span * (1 / limit.upper - 1 / limit.lower))
+        if isinstance(limit.quantity.of, TorqueSpeedLine):
+            speeds.append(limit.quantity.of.largest_speed)
+    return max([least, *(span / speed for speed in speeds)])

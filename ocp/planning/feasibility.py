@@ -8,15 +8,12 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
+from quietarm.ocp.limits import Limit, Ranged
 from quietarm.ocp.planning.certify import judge
-from quietarm.ocp.simulation.objective import WithPeaks
 from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.sqp import Sqp
-from quietarm.ocp.solvers.transcription import RESIDUAL, STILL
-from quietarm.ocp.task import QUANTITIES
+from quietarm.ocp.solvers.transcription import STILL
 
-UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
-"""Unit of every quantity that may be limited."""
 _ROOM = 1.001
 """A least value is quoted with this margin, so that a user who asks for it gets a plan."""
 
@@ -39,12 +36,12 @@ Found = TypeVar("Found", bound=Attempt)
 
 
 def least_peaks(
-    limits: Mapping[str, float], solve_least: Callable[[Mapping[str, float], str], Sequence[Found]]
+    limits: Sequence[Limit], solve_least: Callable[[Sequence[Limit], str], Sequence[Found]]
 ) -> dict[str, Found]:
     """Make each limited quantity in turn as small as it can be while the other limits are kept."""
     best: dict[str, Found] = {}
-    for name in limits:
-        others = {key: value for key, value in limits.items() if key != name}
+    for name in (limit.name for limit in limits):
+        others = [other for other in limits if other.name != name]
         solved = [one for one in solve_least(others, name) if one.status.solved]
         if solved:
             best[name] = min(solved, key=lambda one, name=name: one.peaks[name])
@@ -55,30 +52,25 @@ def least_peaks_of(problem: Problem, starts: Sequence[NDArray[np.float64]]) -> d
     """The same of a problem, from several starts."""
     transcription, asked = problem
 
-    def solve_least(others: Mapping[str, float], name: str) -> list[Solution]:
-        alone = Problem(transcription, asked._replace(limits=others, minimise={name: 1.0}))
+    def solve_least(others: Sequence[Limit], name: str) -> list[Solution]:
+        alone = Problem(transcription, asked._replace(limits=tuple(others), minimise={name: 1.0}))
         return Sqp().solve([alone] * len(starts), starts)
 
     return least_peaks(asked.limits, solve_least)
 
 
-def keeps(peak: float, name: str, limits: Mapping[str, float]) -> bool:
-    """Whether a peak is within its limit; a motion that is as good as still is at rest."""
-    return peak <= max(limits[name], STILL if name == RESIDUAL else 0.0)
-
-
 def true_peaks(
-    least: Mapping[str, Found], resimulated: Callable[[Found], WithPeaks]
+    limits: Sequence[Limit], least: Mapping[str, Found], resimulated: Callable[[Found], Ranged]
 ) -> dict[str, float]:
     """The least peaks as they are between the nodes as well, by what simulates a run's motion."""
 
-    def peak_of(name: str, found: Found) -> float:
+    def peak_of(limit: Limit, found: Found) -> float:
         try:
-            return max(found.peaks[name], resimulated(found).peak(name))
+            return max(found.peaks[limit.name], limit.peak_of(resimulated(found)))
         except SolverFailedError:
-            return found.peaks[name]
+            return found.peaks[limit.name]
 
-    return {name: peak_of(name, found) for name, found in least.items()}
+    return {one.name: peak_of(one, least[one.name]) for one in limits if one.name in least}
 
 
 def explain(
@@ -90,7 +82,7 @@ def explain(
         f"motion of {transcription.profile.amount}",
         asked.limits,
         tried,
-        true_peaks(least, lambda found: judge(transcription, found.coefficients)),
+        true_peaks(asked.limits, least, lambda one: judge(transcription, one.coefficients)),
         f"more {transcription.profile.term}s or a longer duration",
         "" if asked.bound is None else f", coefficients within +-{asked.bound:g}",
     )
@@ -98,7 +90,7 @@ def explain(
 
 def unmet(
     motion: str,
-    limits: Mapping[str, float],
+    limits: Sequence[Limit],
     runs: Sequence[Attempt],
     least: Mapping[str, float],
     remedy: str,
@@ -113,12 +105,14 @@ def unmet(
             ended = f"{ended.partition(';')[0]}; {otherwise}"
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
     asked = ", ".join(
-        f"{name} <= {limit:g} {UNITS[name]}" for name, limit in limits.items() if limit < np.inf
+        f"{one.name} {'<=' if one.is_peak else 'within'} {one.bounds}"
+        for one in limits
+        if one.size < np.inf
     )
     remedies = [
-        f"{name} limit {peak * _ROOM:.4g} {UNITS[name]}"
-        for name, peak in least.items()
-        if not keeps(peak, name, limits)
+        f"{one.name} limit {one.describe(least[one.name] * _ROOM)}"
+        for one in limits
+        if one.name in least and not one.keeps(least[one.name], at_rest=STILL)
     ]
     feasible = (
         f"feasible with the rest kept: {' or '.join(remedies)}"

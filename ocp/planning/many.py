@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.limits import QUANTITIES, Limit
 from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
     start_coefficients,
 )
-from quietarm.ocp.planning.certify_all import certify_all, finer_peaks
+from quietarm.ocp.planning.certify import certify, finer_peaks
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
@@ -22,14 +23,12 @@ from quietarm.ocp.simulation.free_vibration import fastest_of_moves
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
-from quietarm.ocp.solvers.transcription import RESIDUAL, first_steps, transcribe
-from quietarm.ocp.task import QUANTITIES, PointToPoint
+from quietarm.ocp.solvers.transcription import first_steps, transcribe
+from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 _PILOTS, _SAME_MOVE = 8, 1e-9
 """One move in so many is solved first; moves that differ by no more than this share are one."""
-_ROUNDS, _AT_REST = 4, 0.3
-"""Most corrections of the state on arrival, until a residual is below this share of `STILL`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +105,7 @@ def plan_moves(
     settings = SolveSettings(residual_limit, bound, starts, seed, solver=solver)
     _check(tasks, profile)
     problems = [
-        Problem(one, Scalarization({RESIDUAL: residual_limit, **one.task.limits}, bound))
+        Problem(one, Scalarization((Limit.of_residual(residual_limit), *one.task.limits), bound))
         for one in transcribe(tasks, profile, _steps(tasks, profile))
     ]
     chosen, first = solver_of(settings), start_coefficients(profile, settings)
@@ -159,7 +158,7 @@ def _moves_of(problems: Sequence[Problem], found: Sequence[Solution], solver: So
     """The solutions certified, as arrays; without figures where there is none."""
     count, profile = len(found), problems[0].transcription.profile
     solved = [i for i, one in enumerate(found) if one.status.solved]
-    outcomes = certify_all([problems[i] for i in solved], [found[i] for i in solved], solver)
+    outcomes = certify([problems[i] for i in solved], [found[i] for i in solved], solver)
     ended, figures, of_moves = list(found), np.full((count, 2), np.nan), np.zeros(count, dtype=bool)
     coefficients = np.full((count, profile.size), np.nan)
     peaks = {name: np.full(count, np.nan) for name in QUANTITIES}
@@ -205,7 +204,10 @@ def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
     for i, task in enumerate(tasks, start=1):
         if task.uncertainty is not None:
             raise ValueError(f"the plant of move {i} is uncertain; plan such moves by plan_move")
-        mine, first = ((one.plant, one.energy, {*one.limits}) for one in (task, tasks[0]))
+        mine, first = (
+            (one.plant, one.energy, {limit.quantity for limit in one.limits})
+            for one in (task, tasks[0])
+        )
         if mine != first:
             raise ValueError(
                 f"move {i} has another plant or energy, or other limits, than move 1; plan them "

@@ -6,7 +6,7 @@ import io
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
@@ -15,12 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import positive
-from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.limits import Limit
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
-from quietarm.ocp.record import Provenance, Setting, SolveSettings, Verification
+from quietarm.ocp.record import REST, Provenance, Setting, SolveSettings, Verification
 from quietarm.ocp.robustness.perturbed import Sensitivity, Worst, sensitivities, worst_of
 from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.free_vibration import after_arrival
@@ -28,6 +30,8 @@ from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.batch import batch
+from quietarm.ocp.solvers.transcription import STILL
+from quietarm.ocp.tables import to_html
 from quietarm.ocp.task import PointToPoint
 
 _LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
@@ -60,6 +64,10 @@ class Plan(MotionAnswer):
     worst : Worst or None
         Of a plant that is uncertain, the errors within its ranges at which the motion leaves most,
         between the samples as well; else None.
+    shadow_prices : mapping of str to float
+        By how much the least energy falls if a limit is widened [J by the limit's unit]: sums of
+        multipliers, by the limit's name. Of the residual, too, where rest on arrival was asked for;
+        empty where nothing was optimised.
     """
 
     kind: ClassVar[str] = "plan"
@@ -73,8 +81,11 @@ class Plan(MotionAnswer):
     verification: Verification
     provenance: Provenance[SolveSettings | None]
     worst: Worst | None = None
+    shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
+        prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
+        object.__setattr__(self, "shadow_prices", prices)
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
 
     @property
@@ -87,6 +98,12 @@ class Plan(MotionAnswer):
         if self.worst is None or settings is None or settings.residual_limit == 0:
             return None
         return self.worst.residual / settings.residual_limit - 1
+
+    def on(self, task: PointToPoint) -> Plan:
+        """The same motion with its figures on an uncertain task, of which it is the nominal one."""
+        motion = Candidate.of_profile(task, self.profile, self.coefficients).motion
+        worst = worst_of(task, self.profile, self.coefficients)
+        return replace(self, task=task, motion=motion, worst=worst)
 
     @cached_property
     def candidate(self) -> Candidate:
@@ -125,6 +142,25 @@ class Plan(MotionAnswer):
     def sampled(self, times: ArrayLike) -> Trajectory:
         """The motion at given times by CVODES; see `Candidate.sample`."""
         return self.candidate.sample(times)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        task, motion = self.task, self.motion
+        residual = f"{motion.residual:.3g} m" if motion.residual > REST else "none"
+        prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
+        rows = {
+            "plant": task.plant.name,
+            "move": f"{task.start:.4g} to {task.target:.4g} rad in {task.duration:.4g} s",
+            "energy F2": f"{motion.energy:.5g} J",
+            "residual vibration F1": residual,
+            "peak torque": f"{motion.peak_torque:.4g} N m",
+            "peak speed": f"{motion.peak_speed:.4g} rad/s",
+            "peak acceleration": f"{motion.peak_acceleration:.4g} rad/s\u00b2",
+            "shadow prices [J per SI unit of the limit]": ", ".join(prices) or "-",
+            "coefficients": ", ".join(f"{a:.4g}" for a in self.coefficients) or "-",
+            "status": self.status.text,
+        }
+        return to_html(rows.items())
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
         """Write the move as a table to drive a joint with, so many rows a second [Hz].
@@ -188,6 +224,27 @@ def evaluate_coefficients(
         provenance=Provenance(method, None, settings, seconds=time.perf_counter() - began),
         worst=worst_of(task, profile, checked),
     )
+
+
+def only_motion(
+    task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
+) -> Plan:
+    """The figures of the only motion that a profile has, within the task's limits."""
+    asked = {} if residual_limit is None else {"residual_limit": residual_limit}
+    plan = evaluate_coefficients(task, [], profile=profile, method="evaluated", settings=asked)
+    residual = [] if residual_limit is None else [Limit.of_residual(max(residual_limit, STILL))]
+    limits = {limit.name: limit for limit in (*residual, *task.limits)}
+    broken = [
+        f"its {name} reaches {limits[name].describe(limits[name].peak_of(plan.motion))}, above "
+        f"{limits[name].bounds}"
+        for name in plan.motion.exceeded(limits.values(), OVERRUN)
+    ]
+    if broken:
+        raise InfeasibleTaskError(
+            f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
+            "widen what is broken, or give a longer duration or another profile"
+        )
+    return plan
 
 
 def _by_fixed_steps(

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import NotNegative
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import FreeVibration, after_arrival
 from quietarm.ocp.simulation.grid import ROLLOUT_STEPS, default_steps
@@ -54,7 +55,7 @@ def perturbed_figures(
     faster = 1 + max(ranges.values())  # any of them may be a frequency
     steps = max(ROLLOUT_STEPS, int(np.ceil(faster * default_steps(task, least=1))))
     breaks = profile.breaks(task.duration)
-    rows = batch(task.plant, profile, steps, ("torque",), names, task.energy, breaks)
+    rows = batch(task.plant, profile, steps, (QUANTITIES["torque"],), names, task.energy, breaks)
     motion = profile.checked(coefficients, task.duration)
     figures = np.empty((len(errors), 3))
     for first in range(0, len(errors), _BLOCK):

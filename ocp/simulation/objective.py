@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression
 from quietarm.ocp.energy import Energy, power_of
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.task import QUANTITIES
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)
@@ -121,21 +121,8 @@ def _beyond(steps: int) -> tuple[ca.DM, ca.DM]:
 _kept_beyond = lru_cache(maxsize=32)(_beyond)
 
 
-class WithPeaks:
-    """Something with a residual and peaks, which limits are held against."""
-
-    def peak(self, name: str) -> float:
-        """The residual, or the peak of a quantity, by name: infinite where it is not known."""
-        raise NotImplementedError
-
-    def exceeded(self, limits: Mapping[str, float], tolerance: float = 0.0) -> dict[str, float]:
-        """What exceeds its limit by more than a share: its peak over the limit, by name."""
-        of_limit = {name: self.peak(name) / limit for name, limit in limits.items() if limit > 0}
-        return {name: ratio for name, ratio in of_limit.items() if ratio > 1 + tolerance}
-
-
 @dataclass(frozen=True)
-class Motion(WithPeaks):
+class Motion(Ranged):
     """What a motion costs and asks of the joint, whichever integrator it comes from.
 
     Attributes
@@ -155,6 +142,8 @@ class Motion(WithPeaks):
         How far the joint passes the target on its way [rad], 0 where it does not.
     peak_jerk : float or None
         Largest absolute value during the move [rad/s^3]; None where the acceleration jumps.
+    ranges : mapping of str to (float, float)
+        Least and largest value of what the task limits otherwise than by its peak, by quantity.
     """
 
     residual: float
@@ -166,8 +155,17 @@ class Motion(WithPeaks):
     peak_deflection: float
     overshoot: float
     peak_jerk: float | None = None
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
+
+    def range_of(self, quantity: Quantity) -> tuple[float, float]:
+        """As of `Ranged`; from minus to plus the peak where no more is known."""
+        if quantity.name in self.ranges:
+            return self.ranges[quantity.name]
+        known = quantity.name in (RESIDUAL, *QUANTITIES)
+        peak = self.peak(quantity.name) if known else math.inf
+        return -peak, peak
 
     def peak(self, name: str) -> float:
-        """As of `WithPeaks`."""
+        """The residual, or the peak of a quantity, by name: infinite where it is not known."""
         value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
         return math.inf if value is None else float(value)

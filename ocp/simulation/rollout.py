@@ -10,25 +10,28 @@ from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, power_of
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.collocation import NodeState, is_zero, step
+from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NodeState, is_zero, step
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import spent
 
 
 @dataclass(frozen=True)
 class SymbolicRollout:
-    """A simulation as expressions: one row a candidate, one column a step.
+    """A simulation as CasADi expressions: one row a candidate, one column a step.
+
+    Every step has three Gauss nodes; what holds at the nodes is a list of three, each of shape
+    (candidates, steps). All of it can be differentiated twice.
 
     Attributes
     ----------
     joints : list of JointMotion
-        The joint at each Gauss node.
+        The joint at each Gauss node: angle [rad], speed, acceleration.
     states : list of NodeState
-        The modes at each Gauss node.
+        The modes at each Gauss node: W [m], W', W'', by mode.
     torque : list of Expression
         Joint torque at each Gauss node [N m].
     arrival : Expression
-        W (m) and then W' (m/s) at arrival, one row a candidate.
+        W (m) and then W' (m/s) at arrival, shape (candidates, 2 * modes).
     h : Expression
         Length of every step [s].
     unbroken : bool
@@ -52,6 +55,11 @@ class SymbolicRollout:
         return [power_of(torque, joint.speed) for torque, joint in nodes]
 
     @property
+    def weights(self) -> list[Expression]:
+        """Quadrature weights of the nodes [s]: the sum of weight times value is the integral."""
+        return [weight * self.h for weight in GAUSS_WEIGHTS]
+
+    @property
     def energy(self) -> Expression:
         """F2 [J], one row a candidate."""
         speed = [joint.speed for joint in self.joints]
@@ -62,7 +70,7 @@ class SymbolicRollout:
 def symbolic_rollout(
     plant: Plant,
     profile: JointProfile,
-    coefficients: Sequence[Expression],
+    coefficients: Expression | Sequence[Expression],
     move: Sequence[Expression],
     steps: int,
     candidates: int = 1,
@@ -77,8 +85,9 @@ def symbolic_rollout(
     ----------
     plant, profile
         What moves, and how the joint does.
-    coefficients : sequence of Expression
-        The profile's coefficients; each of shape (candidates, steps), or a scalar.
+    coefficients : Expression or sequence of Expression
+        The profile's coefficients: a column (SX, MX or DM) of the decision variables, or one
+        expression each, of shape (candidates, steps) or a scalar.
     move : sequence of Expression
         start [rad], target [rad], duration [s]; scalars.
     steps, candidates : int
@@ -92,7 +101,14 @@ def symbolic_rollout(
         default.
     energy : Energy
         What counts as the energy.
+
+    Returns
+    -------
+    SymbolicRollout
+        The motion, as expressions of the coefficients.
     """
+    if isinstance(coefficients, ca.SX | ca.MX | ca.DM):
+        coefficients = ca.vertsplit(coefficients)
     grid = Grid(steps, breaks)
     times, length = grid.columns(candidates)
     joints = [profile.motion(coefficients, at, *move) for at in times]

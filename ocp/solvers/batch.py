@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.limits import Quantity
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.solvers.derivatives import Kind, compile_derivatives, compile_values
 from quietarm.ocp.solvers.node import Path
-from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
 _OF_VALUES, _OF_DERIVATIVES = (1, 8, 100), (1, 4, 8)
@@ -168,9 +168,9 @@ class Batch:
     def places(self) -> dict[str, slice]:
         """Where the values of each limited quantity stand among all."""
         places, first = dict[str, slice](), 0
-        for name in self.kind.quantities:
-            count = QUANTITIES[name].rows(self.kind.plant) * NODES * self.kind.steps
-            places[name] = slice(first, first + count)
+        for quantity in self.kind.quantities:
+            count = quantity.rows(self.kind.plant) * NODES * self.kind.steps
+            places[quantity.name] = slice(first, first + count)
             first += count
         return places
 
@@ -288,7 +288,7 @@ def batch(
     plant: Plant,
     profile: JointProfile,
     steps: int,
-    quantities: tuple[str, ...] = (),
+    quantities: tuple[Quantity, ...] = (),
     errors: tuple[str, ...] = (),
     energy: Energy = ABSOLUTE_POWER,
     breaks: tuple[float, ...] = (),

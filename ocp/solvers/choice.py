@@ -33,4 +33,6 @@ class Solver(Protocol):
 
 def solver_of(settings: SolveSettings) -> Solver:
     """The solver that settings ask for."""
-    return Sqp() if settings.solver == "sqp" else Ipopt(settings.print_level)
+    if settings.solver == "sqp":
+        return Sqp(log=settings.log)
+    return Ipopt(print_level=5 if settings.log else 0)

@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.limits import Limit
 from quietarm.ocp.solvers.batch import Derivatives, Multipliers
 
 Array = NDArray[np.float64]
@@ -69,12 +70,13 @@ class ResidualLimit(Constraint):
 class QuantityLimit(Constraint):
     """A quantity at the nodes of the steps, of the nominal plant or in all scenarios."""
 
-    def __init__(self, place: slice, scenarios: int, limit: Array, scale: Array) -> None:
-        """Where it stands among the limited values; limit and scale have shape (problems,)."""
+    def __init__(self, place: slice, scenarios: int, bounds: Array, scale: Array) -> None:
+        """Where it stands among the limited; bounds (problems, 2) and scales (problems,)."""
         self._scenarios, self._place, self._scale = slice(0, scenarios), place, scale[:, None]
         values = scenarios * (place.stop - place.start)
-        self.upper = np.repeat((limit / scale)[:, None], values, axis=1)
-        self.lower = -self.upper
+        self.lower, self.upper = (
+            np.repeat(side[:, None], values, axis=1) for side in (bounds / self._scale).T
+        )
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
         """As of `Constraint`."""
@@ -91,19 +93,22 @@ class QuantityLimit(Constraint):
 
 
 class Peak(Constraint):
-    """A constraint whose largest absolute value is the last unknown: v - p <= 0 <= v + p."""
+    """A constraint whose peak p is the last unknown: v - p <= 0 <= v + p, as of `Limit.peak`."""
 
-    def __init__(self, of: Constraint) -> None:
-        self._of = of
+    def __init__(self, of: Constraint, limit: Limit) -> None:
+        self._of, self._limit = of, limit
         zero, free = np.zeros(of.upper.shape), np.full(of.upper.shape, np.inf)
         self.upper, self.lower = np.hstack([zero, free]), np.hstack([-free, zero])
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
         """As of `Constraint`."""
         values, jacobian = self._of.evaluate(rows, motions, x)
-        one, peak = np.ones((*values.shape, 1)), x[:, -1:]
-        by_peak = [np.concatenate([jacobian[:, :, :-1], sign * one], axis=2) for sign in (-1, 1)]
-        return np.hstack([values - peak, values + peak]), np.concatenate(by_peak, axis=1)
+        one, peak, (below, above) = np.ones((*values.shape, 1)), x[:, -1:], self._limit.sides
+        by_peak = [
+            np.concatenate([jacobian[:, :, :-1], -side * one], axis=2) for side in (above, below)
+        ]
+        bounded = np.hstack([values - above * peak, values - below * peak])
+        return bounded, np.concatenate(by_peak, axis=1)
 
     def pull_back(self, rows: Index, multipliers: Array, onto: Multipliers) -> None:
         """As of `Constraint`."""
@@ -112,7 +117,8 @@ class Peak(Constraint):
 
     def largest(self, rows: Index, motions: Derivatives, x: Array) -> Array:
         """The peaks, shape (rows,)."""
-        return np.abs(self._of.evaluate(rows, motions, x)[0]).max(axis=1)
+        values = self._of.evaluate(rows, motions, x)[0]
+        return self._limit.peak(values.min(axis=1), values.max(axis=1))
 
 
 class Box(Constraint):

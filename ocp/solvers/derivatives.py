@@ -13,13 +13,13 @@ import casadi as ca
 import numpy as np
 from quietarm.models import Plant
 from quietarm.ocp.energy import Energy
+from quietarm.ocp.limits import Quantity, ask_for_jerk
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import NODES, Step, step
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import march, symbolic_rollout
 from quietarm.ocp.solvers.energy import energy_with_derivatives
 from quietarm.ocp.solvers.node import Node, Path, product, repeat, repeat_table, transpose
-from quietarm.ocp.task import QUANTITIES, ask_for_jerk
 from quietarm.ocp.uncertainty import perturb_plant
 
 _STEPS_OF_CSE = 48
@@ -32,7 +32,7 @@ class Kind(NamedTuple):
 
     Attributes
     ----------
-    quantities : tuple of str
+    quantities : tuple of Quantity
         Limited quantities.
     errors : tuple of str
         What may differ from the plant in a row, as by `perturb_plant`.
@@ -43,7 +43,7 @@ class Kind(NamedTuple):
     plant: Plant
     profile: JointProfile
     steps: int
-    quantities: tuple[str, ...]
+    quantities: tuple[Quantity, ...]
     errors: tuple[str, ...]
     energy: Energy
     breaks: tuple[float, ...] = ()
@@ -67,8 +67,8 @@ def compile_values(kind: Kind, rows: int) -> ca.Function:
     at_nodes = [
         [
             value
-            for name in quantities
-            for value in QUANTITIES[name].of(joint, perturbed.tip_displacements(state.W), torque)
+            for quantity in quantities
+            for value in quantity.of(joint, perturbed.tip_displacements(state.W), torque)
         ]
         for joint, state, torque in zip(rollout.joints, rollout.states, rollout.torque, strict=True)
     ]

@@ -58,6 +58,10 @@ Evaluate = Callable[[Index, Array, Multipliers, Array], Model]
 """(rows, points, multipliers, widths) -> model at these points."""
 
 
+_LOG_HEAD = "iter  starts   objective  violation     radius  smoothing"
+_LOG_LINE = "{:4}{:8}{:12.6f}{:11.1e}{:11.1e}{:11.3f}"
+
+
 class End(Enum):
     """How a row ended."""
 
@@ -95,19 +99,25 @@ def minimise(
     widths: tuple[float, ...] = WIDTHS,
     reach: float = 0.25,
     most: int = 500,
+    log: bool = False,
 ) -> Ended:
     """Minimise every row from its start, with so many equalities and lower <= v <= upper.
 
     The last `linear` entries of v are linear and kept from the start on. Rows of one number in
     `groups` are starts of one program: once half of them, and more than one, agree on the least f,
     the others are left. The objective is rounded off over the widths, one after another, the last
-    of them 0; trust regions have the radius `reach` at first, rows at most `most` iterations.
+    of them 0; trust regions have the radius `reach` at first, rows at most `most` iterations. `log`
+    prints a line for each.
     """
     with note_interrupts() as came:  # a step is whole, then Ctrl-C ends the work
         run = _Run(evaluate, x.copy(), lower, upper, equalities, linear, groups, widths, reach)
-        for _ in range(most):
+        if log:
+            print(_LOG_HEAD)
+        for number in range(most):
             if came or not len(run.going):
                 break
+            if log:
+                print(run.log_line(number))
             run.iterate()
     if came:
         raise KeyboardInterrupt
@@ -147,6 +157,12 @@ class _Run:
 
     def width(self, rows: Index) -> Array:
         return self.widths[self.stage[rows]]
+
+    def log_line(self, number: int) -> str:
+        """Of the row with the least objective, scaled; and how many are going."""
+        row = self.going[[np.argmin(self.f[self.going])]]
+        values = *self.f[row], *self.violation[row], *self.radius[row], *self.width(row)
+        return _LOG_LINE.format(number, len(self.going), *values)
 
     def iterate(self) -> None:
         """One iteration of all rows that are going."""

@@ -6,10 +6,11 @@ Unknowns are the coefficients a and, where a peak is minimised, that peak p:
     minimise    weight * energy(a) + weight * p
     subject to  missed(a) = 0                where rest on arrival is asked for
                 |tips * missed(a)| <= limit  where the residual is bounded, in every scenario
-                |quantity(a)| <= limit       at every node of the steps
+                below <= quantity(a) <= above  at every node of the steps
                 lower <= a <= upper
 
-with missed(a) the state on arrival less the wanted one, and p for the limit of what is minimised.
+with missed(a) the state on arrival less the wanted one, and what is minimised within p times the
+sides of its limit.
 """
 
 from __future__ import annotations
@@ -26,14 +27,14 @@ from quietarm.models import Plant
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.limits import RESIDUAL, Quantity, ask_for_jerk
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.objective import integrated
 from quietarm.ocp.simulation.rollout import SymbolicRollout, symbolic_rollout
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.problem import Problem, Solution, price_of_rest
-from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL
-from quietarm.ocp.task import QUANTITIES, ask_for_jerk
+from quietarm.ocp.solvers.transcription import ENERGY
 from quietarm.ocp.uncertainty import perturb_plant
 
 Array = NDArray[np.float64]
@@ -92,12 +93,13 @@ class _Form(NamedTuple):
     profile: JointProfile
     energy: Energy
     steps: int
-    quantities: tuple[str, ...]
+    quantities: tuple[Quantity, ...]
     error_names: tuple[str, ...]
     scenarios: tuple[tuple[float, ...], ...]
     tips: tuple[int, ...]
     at_rest: bool
     peak: str | None
+    sides: tuple[float, float]
     print_level: int
     warm: bool
 
@@ -128,7 +130,8 @@ class _Program:
         nominal = rollouts[0]
         arrival = ca.horzcat(*(rollout.arrival.T for rollout in rollouts))
         missed = arrival - wanted
-        limited = {name: _values(form, name, rollouts) for name in form.quantities}
+        limited = {one.name: _values(form, one, rollouts) for one in form.quantities}
+        least, most = form.sides
         energy = ca.if_else(width > 0, _round_off(form.energy, nominal, width), nominal.energy)
 
         bounded = {RESIDUAL: ca.vertcat(*(rows @ missed[:, i] for i, rows in enumerate(tips)))}
@@ -136,7 +139,7 @@ class _Program:
         constraints = {"arrival": missed[:, 0] / scale if form.at_rest else ca.MX(0, 1)}
         for name, values in bounded.items():
             if name == form.peak:
-                constraints |= {"below peak": values - p, "above peak": values + p}
+                constraints |= {"below peak": values - most * p, "above peak": values - least * p}
             else:
                 constraints[name] = values
         nlp = {
@@ -168,14 +171,14 @@ def _perturb(form: _Form, errors: Sequence[float]) -> Plant:
     return perturb_plant(form.plant, dict(zip(form.error_names, errors, strict=True)))
 
 
-def _values(form: _Form, name: str, rollouts: Sequence[SymbolicRollout]) -> ca.MX:
+def _values(form: _Form, quantity: Quantity, rollouts: Sequence[SymbolicRollout]) -> ca.MX:
     """A limited quantity at all nodes, where it asks for that in all scenarios."""
-    counted = rollouts if QUANTITIES[name].in_scenarios else rollouts[:1]
+    counted = rollouts if quantity.in_scenarios else rollouts[:1]
     values = list[Any]()
     for rollout, errors in zip(counted, form.scenarios, strict=False):
         tips = [_perturb(form, errors).tip_displacements(state.W) for state in rollout.states]
         for node in zip(rollout.joints, tips, rollout.torque, strict=True):
-            values += QUANTITIES[name].of(*node)
+            values += quantity.of(*node)
     return ca.veccat(*(ca.MX.zeros(1, form.steps) + value for value in values))
 
 
@@ -196,9 +199,10 @@ class _Numbers:
         self.tips = [vibration.rows for vibration in after_arrival(task)]
         tips = self.tips if self.asked.bounds_residual else [np.zeros((0, modes))] * len(self.tips)
         form = _Form(
-            task.plant, self.profile, task.energy, transcription.steps, tuple(task.limits),
-            task.error_names, task.scenarios, tuple(map(len, tips)), self.asked.at_rest,
-            self.asked.peak, print_level, warm,
+            task.plant, self.profile, task.energy, transcription.steps,
+            tuple(one.quantity for one in task.limits), task.error_names, task.scenarios,
+            tuple(map(len, tips)), self.asked.at_rest, self.asked.peak,
+            transcription.limits[self.asked.peak or RESIDUAL].sides, print_level, warm,
         )  # fmt: skip
         with keep_interrupts():  # casadi loses a Ctrl-C
             self.program = compile_program(form)
@@ -208,7 +212,7 @@ class _Numbers:
         self._measure()
         self.parameters = [
             task.row, self.wanted, self.scale, *(r.T / self.scales[RESIDUAL] for r in tips),
-            [self.scales[name] for name in task.limits], self.weights,
+            [self.scales[limit.name] for limit in task.limits], self.weights,
         ]  # fmt: skip
 
     def _measure(self) -> None:
@@ -228,8 +232,9 @@ class _Numbers:
         """Energy, state on arrival by scenario, and peaks of the limited quantities."""
         with keep_interrupts():
             found = [x.full() for x in self.program.figures.call([coefficients, self.task.row])]
-        peaks = [float(np.abs(values).max()) for values in found[2:]]
-        return found[0].item(), found[1], dict(zip(self.task.limits, peaks, strict=True))
+        limited = zip(self.task.limits, found[2:], strict=True)
+        peaks = {one.name: float(one.peak(x.min(), x.max())) for one, x in limited}
+        return found[0].item(), found[1], peaks
 
     def residual(self, arrival: Array) -> float:
         """The largest of all scenarios [m]."""
@@ -256,15 +261,15 @@ class _Numbers:
 
     def _bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the constraints."""
-        lower, upper = list[Array](), list[Array]()
-        for name, count in self.program.counts.items():
-            limit = self.asked.limits.get(name, np.inf) / self.scales.get(name, 1.0)
-            least, most = {
-                "arrival": (0.0, 0.0), "below peak": (-np.inf, 0.0), "above peak": (0.0, np.inf),
-            }.get(name, (-limit, limit))  # fmt: skip
-            lower.append(np.full(count, least))
-            upper.append(np.full(count, most))
-        return np.concatenate(lower), np.concatenate(upper)
+        bounds = {
+            "arrival": (0.0, 0.0), "below peak": (-np.inf, 0.0), "above peak": (0.0, np.inf),
+            **{one.name: (one.lower / self.scales[one.name], one.upper / self.scales[one.name])
+               for one in self.asked.limits},
+        }  # fmt: skip
+        counts, free = self.program.counts, (-np.inf, np.inf)
+        lower, upper = zip(*(bounds.get(name, free) for name in counts), strict=True)
+        sizes = list(counts.values())
+        return np.repeat(lower, sizes), np.repeat(upper, sizes)
 
     def _in_units(
         self, x: Array, multipliers: Array, return_status: str, iterations: int
@@ -293,8 +298,10 @@ class _Numbers:
             return prices
         stops = np.cumsum(list(counts.values()))[:-1]
         own = dict(zip(counts, np.split(multipliers, stops), strict=True))
-        for name in self.asked.limits.keys() & own.keys():
-            prices[name] = float(np.abs(own[name]).sum()) / of_energy / self.scales[name]
+        for limit in self.asked.limits:
+            if limit.name in own:
+                price = limit.price(own[limit.name]) / of_energy
+                prices[limit.name] = price / self.scales[limit.name]
         if self.asked.at_rest:
             prices[RESIDUAL] = price_of_rest(own["arrival"] / self.scale, self.tips[0]) / of_energy
         return prices

@@ -15,10 +15,10 @@ from typing import Any
 import casadi as ca
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.energy import Energy, power_of
+from quietarm.ocp.limits import Quantity
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import is_zero
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.task import QUANTITIES
 from quietarm.ocp.uncertainty import perturb_plant
 
 Shape = tuple[int, int]
@@ -171,7 +171,7 @@ class Node:
         self,
         plant: Plant,
         path: Path,
-        quantities: Sequence[str],
+        quantities: Sequence[Quantity],
         names: Sequence[str],
         energy: Energy,
         shape: Shape,
@@ -186,7 +186,7 @@ class Node:
         torque, tips = perturbed.torque(joint, W, dW, ddW), perturbed.tip_displacements(W)
         smooth = energy.smooth(torque, joint.speed)
         own = [power_of(torque, joint.speed), *([] if is_zero(smooth) else [smooth])]
-        limited = [x for name in quantities for x in QUANTITIES[name].of(joint, tips, torque)]
+        limited = [x for quantity in quantities for x in quantity.of(joint, tips, torque)]
         o = [zero + x for x in (*own, *limited)]
         self.own, self.count = len(own), len(o)
         f_y, o_v, inputs = jacobian(f, y), jacobian(o, v), [*v, *move, *errors]

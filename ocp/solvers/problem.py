@@ -10,7 +10,8 @@ import daqp
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL, Transcription
+from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.solvers.transcription import ENERGY, Transcription
 
 LEAST_ENERGY = {ENERGY: 1.0}
 
@@ -20,9 +21,8 @@ class Scalarization(NamedTuple):
 
     Attributes
     ----------
-    limits : mapping of str to float
-        Largest residual [m], 0 for rest on arrival, and largest peaks [SI units]; a quantity
-        without an entry is not limited.
+    limits : tuple of Limit
+        Of the residual, 0 for rest on arrival, and of quantities.
     bound : float or None
         Largest absolute coefficient, as the profile's `box` takes it.
     minimise : mapping of str to float
@@ -31,7 +31,7 @@ class Scalarization(NamedTuple):
         Added to the state on arrival of every scenario [m, m/s]: what the steps miss of it.
     """
 
-    limits: Mapping[str, float]
+    limits: tuple[Limit, ...]
     bound: float | None = None
     minimise: Mapping[str, float] = LEAST_ENERGY
     offset: NDArray[np.float64] | None = None
@@ -44,7 +44,7 @@ class Scalarization(NamedTuple):
     @property
     def residual_limit(self) -> float:
         """Largest residual [m]; infinite where it is not limited."""
-        return self.limits.get(RESIDUAL, np.inf)
+        return max((one.size for one in self.limits if one.name == RESIDUAL), default=np.inf)
 
     @property
     def at_rest(self) -> bool:
@@ -79,7 +79,7 @@ class Solution:
     energy : float
         F2 [J].
     peaks : mapping of str to float
-        Residual [m] and each limited quantity [SI units], at the nodes.
+        Residual [m] and each limited quantity [SI units] by name, as of `Limit.peak`, at the nodes.
     status : SolveStatus
         How it ended.
     iterations : int

@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.batch import Derivatives
 from quietarm.ocp.solvers.batch import Multipliers as MotionMultipliers
 from quietarm.ocp.solvers.constraints import Box, Constraint, Peak, QuantityLimit, ResidualLimit
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.quadratic import Model, Multipliers
-from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL
-from quietarm.ocp.task import QUANTITIES
+from quietarm.ocp.solvers.transcription import ENERGY
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -76,14 +76,15 @@ class Programs:
         """Everything that is bounded, the box last."""
         constraints = dict[str, Constraint]()
         if bounds_residual:
-            limit = self._limits(RESIDUAL) / self._scales(RESIDUAL)
-            constraints[RESIDUAL] = ResidualLimit(self._tips(), limit)
+            limit = np.array([each.residual_limit for each in self._scalarizations])
+            constraints[RESIDUAL] = ResidualLimit(self._tips(), limit / self._scales(RESIDUAL))
+        limits = self._transcriptions[0].limits
         for name, place in self._batch.places.items():
-            scenarios = self._scenarios if QUANTITIES[name].in_scenarios else 1
-            own = place, scenarios, self._limits(name), self._scales(name)
+            scenarios = self._scenarios if limits[name].quantity.in_scenarios else 1
+            own = place, scenarios, self._bounds(name), self._scales(name)
             constraints[name] = QuantityLimit(*own)
         if self._peak is not None:
-            constraints[self._peak] = Peak(constraints[self._peak])
+            constraints[self._peak] = Peak(constraints[self._peak], limits[self._peak])
         boxes = [each.profile.box(asked.bound) for each, asked in zip(
             self._transcriptions, self._scalarizations, strict=True)]  # fmt: skip
         self._box = np.array(boxes).transpose(1, 0, 2)
@@ -100,8 +101,14 @@ class Programs:
             for name in ("lower", "upper")
         )
 
-    def _limits(self, name: str) -> Array:
-        return np.array([asked.limits.get(name, np.inf) for asked in self._scalarizations])
+    def _bounds(self, name: str) -> Array:
+        """Least and largest value in each problem, infinite where it is not limited."""
+        bounds = np.array([[-np.inf, np.inf]] * len(self._scalarizations))
+        for i, asked in enumerate(self._scalarizations):
+            for limit in asked.limits:
+                if limit.name == name:
+                    bounds[i] = limit.lower, limit.upper
+        return bounds
 
     def _scales(self, name: str) -> Array:
         return np.array([each.scale_of(name) for each in self._transcriptions])

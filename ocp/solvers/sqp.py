@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, End, Ended, minimise
 from quietarm.ocp.solvers.problem import Problem, Solution, price_of_rest
 from quietarm.ocp.solvers.programs import Programs
-from quietarm.ocp.solvers.transcription import RESIDUAL, evaluate
+from quietarm.ocp.solvers.transcription import evaluate
 
 Array = NDArray[np.float64]
 _NONE = 1e-8
@@ -33,9 +34,17 @@ _STATUS = {
 
 @dataclass(frozen=True)
 class Sqp:
-    """Sequential quadratic programming, as `funnel` has it; all problems of one form at once."""
+    """Sequential quadratic programming, as `funnel` has it; all problems of one form at once.
+
+    Parameters
+    ----------
+    log : bool
+        Whether a line is printed for each iteration.
+    """
 
     name: ClassVar[str] = "sqp"
+
+    log: bool = False
 
     def solve(
         self,
@@ -82,6 +91,7 @@ class Sqp:
                 groups=None if groups is None else np.array([groups[i] for i in places]),
                 widths=SHARP if warm else WIDTHS,
                 reach=_WARM_REACH if warm else _REACH,
+                log=self.log,
             )
             solutions.update(zip(places, _in_units(programs, ended, own), strict=True))
         return [solutions[i] for i in range(len(problems))]
@@ -130,9 +140,10 @@ def _shadow_prices(
     for i, (transcription, asked) in enumerate(problems):
         of_energy, own = programs.weights[i, 0] / transcription.energy_scale, dict[str, float]()
         if of_energy:
-            for name in asked.limits.keys() & bounded.keys() - {asked.peak}:
-                multiplier = float(np.abs(bounded[name][i]).sum())
-                own[name] = multiplier / of_energy / transcription.scale_of(name)
+            for limit in asked.limits:
+                if limit.name in bounded.keys() - {asked.peak}:
+                    price = limit.price(bounded[limit.name][i]) / of_energy
+                    own[limit.name] = price / transcription.scale_of(limit.name)
             if asked.at_rest:
                 of_arrival = ended.multipliers.equality[i] / transcription.arrival_scale
                 own[RESIDUAL] = price_of_rest(of_arrival, transcription.tip_rows[0]) / of_energy

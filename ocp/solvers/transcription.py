@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
@@ -16,7 +17,7 @@ from quietarm.ocp.solvers.batch import Derivatives, batch
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
-ENERGY, RESIDUAL = "energy", "residual"
+ENERGY = "energy"
 _LEAST_STEPS, _LIMITED_STEPS, _STEPS_A_TERM = 48, 80, 8
 """Steps that resolve a profile: more with more terms, since the power changes sign more often, but
 within the first two; with limits the second, since limits hold only at the nodes."""
@@ -42,6 +43,8 @@ class Transcription:
         Evaluates candidates in any scenario.
     errors : ndarray, shape (scenarios, ranges)
         The plant's errors in every scenario, the nominal one first.
+    limits : dict of str to Limit
+        The task's by name; and one of the residual, which may have any size.
     wanted : ndarray, shape (2 * modes,)
         The state that is wanted on arrival.
     """
@@ -51,8 +54,10 @@ class Transcription:
         self.wanted = np.array(task.final_state)
         self.errors = np.array(task.scenarios, dtype=float)
         self.batch = batch(
-            task.plant, profile, steps, tuple(task.limits), task.error_names, task.energy
-        )
+            task.plant, profile, steps, tuple(one.quantity for one in task.limits),
+            task.error_names, task.energy,
+        )  # fmt: skip
+        self.limits = {one.name: one for one in (*task.limits, Limit.of_residual(np.inf))}
 
     @classmethod
     def of(
@@ -111,7 +116,8 @@ class Transcription:
 
     def peak(self, of: Derivatives, name: str) -> float:
         """The peak of a limited quantity of the nominal plant [SI unit]."""
-        return float(np.abs(of.limited[0, self.batch.places[name]]).max())
+        values = of.limited[0, self.batch.places[name]]
+        return float(self.limits[name].peak(values.min(), values.max()))
 
 
 def first_steps(task: PointToPoint, profile: JointProfile) -> int:

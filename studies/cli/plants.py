@@ -57,7 +57,7 @@ def parse_error(text: str) -> tuple[str, float]:
     if not (equals and name and share):
         raise ValueError(f"{text!r} is no error; give a name and its share, as frequency=10%")
     size = parse_share(share)
-    if size > 1 and is_number(share):
+    if size >= 1 and is_number(share):
         raise ValueError(f"{text} is {100 * size:g} %; was {share} % meant? give {name}={share}%")
     return name.replace("-", "_"), size
 

@@ -111,12 +111,18 @@ def parse_torque(text: str) -> float:
 
 def parse_in(unit: str, text: str, name: str) -> float:
     """Read a number of a unit of SI, or with another unit of its kind: 0.6, 600mm, 3.2Hz."""
-    units = _IN_UNITS.get(unit, {"": 1.0})
+    units = _IN_UNITS.get(unit, {"": 1.0} if unit != "-" else {"": 1.0, "%": 100.0})
     others = [one for one in units if one not in ("", unit, "hz")]
-    wanted = "number" if unit == "-" else f"number in {unit}, without the unit"
-    if others:
-        wanted = f"number in {unit}, or with {' or '.join(others)} behind it"
-    return _with_unit(text, units, f"a value of {name}", f"a {wanted}")
+    of_unit = "" if unit == "-" else f" in {unit}"
+    behind = f"or with {' or '.join(others)} behind it" if others else "without the unit"
+    wanted = f"number{of_unit}, {behind}"
+    value = _with_unit(text, units, f"a value of {name}", f"a {wanted}")
+    if name.startswith(("zeta", "damping")) and value >= 1 and is_number(text):
+        raise ValueError(
+            f"{name}={text} is a damping ratio of {100 * value:g} %; was {text} % meant? give "
+            f"{name}={text}%, or {name}={100 * value:g}%"
+        )
+    return value
 
 
 def parse_state(text: str) -> ModalState:

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import click
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
+from quietarm.studies.cli.bounds import parse_bounds, parse_torque_speed
 from quietarm.studies.cli.options import options, refuse_typed, typed
 from quietarm.studies.cli.plants import (
     check_machine,
@@ -17,19 +18,24 @@ from quietarm.studies.cli.plants import (
     uncertainty_of,
     units_of_plant,
 )
-from quietarm.studies.cli.quantities import parse_duration, parse_in, parse_joint_angle, parse_rate
+from quietarm.studies.cli.quantities import (
+    parse_duration,
+    parse_in,
+    parse_joint_angle,
+    parse_length,
+    parse_rate,
+    parse_torque,
+)
 from quietarm.studies.cli.types import (
     ANGLE,
     ENERGY,
     ERROR,
     INPUT,
-    LENGTH,
     MODES,
     PLANT,
     PLANT_FILE,
     SETTING,
     TIME,
-    TORQUE,
     Parsed,
 )
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid, axis_values
@@ -37,21 +43,20 @@ from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid, axis_values
 F = TypeVar("F", bound=Callable[..., Any])
 _OF_A_MOVE = (
     "start", "target", "duration", "residual_window", "initial", "final", "energy",
-    *(quantity.limit for quantity in QUANTITIES.values()),
+    *(quantity.limit for quantity in QUANTITIES.values()), "torque_speed",
 )  # fmt: skip
 _OWN = ("plant_file", "parameters", *_OF_A_MOVE)
 
 
 def _limit_option(quantity: Quantity) -> Callable[[F], F]:
-    option, words = f"--{quantity.name}-limit", f"Largest {quantity.label} on the way"
+    parse, also = parse_torque, ""
     if quantity.unit == "m":
-        return click.option(option, type=LENGTH, help=f"{words}.")
+        parse = parse_length
     if quantity.derivative is not None:
-        parse = partial(parse_rate, order=quantity.derivative)
-        help_text = f"{words} [{quantity.unit}], or as 60deg."
-        return click.option(option, type=Parsed(quantity.name, parse), help=help_text)
-    kind = TORQUE if quantity.unit == "N m" else float
-    return click.option(option, type=kind, help=f"{words} [{quantity.unit}].")
+        parse, also = partial(parse_rate, order=quantity.derivative), ", or as 60deg"
+    words = f"Largest {quantity.label} on the way [{quantity.unit}]{also}; -30:40 by direction."
+    kind = Parsed(quantity.name, partial(parse_bounds, parse=parse))
+    return click.option(f"--{quantity.name}-limit", type=kind, help=words)
 
 
 plant_file_option = partial(
@@ -101,6 +106,8 @@ def _with_task(
         click.option("--target", type=angle, required=required, help="Joint angle at the end."),
         click.option("--duration", type=time, required=required, help=words),
         *map(_limit_option, QUANTITIES.values()),
+        click.option("--torque-speed", type=Parsed("torque@speed", parse_torque_speed),
+                     help="What the drive gives, torques at speeds [rad/s]: 1.5Nm@0,0.8Nm@20."),
         click.option("--residual-window", type=TIME, default=1.0, show_default=True,
                      help="Time after arrival in which the residual is measured."),
         click.option("--initial", type=MODES,

@@ -9,7 +9,6 @@ from math import degrees
 from quietarm.models import Plant
 from quietarm.ocp import Front, ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
-from quietarm.ocp.task import QUANTITIES
 from rich.console import Console
 
 
@@ -84,9 +83,7 @@ def energy_words(task: PointToPoint) -> list[str]:
 
 def title_of(task: PointToPoint) -> str:
     """A task in a line: its plant and move; its limits where it has any."""
-    limits = [
-        f"{name} within {value:g} {QUANTITIES[name].unit}" for name, value in task.limits.items()
-    ]
+    limits = [f"{limit.name} within {limit.bounds}" for limit in task.limits]
     return ", ".join([moved(task), move_of(task), *limits])
 
 

@@ -130,7 +130,9 @@ class Explored:
     def shown(self) -> dict[str, float | None]:
         """Values of the dials in the units that are shown."""
         return {
-            name: None if value is None else float(f"{value * self.dials[name].factor:.12g}")
+            name: None
+            if value is None or isinstance(value, tuple)  # a limit that differs by direction
+            else float(f"{value * self.dials[name].factor:.12g}")
             for name, value in self._values.items()
         }
 
@@ -143,6 +145,7 @@ class Explored:
         values: dict[str, Any] = {**self._values, **clipped}
         coefficients: Any = [values[name] for name in self.coefficients]
         limits = {quantity.limit: values[quantity.limit] for quantity in QUANTITIES.values()}
+        limits["torque_speed"] = self.task.torque_speed
         task = replace(self.task, **{name: values[name] for name in OF_MOVES}, **limits)
         axes = self.library.grid.axes if self.library else ()
         at = {axis.name: values[axis.name] for axis in axes}

@@ -137,11 +137,12 @@ def _quantity(explored: Explored, name: str) -> Iterator[Curve]:
             low, high = min(low, values.min()), max(high, values.max())
             dash = "dashed" if plan is kept else "solid"
             yield plan.trajectory.time[some], values[some], colour, dash
-    limit = task.limits.get(name)
-    if limit is not None and explored.plan.motion.peak(name) >= _IN_SIGHT * limit:
-        limit *= 1e3 if QUANTITIES[name].unit == "m" else 1.0
-        low, high = min(low, -limit), max(high, limit)
-        for side in (limit, -limit):
+    limit = task.limit_of(name)
+    if limit is not None and limit.peak_of(explored.plan.motion) >= _IN_SIGHT * limit.size:
+        factor = 1e3 if QUANTITIES[name].unit == "m" else 1.0
+        sides = factor * limit.upper, factor * limit.lower
+        low, high = min(low, *sides), max(high, *sides)
+        for side in sides:
             yield np.array([0.0, task.duration]), np.full(2, side), RED, "dashed"
     yield np.full(2, task.duration), np.array([low, high]), INK, "dotted"
 

@@ -45,7 +45,10 @@ def _words_of_plan(plan: Plan) -> dict[str, Any]:
     return {
         "title": f"{moved(plan.task)}, {move_of(plan.task)}",
         "version": plan.provenance.versions.get("quietarm", ""),
-        "figures": f"Energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
+        "figures": ", ".join([
+            f"Energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
+            *(f"{limit.name} within {limit.bounds}" for limit in plan.task.limits),
+        ]),
         "axes": (), "given": "", "move": [repr(value) for value in plan.task.move],
         "coefficients": plan.coefficients,
     }  # fmt: skip

@@ -106,9 +106,10 @@ def draw_lines(lines: Sequence[Line], quantity: str, ax: Axes) -> Axes:
             ax.plot(time, column, color=line.colour, **_looks(line, i))
     for duration in {line.plan.task.duration for line in lines}:
         ax.axvline(duration, color="0.6", linewidth=0.8, linestyle="--")
-    limits = [line.plan.task.limits.get(quantity) for line in lines]
+    limits = [line.plan.task.limit_of(quantity) for line in lines]
     scale = _shown(quantity)[2]
-    words += _draw_limits(ax, [scale * limit for limit in limits if limit is not None], values)
+    bounds = [(scale * one.lower, scale * one.upper) for one in limits if one is not None]
+    words += _draw_limits(ax, bounds, values)
     words += _leave_out_jolts(ax, lines, values)
     ax.set_title(", ".join(words), **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
@@ -167,7 +168,7 @@ def motion_figure(
     """
     lines = _of_one_duration(motions)
     if quantities is None:
-        limited = {name for line in lines for name in line.plan.task.limits}
+        limited = {limit.name for line in lines for limit in line.plan.task.limits}
         quantities = [
             name for name in QUANTITIES_DRAWN if name in limited or name not in _WHERE_LIMITED
         ]
@@ -241,17 +242,19 @@ def _looks(line: Line, tip: int) -> dict[str, Any]:
 
 
 def _draw_limits(
-    ax: Axes, limits: Sequence[float], values: Sequence[NDArray[np.float64]]
+    ax: Axes, limits: Sequence[tuple[float, float]], values: Sequence[NDArray[np.float64]]
 ) -> list[str]:
     """Draw the limits that a motion comes near; the others in words."""
     every = np.concatenate([one.ravel() for one in values])
     words, label = list[str](), "limit"
-    for limit in sorted(set(limits)):
-        sides = [side for side in (1, -1) if (side * every).max() >= _IN_SIGHT * limit]
-        for side in sides:
-            ax.axhline(side * limit, color="black", linewidth=1.1, linestyle=":", label=label)
+    for lower, upper in sorted(set(limits)):
+        near = [upper] * bool(every.max() >= _IN_SIGHT * upper)
+        near += [lower] * bool(every.min() <= _IN_SIGHT * lower)
+        for level in near:
+            ax.axhline(level, color="black", linewidth=1.1, linestyle=":", label=label)
             label = "_"  # once in the legend
-        words += [] if sides else [f"limit {limit:g} far off"]
+        bounds = f"{upper:g}" if lower == -upper else f"{lower:g} to {upper:g}"
+        words += [] if near else [f"limit {bounds} far off"]
     return words
 
 

@@ -87,11 +87,11 @@ def _why_none(rows: Array, failed: NDArray[np.bool_], violations: Array, task: P
         )
     nearest = violations[~failed].max(axis=1).argmin()
     passed = violations[~failed][nearest]
-    name, limit = list(task.limits.items())[int(passed.argmax())]
-    reached = (1 + passed.max()) * limit
+    limit = task.limits[int(passed.argmax())]
+    reached = limit.describe((1 + passed.max()) * limit.size)
     return (
-        f"{none}the {name} of the one that keeps the limits best is {reached:.4g}, above "
-        f"{limit:g}; widen that limit, or give a longer duration"
+        f"{none}the {limit.name} of the one that keeps the limits best is {reached}, above "
+        f"{limit.bounds}; widen that limit, or give a longer duration"
     )
 
 

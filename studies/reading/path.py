@@ -41,6 +41,12 @@ def read_path(path: Path) -> RecordedPath:
     names = {one: column_of(path, table, one, UNITS[one]) for one in ("time", "angle")}
     time, angle = (column_in(path, table, names[one], "", UNITS[one]) for one in names)
     _check(path, time, angle)
+    turns = np.abs(angle).max() > 2 * np.pi
+    if turns and "_" not in names["angle"]:
+        raise FileFormatError(
+            f"{path}: column {names['angle']} reaches {np.abs(angle).max():g} and names no unit; "
+            "were degrees meant? name it angle_deg, or angle_rad"
+        )
     spline = CubicSpline(time - time[0], angle, bc_type="clamped")
     jerk, acceleration, *_ = spline.c
     motion = FreeMotion(time - time[0], 2 * acceleration, 6 * jerk)

@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
-from quietarm.ocp.planning.robust import EXCESS
+from quietarm.ocp.limits import QUANTITIES, Limit
+from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.record import AGREEMENT
-from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
 from quietarm.studies.document.blocks import Document, Facts, Lines
 from quietarm.studies.document.table import Column, Table
@@ -16,6 +17,8 @@ from quietarm.studies.document.table import Column, Table
 Row = tuple[str, str]
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
+_FAR = 0.1
+"""A limit that a motion does not come to this share of does not act, and silences no warning."""
 HARD_REMEDY = "give what the drive can do, as --acceleration-limit or --torque-limit"
 _SEEN = 1e-6
 """A joint turns back where it does so by more than this [rad]."""
@@ -100,7 +103,7 @@ def _residual_limit(plan: Plan) -> float:
 def move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and where the motion breaks one."""
     limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
-    limits += [_limit(name, most, motion.peak(name)) for name, most in task.limits.items()]
+    limits += [_limit(one, one.peak_of(motion)) for one in task.limits]
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),
@@ -132,13 +135,15 @@ def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
     peak, unit = motion.peak(name), QUANTITIES[name].unit
     if unit == "m":
         return f"{millimetres(peak)}{_large(task, motion)}"
-    return f"{peak:.4g} {unit}{_hard(name, task, peak)}"
+    return f"{peak:.4g} {unit}{_hard(name, task, motion)}"
 
 
-def _hard(name: str, task: PointToPoint, peak: float) -> str:
-    """A warning where nothing limits a motion that accelerates far harder than the cycloid."""
+def _hard(name: str, task: PointToPoint, motion: Motion) -> str:
+    """A warning where no limit is near a motion that accelerates far harder than the cycloid."""
     cycloid = 2 * math.pi * abs(task.span) / task.duration**2  # of eq (1) with U = t / TE
-    if name != "acceleration" or task.limits or peak <= _HARD * cycloid:
+    peak = motion.peak_acceleration
+    acts = any(one.peak_of(motion) > _FAR * one.size for one in task.limits)
+    if name != "acceleration" or acts or peak <= _HARD * cycloid:
         return ""
     return f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {HARD_REMEDY})"
 
@@ -172,8 +177,6 @@ def _tip(task: PointToPoint) -> str:
     return words if scenarios == 1 else f"{words}, worst of {scenarios} samples"
 
 
-def _limit(name: str, limit: float, peak: float) -> str:
+def _limit(limit: Limit, peak: float) -> str:
     """A limit, and how it is broken; nothing where it is kept to the README's tolerance."""
-    unit = QUANTITIES[name].unit
-    broken = "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {unit})"
-    return f"{name} {limit:g} {unit}{broken}"
+    return f"{limit}{'' if limit.keeps(peak, OVERRUN) else f' (broken: {limit.describe(peak)})'}"

@@ -73,10 +73,16 @@ class Definition:
 
     def tasks(self, number: int) -> list[PointToPoint]:
         """The moves of a chunk as they are planned: their limits less the margin."""
-        limits = {
-            QUANTITIES[name].limit: (1 - self.margin) * limit
-            for name, limit in self.grid.task.limits.items()
+        share, of = 1 - self.margin, self.grid.task
+        limits: dict[str, Any] = {
+            quantity.limit: tuple(share * one for one in given)
+            if isinstance(given, tuple)
+            else share * given
+            for quantity in QUANTITIES.values()
+            if (given := getattr(of, quantity.limit)) is not None
         }
+        if of.torque_speed is not None:
+            limits["torque_speed"] = tuple((share * torque, at) for torque, at in of.torque_speed)
         return [replace(task, **limits) for task in self.grid.tasks(self.grid.chunks[number])]
 
     @property
@@ -86,7 +92,7 @@ class Definition:
         units |= {f"peak_{name}": quantity.unit for name, quantity in QUANTITIES.items()}
         units[f"price_{RESIDUAL}"] = "J/m"
         limits = self.grid.task.limits
-        units |= {f"price_{name}": f"J/({QUANTITIES[name].unit})" for name in limits}
+        units |= {f"price_{one.name}": f"J/({one.quantity.unit or '1'})" for one in limits}
         units |= {f"energy_by_{name}": "J" for name in OF_MODES}
         units |= {f"residual_by_{name}": "m" for name in OF_MODES}
         units |= {"iterations": "1", "cold_excess": "1"}

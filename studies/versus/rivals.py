@@ -107,11 +107,14 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
         raise ValueError(f"ruckig is not installed; {install('ruckig')}") from None
     if task.acceleration_limit is None:
         raise ValueError("ruckig needs an acceleration limit")
-    asked, found, free = InputParameter(1), Trajectory(1), float("inf")
+    asked, found, free = InputParameter(1), Trajectory(1), (-np.inf, np.inf)
     asked.current_position, asked.target_position = [task.start], [task.target]
-    asked.max_velocity = [task.speed_limit or free]
-    asked.max_acceleration = [task.acceleration_limit]
-    asked.max_jerk = [task.jerk_limit or free]
+    bounds = {limit.name: (limit.lower, limit.upper) for limit in task.limits}
+    slowest, fastest = bounds.get("speed", free)
+    asked.min_velocity, asked.max_velocity = [slowest], [fastest]
+    least, most = bounds["acceleration"]
+    asked.min_acceleration, asked.max_acceleration = [least], [most]
+    asked.max_jerk = [min(np.abs(bounds.get("jerk", free)))]
     asked.minimum_duration = task.duration
     Ruckig(1).calculate(asked, found)
     if found.duration > task.duration * (1 + 1e-6):

@@ -1,11 +1,10 @@
 """Notebooks as files: what they show, their folded solutions, and how they are executed anew."""
 
 import base64
-import logging
+import math
 import re
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import nbformat
@@ -13,14 +12,8 @@ from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
 HERE = str(Path(__file__).parent)
-ROOT = Path(__file__).parents[2]
-NOTEBOOKS = ROOT / "notebooks"
+NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 PATHS = sorted(NOTEBOOKS.glob("*.ipynb"))
-EXECUTED = ROOT / "build" / "notebooks"
-"""Where a notebook is kept as it was executed last: the tests leave them there for the site."""
-
-FOLDED = re.compile(r"<details>\n<summary>Solution</summary>\n(.*?)</details>", re.DOTALL)
-"""A solution, folded wherever a notebook is shown: in JupyterLab, as HTML, on slides."""
 
 SOLUTION = re.compile(r"```python\n(?P<code>.*?)```\n+```text\n(?P<shown>.*?)```", re.DOTALL)
 """What a solution computes and what that prints; `refresh.py` writes the second."""
@@ -30,9 +23,7 @@ WIDGET = "application/vnd.jupyter.widget-view+json"
 
 STRICT = """
 %reset -f
-import os
-import sys
-import warnings
+import os, sys, warnings
 
 os.chdir({folder!r})
 sys.path.insert(0, {here!r})
@@ -42,6 +33,10 @@ sys.path.remove({here!r})
 warnings.simplefilter("error")
 warnings.filterwarnings("ignore", module="ipykernel")  # of its own ways, when it shuts down
 """
+
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?%?")
+NOTHING = 1e-5
+"""Below this a residual at rest is what an integrator leaves, in any unit that is printed."""
 
 
 class Executed(NamedTuple):
@@ -59,9 +54,10 @@ def code_cells(notebook):
     return [cell for cell in notebook.cells if cell.cell_type == "code"]
 
 
-def solutions(source):
-    """Find code and printed text of the solutions that are folded in a markdown cell."""
-    return [found for folded in FOLDED.findall(source) for found in SOLUTION.finditer(folded)]
+def solutions(cell):
+    """Find code and printed text of the solution that is folded in a markdown cell."""
+    folded = cell.cell_type == "markdown" and "<details>" in cell.source
+    return list(SOLUTION.finditer(cell.source)) if folded else []
 
 
 def printed(cell):
@@ -71,7 +67,9 @@ def printed(cell):
         if output.output_type == "stream":
             text += output.text if output.name == "stdout" else ""
         elif not {"image/png", WIDGET} & set(output.get("data", {})):
-            text += output.get("data", {}).get("text/plain", "") + "\n"
+            data = output.get("data", {})
+            table = re.sub(r"<[^>]*>", " ", data.get("text/html", ""))
+            text += (table or data.get("text/plain", "")) + "\n"
     return text
 
 
@@ -95,57 +93,43 @@ def execute(path, folder, client):
     Raises nbclient's CellExecutionError, with the cell and its traceback, where one fails.
     """
     notebook = read(path)
-    extra = [new_code_cell(STRICT.format(folder=str(folder), here=HERE))]
-    cells = list(extra)
+    begin, extra = new_code_cell(STRICT.format(folder=str(folder), here=HERE)), []
+    cells = [begin]
     for cell in notebook.cells:
-        cells.append(cell)
-        if cell.cell_type == "code":
-            cell.outputs, cell.execution_count = [], None
-        else:
-            found = [new_code_cell(each["code"]) for each in solutions(cell.source)]
-            cells += found
-            extra += found
+        found = [new_code_cell(each["code"]) for each in solutions(cell)]
+        cells += [cell, *found]
+        extra += found
     client.nb = new_notebook(cells=cells, metadata=notebook.metadata)
     client.execute(cleanup_kc=False)
     for number, cell in enumerate(code_cells(notebook), 1):
-        _keep_what_lasts(cell, number)
-    return Executed(notebook, [_shown_by(cell) for cell in extra[1:]])
+        cell.execution_count = number
+        for output in cell.outputs:
+            if "execution_count" in output:
+                output.execution_count = number
+            data = output.get("data", {})
+            data.pop(WIDGET, None)
+            if "text/html" in data:
+                data.pop("text/plain", None)
+    return Executed(notebook, [printed(cell) for cell in extra])
 
 
-def keep(path, executed):
-    """Keep an executed notebook for the site."""
-    EXECUTED.mkdir(parents=True, exist_ok=True)
-    nbformat.write(executed.notebook, EXECUTED / path.name)
+def differences(committed, anew):
+    """List what two executions print differently: words exactly, numbers within their last digit.
+
+    Whole numbers are counts and equal; others agree in all digits but the last, or to 0.1 %.
+    """
+    words = [NUMBER.sub("#", text).split() for text in (committed, anew)]
+    if words[0] != words[1]:
+        return [(committed, anew)]
+    pairs = zip(NUMBER.findall(committed), NUMBER.findall(anew), strict=True)
+    return [pair for pair in pairs if not _same(*pair)]
 
 
-def execute_those_that_changed():
-    """Execute and keep every notebook that was not since it, or the code that it runs, changed."""
-    logging.getLogger("traitlets").setLevel(logging.ERROR)  # it names the kernel each time
-    packages = ("models", "ocp", "metaheuristics", "studies", "quietarm")
-    code = [file for name in packages for file in (ROOT / name).rglob("*") if file.is_file()]
-    changed = max(file.stat().st_mtime for file in code if "__pycache__" not in file.parts)
-    kept = {path: path.stat().st_mtime for path in EXECUTED.glob("*.ipynb")}
-    old = [
-        path
-        for path in PATHS
-        if kept.get(EXECUTED / path.name, 0) < max(changed, path.stat().st_mtime)
-    ]
-    if not old:
-        return
-    with kernel() as client, TemporaryDirectory() as folder:
-        for path in old:
-            keep(path, execute(path, folder, client))
-
-
-def _keep_what_lasts(cell, number):
-    """Number a cell as in the notebook, and drop what only a running kernel can show."""
-    cell.execution_count = number
-    for output in cell.outputs:
-        if "execution_count" in output:
-            output.execution_count = number
-        output.get("data", {}).pop(WIDGET, None)
-
-
-def _shown_by(cell):
-    assert all(output.get("name") != "stderr" for output in cell.outputs), cell.outputs
-    return printed(cell)
+def _same(one, other):
+    a, b = (float(text.rstrip("%")) for text in (one, other))
+    if re.fullmatch(r"[-+]?\d+", one):
+        return a == b
+    digits, _, exponent = one.rstrip("%").lower().partition("e")
+    last_digit = 10.0 ** (int(exponent or 0) - len(digits.partition(".")[2]))
+    at_rest = max(abs(a), abs(b)) < NOTHING
+    return at_rest or math.isclose(a, b, rel_tol=1e-3, abs_tol=1.01 * last_digit)

@@ -11,30 +11,28 @@ from notebook_files import NOTEBOOKS, PATHS, code_cells, pictures, read
 OFFLINE = NOTEBOOKS / "offline.py"
 FROM_ELSEWHERE = re.compile(r"<(?:script|link|img)[^>]*(?:src|href)=\"https?:[^\"]+\"")
 
-each_notebook = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
-
 
 def check_whole(page, path):
-    """Its solutions are folded, its pictures drawn and its fences read."""
-    assert page.count("<summary>Solution</summary>") == page.count("</details>") == 3
+    """Its solutions are folded, its pictures drawn, equations set and nothing is fetched."""
+    assert page.count("<summary>Solution</summary>") == 3
     assert page.count('src="data:image/png') == len(pictures(read(path)))
-    # A fence inside the fold is code, not three quotation marks.
     body = page[page.index("<body") :]
-    assert "```" not in body
+    assert "```" not in body  # a fence inside the fold is code, not three quotation marks
     assert not FROM_ELSEWHERE.findall(page)
-    # equations are typeset; a price in dollars is none
     assert ("<math" in body) == any("$" in cell.source for cell in read(path).cells)
     assert "\\tag" not in body
     assert 'alt="No description' not in body
 
 
-def test_one_becomes_a_page(tmp_path):
+def test_one_becomes_a_page_whose_pictures_have_their_code_folded(tmp_path):
     path = PATHS[0]
     words = [sys.executable, OFFLINE, path, "--output", tmp_path / "new"]
     said = subprocess.run(words, capture_output=True, text=True, check=True).stdout
     page = tmp_path / "new" / f"{path.stem}.html"
     assert said == f"wrote {page}\n"
     check_whole(page.read_text(), path)
+    drawn = [c for c in code_cells(read(path)) if "hide-input" in c.metadata.get("tags", [])]
+    assert page.read_text().count("celltag_hide-input") == len(drawn) + 2  # and twice in its style
 
 
 def test_a_notebook_that_is_not_there_is_told_in_a_line():
@@ -43,25 +41,30 @@ def test_a_notebook_that_is_not_there_is_told_in_a_line():
 
 
 @pytest.fixture(scope="module")
-def slides_of():
-    """It reads the templates of pages once."""
+def offline():
     spec = importlib.util.spec_from_file_location("offline", OFFLINE)
-    offline = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(offline)
-    return offline.Slides().from_filename
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
 
 
-@each_notebook
-def test_it_becomes_slides(path, slides_of):
+@pytest.fixture(scope="module")
+def slides_of(offline):
+    return offline.Slides().from_filename  # it reads the templates of slides once
+
+
+@pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
+def test_it_becomes_slides_that_show_the_program(path, slides_of):
     slides, _ = slides_of(path)
     check_whole(slides, path)
     assert "Reveal.initialize" in slides
-    notebook = read(path)
-    placed = [cell.metadata.get("slideshow", {}).get("slide_type", "-") for cell in notebook.cells]
-    below = placed.count("subslide")
-    # One section for a slide, and in it one for itself and each below it.
-    assert slides.count("<section>") == 2 * placed.count("slide") + below
-    assert placed.count("slide") >= 4
-    hidden = [cell.source for cell in code_cells(notebook) if cell.source.startswith("%matplotlib")]
-    assert len(hidden) == 1
     assert "%matplotlib" not in slides
+    assert slides.count('aside class="notes"') >= 4
+    assert slides.count("cm-editor") >= 4
+
+
+def test_slides_keep_questions_and_equations_and_leave_sentences_to_the_speaker(offline):
+    blocks = "Look.", "$$x = 1$$", "It is one. **Is it?** Guess.", "- a list"
+    shown, said = offline.split_text("\n\n".join(blocks))
+    assert shown.split("\n\n") == ["$$x = 1$$", "**Is it?**", "- a list"]
+    assert said.split("\n\n") == ["Look.", "It is one. **Is it?** Guess."]

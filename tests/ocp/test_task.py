@@ -3,9 +3,12 @@
 import math
 
 import pytest
-from quietarm.ocp.task import LIMITS
+from quietarm.models import JointMotion
+from quietarm.ocp.limits import QUANTITIES
 
 import quietarm as qa
+
+LIMITS = tuple(one.limit for one in QUANTITIES.values())
 
 
 @pytest.mark.parametrize(
@@ -37,3 +40,36 @@ def test_degrees_are_warned_of_and_several_turns_are_not(angle):
         qa.PointToPoint(link, target=angle, duration=0.8)
     assert told[0].filename == __file__
     qa.PointToPoint(link, target=math.radians(720), duration=3.0)
+
+
+def test_limits_of_one_direction_and_of_the_speed():
+    task = qa.PointToPoint(
+        qa.ArmOnFlexibleLink(), 1.0, 0.8, acceleration_limit=[-30, 40], torque_limit=(-0.3, 0.3),
+        torque_speed=[(1.5, 0), (0.8, 20)],
+    )  # fmt: skip
+    assert (task.acceleration_limit, task.torque_limit) == ((-30.0, 40.0), 0.3)
+    words = "torque 0.3 N m", "acceleration -30 to 40 rad/s^2", "torque_speed 1.5Nm@0,0.8Nm@20"
+    assert tuple(map(str, task.limits)) == words
+    # 1.5 N m less 0.035 N m s of the speed: half of it at 10 rad/s is 0.575 N m, in any direction
+    line = task.limits[-1].quantity.of
+    for torque, speed in ((0.575, 10.0), (-0.575, 10.0), (0.575, -10.0)):
+        assert max(map(abs, line(JointMotion(0.0, speed, 0.0), [], torque))) == pytest.approx(
+            (0.575 + 0.35) / 1.5, rel=1e-12
+        )
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"acceleration_limit": (30, 40)}, "acceleration limit is 30 to 40"),
+        ({"acceleration_limit": (-1, 0, 1)}, "the least and the largest"),
+        ({"torque_speed": [(1.5, 0)]}, "two points or more"),
+        ({"torque_speed": [(1.5, 20), (0.8, 0)]}, "rising speed"),
+        ({"torque_speed": [(0.8, 0), (1.5, 20)]}, "falls ever steeper"),
+        ({"torque_speed": [(2, 0), (1, 10), (0.8, 20)]}, "falls ever steeper"),
+        ({"torque_speed": [(-1, 0), (-2, 20)]}, "torque of the line"),
+    ],
+)
+def test_bounds_that_are_none_are_refused(given, words):
+    with pytest.raises(ValueError, match=words):
+        qa.PointToPoint(qa.ArmOnFlexibleLink(), 1.0, 0.8, **given)

@@ -20,7 +20,7 @@ from quietarm.ocp import (
     fastest_move,
     plan_move,
 )
-from quietarm.ocp.planning.robust import limit_of
+from quietarm.ocp.planning.plan_move import limit_of
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import (

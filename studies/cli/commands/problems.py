@@ -106,7 +106,7 @@ def _found_again(chosen: Sequence[NamedProblem], quiet: bool) -> dict[str, Front
 
 def _line(problem: NamedProblem) -> str:
     errors = error_words(problem.task)
-    limits = ", ".join(f"{name} {most:g}" for name, most in problem.task.limits.items())
+    limits = ", ".join(map(str, problem.task.limits))
     words = [
         f"{problem.name}: {problem.profile.size} coefficients from "
         f"{-problem.bound:g} to {problem.bound:g}",

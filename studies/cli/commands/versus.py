@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.planning.robust import limit_of
+from quietarm.ocp.planning.plan_move import limit_of
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option, terms_option
 from quietarm.studies.cli.task import robust_option, task_options

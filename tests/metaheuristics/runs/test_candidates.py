@@ -35,10 +35,10 @@ def test_every_point_keeps_the_limits(method):
         Candidate.of_profile(task, front.profile, point.coefficients).motion
         for point in front.points
     ]
-    for name, limit in task.limits.items():
-        assert max(motion.peak(name) for motion in free) > limit  # it bites
+    for limit in task.limits:
+        assert max(map(limit.peak_of, free)) > limit.size  # it bites
         # a peak between two of the 420 nodes: (2 pi 5/420)^2/8 of a fifth harmonic
-        assert max(motion.peak(name) for motion in kept) <= limit * (1 + 7e-4)
+        assert all(limit.keeps(limit.peak_of(motion), 7e-4) for motion in kept)
 
 
 @METHODS

@@ -21,17 +21,21 @@ def test_limited_to_200_the_arm_needs_what_other_transcriptions_find(coarse_of):
 
 @pytest.mark.parametrize(
     "limits",
-    [{}, {"torque_limit": 0.5, "speed_limit": 3.6}],
-    ids=["no limit", "torque and speed"],
+    [
+        {},
+        {"torque_limit": 0.5, "speed_limit": 3.6},
+        {"acceleration_limit": (-60.0, 40.0), "torque_speed": ((0.6, 0.0), (0.2, 3.6))},
+    ],
+    ids=["no limit", "torque and speed", "direction and torque by speed"],
 )
 def test_no_plan_is_cheaper(solved, coarse_of, limits):
     task = replace(ARM, **limits)
     floor = coarse_of(task)
     plan = solved(task, 6, starts=1)
     assert floor.energy < plan.energy
-    for name, limit in task.limits.items():
-        assert floor.motion.peak(name) <= limit * (1 + 1e-3)
-        assert floor.motion.peak(name) > 0.9 * limit  # the limit is in the way
+    for limit in task.limits:
+        assert limit.keeps(limit.peak_of(floor.motion), 1e-3)
+        assert limit.peak_of(floor.motion) > 0.9 * limit.size  # the limit is in the way
 
 
 def test_a_smooth_motion_comes_to_the_same_floor(coarse_of):

@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
-from quietarm.ocp.task import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES
 from scipy.integrate import solve_ivp
 
 MOVES = {
@@ -20,8 +20,8 @@ OF_TWO_LINKS = {**SHARES, "torque": 0.99, "speed": 0.97, "deflection": 0.95}
 """Less room: with these shares there is a plan of six terms."""
 
 
-def densely(plan):
-    """Largest absolute value of every quantity, by DOP853 and samples beside the largest."""
+def follow(plan):
+    """What samples every quantity between two times, by DOP853."""
     task, modes = plan.task, plan.task.plant.modes
     t, x = ca.SX.sym("t"), ca.SX.sym("x", 2 * modes)
     W, dW = ca.vertsplit(x)[:modes], ca.vertsplit(x)[modes:]
@@ -42,13 +42,20 @@ def densely(plan):
     def sampled(begin, end):
         times = np.linspace(begin, end, 4001)
         found = values.map(len(times))(ca.DM(times).T, ca.DM(run.sol(times)))
-        return times, [np.abs(row.full()).max(axis=0) for row in found]
+        return times, {name: row.full() for name, row in zip(rows, found, strict=True)}
 
-    times, coarse = sampled(0.0, task.duration)
+    return sampled
+
+
+def densely(plan):
+    """Largest absolute value of every quantity, by samples beside the largest."""
+    sampled = follow(plan)
+    times, coarse = sampled(0.0, plan.task.duration)
     peaks = {}
-    for i, (name, row) in enumerate(zip(rows, coarse, strict=True)):
-        k = int(row.argmax())
-        peaks[name] = sampled(times[max(k - 1, 0)], times[min(k + 1, 4000)])[1][i].max()
+    for name, row in coarse.items():
+        k = int(np.abs(row).max(axis=0).argmax())
+        finer = sampled(times[max(k - 1, 0)], times[min(k + 1, 4000)])[1]
+        peaks[name] = np.abs(finer[name]).max()
     return peaks
 
 
@@ -75,3 +82,23 @@ def test_a_limit_is_kept_and_its_peak_told(plants, solved, move, quantity):
     assert peaks[quantity] <= limit
     for name, peak in peaks.items():  # the README's tolerance
         assert plan.motion.peak(name) == pytest.approx(peak, rel=1e-8)
+
+
+@pytest.mark.parametrize(("start", "target"), [(-pi / 2, pi / 4), (pi / 4, -pi / 2)])
+def test_bounds_of_one_direction_and_of_the_speed_hold(plants, start, target):
+    forward = np.sign(target - start)
+    task = PointToPoint(
+        plants["arm"], target, 1.0, start, acceleration_limit=sorted(forward * np.array([-40, 20])),
+        torque_speed=[(0.4, 0.0), (0.3, 2.0), (0.05, 4.0)],
+    )  # fmt: skip
+    plan = plan_move(task, CycloidPolynomial(10), starts=1)
+    assert plan.residual < 1e-7
+    (found,) = follow(plan)(0.0, 1.0)[1:]
+    acceleration = forward * found["acceleration"]
+    assert acceleration.min() >= -40 * (1 + 1e-8)
+    assert 19.9 < acceleration.max() <= 20 * (1 + 1e-8)
+    torque, speed = np.abs(found["torque"]), np.abs(found["speed"])
+    room = np.minimum(0.4 - 0.05 * speed, 0.55 - 0.125 * speed) - torque
+    assert -1e-8 <= room.min() < 0.01
+    ends = found["acceleration"].min(), found["acceleration"].max()
+    assert plan.motion.ranges["acceleration"] == pytest.approx(ends, rel=1e-5)

@@ -6,13 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fixed_steps import rollout
+from quietarm.ocp.limits import QUANTITIES as BY_NAME
 from quietarm.ocp.solvers.batch import Multipliers, batch
 from quietarm.ocp.solvers.funnel import WIDTHS
-from quietarm.ocp.task import LIMITS
 
 import quietarm as qa
 
-QUANTITIES = tuple(limit.removesuffix("_limit") for limit in LIMITS)
+QUANTITIES = tuple(BY_NAME.values())
+LIMITS = tuple(one.limit for one in QUANTITIES)
 MOVES = np.array([[0.0, math.pi / 2, 0.8], [-0.4, 1.1, 0.7], [0.3, -1.0, 1.0]])
 ERRORS = {"frequency": 0.1, "damping": -0.3}
 PROFILES = {
@@ -73,7 +74,7 @@ def test_figures_are_those_of_the_rollout(task, errors):
 @pytest.mark.parametrize(("rows", "threads"), [(3, 1), (20, 2)])
 def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
     profile = qa.CycloidPolynomial(4)
-    made = batch(plants["arm"], profile, 12, ("torque",), ("frequency",))
+    made = batch(plants["arm"], profile, 12, (BY_NAME["torque"],), ("frequency",))
     candidates = _candidates(rows, made.kind)
     weights = _weights(made, rows)
     together = _derivatives(made, candidates, 0.1, weights)
@@ -92,7 +93,7 @@ def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
 
 
 CASES = [
-    ("single link", "polynomial", QUANTITIES, ()),
+    ("single link", "polynomial", tuple(BY_NAME), ()),
     ("arm", "polynomial", ("torque", "jerk"), ("frequency", "damping")),
     ("two links", "polynomial", ("deflection", "acceleration"), ("frequency",)),
     ("arm", "spline", ("acceleration", "jerk"), ("omega",)),
@@ -104,7 +105,8 @@ CASES = [
 @pytest.fixture(params=CASES, ids=lambda case: f"{case[0]}, {case[1]}, {case[2]}, {case[3]}")
 def case(request, plants):
     name, family, quantities, errors = request.param
-    made = batch(plants[name], PROFILES[family], 12, quantities, errors)
+    chosen = tuple(BY_NAME[one] for one in quantities)
+    made = batch(plants[name], PROFILES[family], 12, chosen, errors)
     return made, _candidates(2, made.kind)
 
 

@@ -5,20 +5,31 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, TorqueSpeedLine
 from quietarm.ocp.solvers import ipopt as ipopt_module
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.problem import Problem, Scalarization
 from quietarm.ocp.solvers.sqp import Sqp
-from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
+from quietarm.ocp.solvers.transcription import Transcription
 
 import quietarm as qa
 
 TERMS = 6
 PROFILE = qa.CycloidPolynomial(TERMS)
 AT_REST = {RESIDUAL: 0.0}
-LIMITED = Scalarization({RESIDUAL: 2e-3})
+LINE = TorqueSpeedLine(((0.4, 0.0), (0.2, 3.5)))
 
 
+def _ask(limits, *others):
+    """What is asked for, limits by name as numbers or pairs."""
+    made = [
+        Limit.of_residual(bounds) if name == RESIDUAL else Limit.within(QUANTITIES[name], bounds)
+        for name, bounds in limits.items()
+    ]
+    return Scalarization(tuple(made), *others)
+
+
+LIMITED = _ask({RESIDUAL: 2e-3})
 SOLVERS = Sqp(), Ipopt()
 
 
@@ -47,13 +58,13 @@ def link_and_arm(tasks, transcribe):
 @pytest.mark.parametrize("what", ["rest", "residual", "box", "torque", "peak"])
 def test_both_solvers_agree(link_and_arm, name, what):
     free, limited, box = link_and_arm[name]
-    torque = _solved(limited, Scalarization(AT_REST)).peaks["torque"]
+    torque = _solved(limited, _ask(AT_REST)).peaks["torque"]
     steps, ask = {
-        "rest": (free, Scalarization(AT_REST)),
+        "rest": (free, _ask(AT_REST)),
         "residual": (free, LIMITED),
-        "box": (free, Scalarization(AT_REST, box)),
-        "torque": (limited, Scalarization({**AT_REST, "torque": 0.9 * torque})),
-        "peak": (limited, Scalarization(AT_REST, None, {"torque": 1.0})),
+        "box": (free, _ask(AT_REST, box)),
+        "torque": (limited, _ask({**AT_REST, "torque": 0.9 * torque})),
+        "peak": (limited, _ask(AT_REST, None, {"torque": 1.0})),
     }[what]
     sqp, ipopt = (_solved(steps, ask, solver) for solver in SOLVERS)
     assert sqp.status is qa.SolveStatus.OPTIMAL
@@ -65,19 +76,46 @@ def test_both_solvers_agree(link_and_arm, name, what):
         assert _true(steps, ipopt) == pytest.approx(_true(steps, sqp), rel=1e-6)
     for found in (sqp, ipopt):
         assert np.abs(found.coefficients).max() <= (ask.bound or np.inf)
-        for quantity, limit in ask.limits.items():
-            assert found.peaks[quantity] <= limit * (1 + 1e-6)
+        for limit in ask.limits:
+            assert limit.keeps(found.peaks[limit.name], 1e-6)
     for quantity, price in sqp.shadow_prices.items():
         assert ipopt.shadow_prices[quantity] == pytest.approx(price, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [({"acceleration_limit": (-60.0, 35.0)}, "acceleration"),
+     ({"torque_limit": (-0.3, 0.25)}, "torque"),
+     ({"torque_speed": LINE.points}, "torque_speed")],
+    ids=["acceleration", "torque", "torque by speed"],
+)  # fmt: skip
+def test_both_solvers_keep_limits_that_differ_by_direction_or_speed(tasks, transcribe, given, name):
+    task = replace(tasks["arm"], **given)
+    (limit,) = task.limits
+    steps, rest = transcribe(task, steps=96), Limit.of_residual(0.0)
+    free = _solved(steps, Scalarization((rest,)))
+    sqp, ipopt = (_solved(steps, Scalarization((rest, limit)), one) for one in SOLVERS)
+    assert not limit.keeps(free.peaks[name])
+    assert _true(steps, ipopt) == pytest.approx(_true(steps, sqp), rel=1e-6)
+    for found in (sqp, ipopt):
+        assert found.peaks[name] == pytest.approx(limit.size, rel=1e-6)
+        assert found.energy > free.energy
+    assert ipopt.shadow_prices[name] == pytest.approx(sqp.shadow_prices[name], rel=1e-3)
+    wider = _solved(steps, Scalarization((rest, limit.tightened(1 / 1.005))))
+    price = (sqp.energy - wider.energy) / (0.005 * limit.size)
+    assert sqp.shadow_prices[name] == pytest.approx(price, rel=0.05)
+    least = [_solved(steps, Scalarization((rest,), None, {name: 1.0}), one) for one in SOLVERS]
+    assert least[1].peaks[name] == pytest.approx(least[0].peaks[name], rel=1e-6)
+    assert least[0].peaks[name] < limit.size
 
 
 def test_both_solvers_meet_limits_on_every_plant(tasks):
     uncertainty = qa.Uncertainty({"frequency": 0.05})
     task = replace(tasks["arm"], uncertainty=uncertainty, deflection_limit=1.0)
     steps, limits = Transcription(task, PROFILE, 48), {RESIDUAL: 5e-3}
-    free = _solved(steps, Scalarization(limits))
+    free = _solved(steps, _ask(limits))
     limits["deflection"] = 0.95 * free.peaks["deflection"]
-    found = [_solved(steps, Scalarization(limits), solver) for solver in SOLVERS]
+    found = [_solved(steps, _ask(limits), solver) for solver in SOLVERS]
     for one in found:
         assert one.status.solved
         assert one.arrival.shape == (3, 2)
@@ -91,11 +129,11 @@ def test_both_solvers_meet_limits_on_every_plant(tasks):
 @pytest.mark.parametrize("quantity", [RESIDUAL, "torque"])
 def test_the_price_of_a_limit_is_what_a_wider_one_saves(link_and_arm, name, quantity):
     limited = link_and_arm[name][1]
-    of_torque = 0.9 * _solved(limited, Scalarization(AT_REST)).peaks["torque"]
+    of_torque = 0.9 * _solved(limited, _ask(AT_REST)).peaks["torque"]
     limits = {RESIDUAL: 2e-3} if quantity == RESIDUAL else {**AT_REST, "torque": of_torque}
     step = 0.005 * limits[quantity]
-    there = _solved(limited, Scalarization(limits))
-    beyond = _solved(limited, Scalarization({**limits, quantity: limits[quantity] + step}))
+    there = _solved(limited, _ask(limits))
+    beyond = _solved(limited, _ask({**limits, quantity: limits[quantity] + step}))
     price = (there.energy - beyond.energy) / step
     assert there.shadow_prices[quantity] == pytest.approx(price, rel=0.05)
     if quantity == RESIDUAL:
@@ -105,12 +143,12 @@ def test_the_price_of_a_limit_is_what_a_wider_one_saves(link_and_arm, name, quan
 def test_rows_of_many_kinds_are_solved_as_alone(link_and_arm):
     free, limited, box = link_and_arm["arm"]
     asks = [
-        (free, Scalarization(AT_REST)),
-        (limited, Scalarization({**AT_REST, "torque": 0.33})),
+        (free, _ask(AT_REST)),
+        (limited, _ask({**AT_REST, "torque": 0.33})),
         (free, LIMITED),
-        (free, Scalarization(AT_REST, box)),
-        (limited, Scalarization(AT_REST, None, {"torque": 1.0})),
-        (free, Scalarization({RESIDUAL: 5e-3}, box)),
+        (free, _ask(AT_REST, box)),
+        (limited, _ask(AT_REST, None, {"torque": 1.0})),
+        (free, _ask({RESIDUAL: 5e-3}, box)),
     ]
     problems = [Problem(*one) for one in asks]
     together = Sqp().solve(problems, [PROFILE.plain] * len(problems))
@@ -135,7 +173,7 @@ def _corrupt_derivatives(function):
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_a_wrong_derivative_of_the_sqp_does_not_reach_ipopt(link_and_arm, name, monkeypatch):
     steps, _, box = link_and_arm[name]
-    asked = Scalarization({RESIDUAL: 2e-3}, box)
+    asked = _ask({RESIDUAL: 2e-3}, box)
     right = [_solved(steps, asked, solver) for solver in SOLVERS]
     monkeypatch.setattr(steps.batch, "derivatives", _corrupt_derivatives(steps.batch.derivatives))
     sqp, ipopt = (_solved(steps, asked, solver) for solver in SOLVERS)
@@ -147,7 +185,7 @@ def test_a_wrong_derivative_of_the_sqp_does_not_reach_ipopt(link_and_arm, name, 
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_a_wrong_derivative_of_ipopt_does_not_reach_the_sqp(link_and_arm, name, monkeypatch):
     steps, _, box = link_and_arm[name]
-    asked = Scalarization({RESIDUAL: 2e-3}, box)
+    asked = _ask({RESIDUAL: 2e-3}, box)
     right = [_solved(steps, asked, solver) for solver in SOLVERS]
     monkeypatch.setattr(ipopt_module, "compile_nlp", _compile_with_wrong_gradient)
     ipopt_module.compile_program.cache_clear()
@@ -167,18 +205,19 @@ def _compile_with_wrong_gradient(nlp, options):
     return ca.nlpsol("wrong", "ipopt", nlp, {**chosen, "ipopt": dict(options)})
 
 
-def test_the_log_of_ipopt_can_be_shown(link_and_arm, capfd):
-    steps, _, box = link_and_arm["arm"]
-    quiet = _solved(steps, Scalarization(AT_REST, box), Ipopt())
+@pytest.mark.parametrize(("solver", "column"), [("sqp", "violation"), ("ipopt", "inf_pr")])
+def test_the_log_of_either_solver_can_be_shown(link_and_arm, capfd, solver, column):
+    task = link_and_arm["arm"][0].task
+    quiet = qa.plan_move(task, bound=0.5, starts=1, solver=solver)
     assert capfd.readouterr().out == ""
-    shown = _solved(steps, Scalarization(AT_REST, box), Ipopt(print_level=5))
-    assert "inf_pr" in capfd.readouterr().out  # a column of IPOPT's table of iterations
+    shown = qa.plan_move(task, bound=0.5, starts=1, solver=solver, log=True)
+    assert column in capfd.readouterr().out
     assert shown.energy == quiet.energy
 
 
 def test_how_a_start_ended_is_said_truly(link_and_arm):
     steps, _, box = link_and_arm["arm"]
-    problem = Problem(steps, Scalarization(AT_REST, box))
+    problem = Problem(steps, _ask(AT_REST, box))
     found = Sqp().solve([problem] * 4, [PROFILE.plain] * 4, groups=[0] * 4)
     assert [one.status for one in found].count(qa.SolveStatus.SUPERSEDED) == 3
     assert all("another start" in one.reason for one in found if not one.status.solved)

@@ -4,14 +4,15 @@ import casadi as ca
 import numpy as np
 import pytest
 from quietarm.ocp.energy import ABSOLUTE_POWER, CopperLoss
+from quietarm.ocp.limits import QUANTITIES, Limit, TorqueSpeedLine
 from quietarm.ocp.simulation.objective import integrated, resolved_energy
 from quietarm.ocp.simulation.rollout import symbolic_rollout
 from quietarm.ocp.solvers.batch import Multipliers, batch
-from quietarm.ocp.task import QUANTITIES
 
 import quietarm as qa
 
 STEPS = 10
+LINE = Limit.of_line(TorqueSpeedLine(((1.5, 0.0), (1.2, 2.0), (0.2, 4.0))))
 MOVE = [0.1, 1.3, 0.8]
 PROFILES = {
     "polynomial": qa.CycloidPolynomial(4),
@@ -35,7 +36,7 @@ def case(request, plants):
     """A batch, and energy, arrival and limited quantities as CasADi differentiates them."""
     plant, profile, energy = request.param
     plant, profile, energy = plants[plant], PROFILES[profile], ENERGIES[energy]
-    names = tuple(QUANTITIES)
+    quantities = (*QUANTITIES.values(), LINE.quantity)
     a, width = ca.MX.sym("a", profile.size), ca.MX.sym("width")
     rollout = symbolic_rollout(plant, profile, ca.vertsplit(a), MOVE, STEPS, jerk=True)
     speeds = [joint.speed for joint in rollout.joints]
@@ -47,16 +48,16 @@ def case(request, plants):
     sharp = resolved_energy(rollout.power, rollout.h)
     values = ca.veccat(*(
         ca.MX.zeros(1, STEPS) + value
-        for name in names
-        for i in range(QUANTITIES[name].rows(plant))
+        for quantity in quantities
+        for i in range(quantity.rows(plant))
         for value in (
-            QUANTITIES[name].of(joint, plant.tip_displacements(state.W), torque)[i]
+            quantity.of(joint, plant.tip_displacements(state.W), torque)[i]
             for joint, state, torque in zip(
                 rollout.joints, rollout.states, rollout.torque, strict=True
             )
         )
     ))  # fmt: skip
-    made = batch(plant, profile, STEPS, names, energy=energy)
+    made = batch(plant, profile, STEPS, quantities, energy=energy)
     symbols = {
         "a": a,
         "width": width,

@@ -23,7 +23,7 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
     )
     assert (code, err) == (0, "")
     floor = Floor.load(tmp_path / "f.json")
-    assert floor.task.limits == {"acceleration": 100.0}
+    assert floor.task.acceleration_limit == 100.0
     assert floor.provenance.settings == FloorSettings(smooth=False, starts=2, seed=3, tolerance=0.2)
     shown = dict(re.findall(r"^(\S+(?: \S+)*)  +(\S.*?) *$", out, re.MULTILINE))
     assert float(shown["least energy"].split()[0]) == pytest.approx(floor.energy, rel=1e-5)

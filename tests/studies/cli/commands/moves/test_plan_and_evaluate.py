@@ -30,7 +30,7 @@ def test_a_plan_says_what_it_found_and_what_it_wrote(planned):
     assert sorted(path.name for path in where.iterdir()) == ["move.csv", "move.svg", "plan.json"]
     found = Plan.load(where / "plan.json")
     settings = found.provenance.settings
-    assert (settings.starts, settings.seed, found.task.limits) == (2, 3, {"torque": 0.4})
+    assert (settings.starts, settings.seed, found.task.torque_limit) == (2, 3, 0.4)
     assert "arm-on-flexible-link, -90 to 45 deg in 1 s" in ran.stdout
     assert f"{found.energy:.6g} J" in ran.stdout
     assert f"{found.motion.peak_torque:.4g} N m" in ran.stdout
@@ -43,6 +43,34 @@ def test_an_angle_below_zero_needs_no_equals_sign(call):
     assert saved.task.start == pytest.approx(-math.pi / 2, rel=1e-15)
     assert saved.task.residual_window == 0.5
     assert saved.coefficients == (-0.1, -0.4)
+
+
+def test_limits_of_a_drive_by_direction_and_by_speed(call):
+    line = "evaluate single-link --target 30deg --duration 0.8 --set zeta=1% --coefficients=0"
+    typed = (
+        "--acceleration-limit=-300deg:40 --torque-limit=-200mNm:0.3 --torque-speed 1.5Nm@0,1@190rpm"
+    )
+    assert call(f"{line} {typed} --output plan.json")[0] == 0
+    task = Plan.load("plan.json").task
+    assert task.plant.zeta == 0.01
+    assert task.acceleration_limit == pytest.approx((-5 * math.pi / 3, 40.0), rel=1e-12)
+    assert task.torque_limit == (-0.2, 0.3)
+    assert task.torque_speed == ((1.5, 0.0), (1.0, pytest.approx(19.8968, rel=1e-5)))
+
+
+@pytest.mark.parametrize(("limit", "warned"), [("", True), ("57", True), ("1.5", False)])
+def test_a_limit_far_off_does_not_silence_the_warning_of_high_acceleration(call, limit, warned):
+    given = f"--torque-limit {limit}" if limit else ""
+    code, out, _ = call(f"plan single-link --target 30deg --duration 0.8 --starts 1 {given}")
+    assert code == 0
+    assert ("times the plain cycloid's" in out) is warned
+
+
+def test_a_path_in_degrees_without_a_unit_is_asked_about(refused, folder):
+    rows = [f"{k / 10},{30 * k / 4}" for k in range(5)]
+    (folder / "path.csv").write_text("\n".join(["time_s,angle", *rows]))
+    message = refused("evaluate single-link --path path.csv")
+    assert "were degrees meant? name it angle_deg" in message
 
 
 # Solves that fail: status 1

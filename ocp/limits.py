@@ -1,0 +1,259 @@
+"""What a task may limit: quantities on the way and the residual after it, with their bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.models import Expression, JointMotion, Plant
+from quietarm.ocp.checks import not_negative
+
+Of = Callable[[JointMotion, Sequence[Expression], Expression], Sequence[Expression]]
+"""(joint's motion, tip displacements, joint torque) -> values."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity that a task may limit.
+
+    Attributes
+    ----------
+    name, unit, label : str
+        Its name, SI unit, and what it is in words.
+    of : callable
+        (joint's motion, tip displacements, joint torque) -> its values.
+    derivative : int or None
+        Which time derivative of the joint's angle it is; None where it follows from the modes.
+    in_scenarios : bool
+        Whether its limit holds in all scenarios of an uncertain task; else for the nominal plant.
+    """
+
+    name: str
+    unit: str
+    label: str
+    of: Of
+    derivative: int | None = None
+    in_scenarios: bool = False
+
+    @property
+    def limit(self) -> str:
+        """Name of its limit in a task."""
+        return f"{self.name}_limit"
+
+    @property
+    def peak(self) -> str:
+        """Name of its largest absolute value among a motion's diagnostics."""
+        return f"peak_{self.name}"
+
+    def rows(self, plant: Plant) -> int:
+        """How many values it has at one time."""
+        still = JointMotion(0.0, 0.0, 0.0, 0.0)
+        return len(self.of(still, plant.tip_displacements([0.0] * plant.modes), 0.0))
+
+
+QUANTITIES: Mapping[str, Quantity] = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("torque", "N m", "joint torque", lambda joint, tips, torque: [torque]),
+        Quantity("speed", "rad/s", "joint speed", lambda joint, *_: [joint[1]], 1),
+        Quantity("acceleration", "rad/s^2", "joint acceleration", lambda joint, *_: [joint[2]], 2),
+        Quantity("jerk", "rad/s^3", "joint jerk", lambda joint, *_: [joint[3]], 3),
+        Quantity("deflection", "m", "tip displacement", lambda joint, tips, _: tips, None, True),
+    )
+}
+"""Every quantity by its name; each has fields for its limit in a task and for its peak in a
+`Motion`."""
+RESIDUAL, TORQUE_SPEED = "residual", "torque_speed"
+_RESIDUAL = Quantity(RESIDUAL, "m", "residual vibration", lambda *_: [], None, True)
+"""It has no values on the way, and follows from the state on arrival."""
+Bounds = float | tuple[float, float]
+"""The largest absolute value, or the least and the largest one."""
+
+
+def ask_for_jerk(quantities: Iterable[Quantity]) -> bool:
+    """Whether any of these quantities follows from the joint's jerk, which no plant needs."""
+    return any(quantity.name == "jerk" for quantity in quantities)
+
+
+@dataclass(frozen=True)
+class TorqueSpeedLine:
+    """The torque that a drive gives at each speed; as values shares of it that are asked for.
+
+    It falls with the speed, ever steeper; before the first point it is even, beyond the last it
+    goes on as it fell. A torque is within a piece a - b |speed| where torque + b speed and
+    torque - b speed both are within a, which is smooth.
+
+    Parameters
+    ----------
+    points : tuple of (float, float)
+        Torques [N m] at speeds [rad/s] that rise.
+
+    Raises
+    ------
+    ValueError
+        When there are fewer than two points, or the torque does not fall ever steeper.
+    """
+
+    points: tuple[tuple[float, float], ...]
+
+    def __post_init__(self) -> None:
+        points = tuple(
+            (not_negative("torque of the line", torque, "N m"),
+             not_negative("speed of the line", speed, "rad/s"))
+            for torque, speed in self.points
+        )  # fmt: skip
+        object.__setattr__(self, "points", points)
+        rises = len(points) > 1 and all(one[1] < other[1] for one, other in pairwise(points))
+        falls = [fall for _, fall in self._pieces] if rises else [0.0]
+        if falls[-1] <= 0 or falls != sorted(falls) or falls[0] < 0:
+            raise ValueError(
+                f"torque-speed line is {self}; give two points or more by rising speed, between "
+                "which the torque falls ever steeper, as 1.5Nm@0,0.8Nm@20"
+            )
+
+    @property
+    def _pieces(self) -> list[tuple[float, float]]:
+        """Torque at no speed [N m], and its fall with the speed [N m s], of each piece."""
+        pieces = [(self.points[0][0], 0.0)] if self.points[0][1] > 0 else []
+        for (above, before), (below, after) in pairwise(self.points):
+            fall = (above - below) / (after - before)
+            pieces.append((above + fall * before, fall))
+        return pieces
+
+    @property
+    def largest_speed(self) -> float:
+        """The speed at which no torque is left [rad/s]."""
+        return min(torque / fall for torque, fall in self._pieces if fall)
+
+    def __call__(
+        self, joint: JointMotion, tips: Sequence[Expression], torque: Expression
+    ) -> Sequence[Expression]:
+        """The torque as shares of what each piece gives, in both directions of the speed."""
+        del tips
+        signs = {True: (1, -1), False: (1,)}
+        return [
+            (torque + sign * fall * joint[1]) / most
+            for most, fall in self._pieces
+            for sign in signs[fall > 0]
+        ]
+
+    def __str__(self) -> str:
+        return ",".join(f"{torque:g}Nm@{speed:g}" for torque, speed in self.points)
+
+
+class Ranged:
+    """A motion whose quantities lie in ranges, which limits are held against."""
+
+    def range_of(self, quantity: Quantity) -> tuple[float, float]:
+        """Least and largest value of a quantity: infinite where they are not known."""
+        raise NotImplementedError
+
+    def exceeded(self, limits: Iterable[Limit], tolerance: float = 0.0) -> dict[str, float]:
+        """What exceeds its limit by more than a share: its peak over the limit, by name."""
+        ratios = {one.name: one.peak_of(self) / one.size for one in limits if one.size > 0}
+        return {name: ratio for name, ratio in ratios.items() if ratio > 1 + tolerance}
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Bounds on a quantity on the way, or on the residual after it.
+
+    Attributes
+    ----------
+    quantity : Quantity
+        What is bounded.
+    lower, upper : float
+        Least and largest value [SI unit]; 0 lies between them, and both are infinite where nothing
+        is bounded.
+    """
+
+    quantity: Quantity
+    lower: float
+    upper: float
+
+    @classmethod
+    def within(cls, quantity: Quantity, bounds: Bounds) -> Limit:
+        """Of a task's entry: the largest absolute value, or the least and the largest one."""
+        lower, upper = bounds if isinstance(bounds, tuple) else (-bounds, bounds)
+        return cls(quantity, lower, upper)
+
+    @classmethod
+    def of_residual(cls, largest: float) -> Limit:
+        """Of the residual [m]: 0 asks for rest on arrival."""
+        return cls(_RESIDUAL, -largest, largest)
+
+    @classmethod
+    def of_line(cls, line: TorqueSpeedLine) -> Limit:
+        """Of the torque by a torque-speed line."""
+        return cls(Quantity(TORQUE_SPEED, "", "share of the drive's torque", line), -1.0, 1.0)
+
+    @property
+    def name(self) -> str:
+        """Name of the quantity."""
+        return self.quantity.name
+
+    @property
+    def both_ways(self) -> bool:
+        """Whether it is the same in both directions."""
+        return self.lower == -self.upper
+
+    @property
+    def is_peak(self) -> bool:
+        """Whether it is of the largest absolute value of a quantity in the diagnostics."""
+        return self.both_ways and self.name in (RESIDUAL, *QUANTITIES)
+
+    @property
+    def size(self) -> float:
+        """The larger bound."""
+        return max(-self.lower, self.upper)
+
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Both bounds as shares of the size."""
+        return (-1.0, 1.0) if self.both_ways else (self.lower / self.size, self.upper / self.size)
+
+    def peak(self, least: Any, largest: Any) -> Any:
+        """How large values from the least to the largest are, to be held against the size.
+
+        The largest absolute one; of a direction with a smaller bound values count for more.
+        """
+        below, above = self.sides
+        return np.maximum(least / below, largest / above)
+
+    def peak_of(self, motion: Ranged) -> float:
+        """The same of a motion."""
+        return float(self.peak(*motion.range_of(self.quantity)))
+
+    def keeps(self, peak: float, tolerance: float = 0.0, at_rest: float = 0.0) -> bool:
+        """Whether a peak is within it, by a share; a residual also below what counts as rest."""
+        return peak <= max(self.size * (1 + tolerance), at_rest if self.name == RESIDUAL else 0.0)
+
+    def price(self, multipliers: NDArray[np.float64]) -> float:
+        """What the objective falls by if it is widened, by the multipliers of its values."""
+        below, above = self.sides
+        return float(np.where(multipliers > 0, above, below) @ multipliers)
+
+    def tightened(self, ratio: float) -> Limit:
+        """The limit divided by a ratio."""
+        return Limit(self.quantity, self.lower / ratio, self.upper / ratio)
+
+    def describe(self, peak: float) -> str:
+        """A peak in words: in its unit, or where no single number tells, in times of the limit."""
+        if self.is_peak:
+            return f"{peak:.4g} {self.quantity.unit}"
+        return f"{peak / self.size:.4g} times that"
+
+    @property
+    def bounds(self) -> str:
+        """The bounds in words, as 0.3 N m or -30 to 40 rad/s^2."""
+        if isinstance(self.quantity.of, TorqueSpeedLine):
+            return str(self.quantity.of)
+        ends = f"{self.size:g}" if self.both_ways else f"{self.lower:g} to {self.upper:g}"
+        return f"{ends} {self.quantity.unit}"
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.bounds}"
