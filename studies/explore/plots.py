@@ -32,7 +32,7 @@ _HIGH, _HIGHER = 200, 280
 _NO_FRONT = "Press Front to see what each millimetre saves"
 _PLAY = Path(__file__).with_name("play.js").read_text()
 """The frame of the moment, and the last one for a second."""
-Columns = dict[str, list[Any]]
+Columns = dict[str, Any]
 
 
 class Plots:

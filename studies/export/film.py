@@ -178,7 +178,7 @@ def _frame_times(end: float, speed: float, rate: float) -> NDArray[np.float64]:
     return np.arange(float(int(frames + _ROUNDING) + 1)) * speed / rate
 
 
-def _writer(name: str, rate: float) -> AbstractMovieWriter:
+def _writer(name: str, rate: Any) -> AbstractMovieWriter:
     if name == "html":
         return HTMLWriter(fps=rate, embed_frames=True, embed_limit=_MEGABYTES)
     return FFMpegWriter(fps=rate) if name == "mp4" else _GifWriter(fps=rate)

@@ -97,7 +97,7 @@ class Interpolation:
             np.clip(np.searchsorted(axis, values, side="right") - 1, 0, len(axis) - 2)
             for axis, values in zip(self.axes, places.T, strict=True)
         ])  # fmt: skip
-        boxes = np.ravel_multi_index(tuple(corners), self.orders.shape)
+        boxes: Any = np.ravel_multi_index(tuple(corners), self.orders.shape)
         order = np.argsort(boxes, kind="stable")
         for rows in np.split(order, np.flatnonzero(np.diff(boxes[order])) + 1):
             if len(rows):
@@ -125,4 +125,4 @@ class Interpolation:
         near = [int(np.abs(axis - at).argmin()) for axis, at in zip(self.axes, place, strict=True)]
         values = [axis[k] for axis, k in zip(self.axes, near, strict=True)]
         same = np.allclose(values, place, rtol=_SAME, atol=_SAME)
-        return self.cells[tuple(near)] if same else np.nan
+        return self.cells[tuple(near)] if same else np.full(self.cells.shape[-1], np.nan)
