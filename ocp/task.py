@@ -126,7 +126,7 @@ class PointToPoint:
                 bounds = _check_bounds(quantity, getattr(self, quantity.limit))
                 object.__setattr__(self, quantity.limit, bounds)
         if self.torque_speed is not None:
-            line = TorqueSpeedLine(tuple(map(tuple, self.torque_speed)))
+            line = TorqueSpeedLine(tuple(self.torque_speed))
             object.__setattr__(self, "torque_speed", line.points)
         for name, angle in (("start", self.start), ("target", self.target)):
             if abs(angle) > 2 * math.pi and (2 * angle).is_integer():  # no multiple of pi is

@@ -2,4 +2,5 @@
 
 from quietarm.studies.cli import main
 
-main()
+if __name__ == "__main__":  # not in the workers of a search
+    main()

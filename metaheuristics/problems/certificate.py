@@ -15,8 +15,8 @@ from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
 from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.limits import Limit
-from quietarm.ocp.planning.best_of_starts import plan_from_starts
 from quietarm.ocp.planning.certify import judge
+from quietarm.ocp.planning.plan_move import plan_from_starts
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
 from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution

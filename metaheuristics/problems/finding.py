@@ -16,7 +16,7 @@ from quietarm.ocp import (
     non_dominated,
 )
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.planning.best_of_starts import plan_from_starts
+from quietarm.ocp.planning.plan_move import plan_from_starts
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.choice import SolverName
 

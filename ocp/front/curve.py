@@ -14,8 +14,7 @@ from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import start_coefficients
-from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
-from quietarm.ocp.planning.certify_all import certify_all
+from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Outcome, Tolerances, certify
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, SolveSettings
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
@@ -107,13 +106,17 @@ class Curve:
         problem = self.problem(np.inf if free else solution.residual)
         limits = self.limits(most_residual)
         tolerances = OF_A_PLAN if free else self.tolerances
-        try:
-            found = certify(problem, solution, self.solver, tolerances, limits)
-        except SolverFailedError as error:
-            return Certificate(FailedPoint(asked, str(error)), solution.iterations)
+        (found,) = certify([problem], [solution], self.solver, tolerances, limits)
+        return self._certificate(found, asked, solution)
+
+    def _certificate(
+        self, found: Outcome, asked: Mapping[str, float], solution: Solution
+    ) -> Certificate:
+        if isinstance(found, SolverFailedError):
+            return Certificate(FailedPoint(asked, str(found)), solution.iterations)
         return self.point_of(found)
 
-    def point_of(self, found: Certified[Any]) -> Certificate:
+    def point_of(self, found: Certified) -> Certificate:
         """A certified solution as a point."""
         coefficients = self.transcription.profile.checked(found.solution.coefficients)
         solution, checked = found.solution, found.checked
@@ -127,11 +130,9 @@ class Curve:
         """Certify many solutions, each with what was asked for."""
         solutions = [solution for solution, _ in found]
         problems = [self.problem(solution.residual) for solution in solutions]
-        outcomes = certify_all(problems, solutions, self.solver, self.tolerances, self.limits())
+        outcomes = certify(problems, solutions, self.solver, self.tolerances, self.limits())
         return [
-            Certificate(FailedPoint(asked, str(outcome)), solution.iterations)
-            if isinstance(outcome, SolverFailedError)
-            else self.point_of(outcome)
+            self._certificate(outcome, asked, solution)
             for (solution, asked), outcome in zip(found, outcomes, strict=True)
         ]
 

@@ -8,7 +8,7 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.best_of_starts import SAME, best_of_starts, solve_from_starts
-from quietarm.ocp.planning.certify import OF_A_PLAN, Tolerances, certify
+from quietarm.ocp.planning.certify import OF_A_PLAN, Tolerances, certify_one
 from quietarm.ocp.planning.feasibility import least_peaks_of
 from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution
 from quietarm.ocp.solvers.transcription import ENERGY, STILL, Transcription
@@ -87,11 +87,11 @@ def _at_rest(curve: Curve) -> tuple[Curve, Solution, Certificate] | None:
     """The motion at rest, on a curve of the steps that it takes; None where there is none."""
     try:
         first, _ = solve_from_starts(curve.problem(0.0), curve.starts, curve.solver)
-        found = certify(
+        found = certify_one(
             curve.problem(0.0), first, curve.solver, Tolerances(curve.tolerances.energy)
         )
         curve = replace(curve, transcription=found.problem.transcription)
-        end = certify(curve.problem(0.0), found.solution, curve.solver)
+        end = certify_one(curve.problem(0.0), found.solution, curve.solver)
     except SolverFailedError:
         return None
     return curve, found.solution, curve.point_of(end)
@@ -109,7 +109,7 @@ def _least_residual(curve: Curve, cheapest: Solution) -> tuple[Solution, Certifi
     transcription, asked = curve.problem(minimise={RESIDUAL: 1.0})
     limits, solver = curve.limits(), curve.solver
     try:
-        reached = certify(Problem(transcription, asked), least, solver, limits=limits)
+        reached = certify_one(Problem(transcription, asked), least, solver, limits=limits)
         transcription, asked = reached.problem
         residual = Limit.of_residual(reached.solution.residual * (1 + _SAMPLING))
         others = [limit for limit in asked.limits if limit.name != RESIDUAL]
@@ -117,7 +117,7 @@ def _least_residual(curve: Curve, cheapest: Solution) -> tuple[Solution, Certifi
         problem = Problem(transcription, asked)
         (found,) = solver.solve([problem], [reached.solution.coefficients], warm=True)
         still = found if found.status.solved else reached.solution
-        end = certify(problem, still, solver, OF_A_PLAN, limits)
+        end = certify_one(problem, still, solver, OF_A_PLAN, limits)
     except SolverFailedError:
         return least, curve.certify(least, {RESIDUAL_LIMIT: least.residual})
     point, iterations = curve.point_of(end)

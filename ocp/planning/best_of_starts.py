@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.limits import Limit
-from quietarm.ocp.planning.certify import certify
 from quietarm.ocp.planning.feasibility import explain, least_peaks_of
-from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import Provenance, SolveSettings, Verification
-from quietarm.ocp.solvers.choice import Solver, solver_of
+from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
-from quietarm.ocp.solvers.transcription import ENERGY, Transcription
-from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.solvers.transcription import ENERGY
 
 Array = NDArray[np.float64]
 SAME = 1e-5
@@ -111,37 +106,3 @@ def solve_from_starts(
     if not solved:
         raise explain(problem, tried, least)
     return replace(solved[0], iterations=sum(one.iterations for one in tried)), solved
-
-
-def plan_from_starts(
-    task: PointToPoint,
-    profile: JointProfile,
-    settings: SolveSettings,
-    starts: Sequence[NDArray[np.float64]] | None = None,
-) -> tuple[Plan, list[NDArray[np.float64]]]:
-    """The plan from starts, by default those of the settings, whose limit holds in all scenarios.
-
-    And the coefficients of all that were solved, cheapest first. Errors are those of
-    `solve_from_starts` and `certify`.
-    """
-    began, solver = time.perf_counter(), solver_of(settings)
-    starts = start_coefficients(profile, settings) if starts is None else starts
-    transcription = Transcription.of(task, profile, settings.steps)
-    limits = (Limit.of_residual(settings.residual_limit), *task.limits)
-    problem = Problem(transcription, Scalarization(limits, settings.bound))
-    best, solved = solve_from_starts(problem, starts, solver)
-    certified = certify(problem, best, solver)
-    solution, motion = certified.solution, certified.checked.motion
-    plan = Plan(
-        task=task,
-        profile=profile,
-        coefficients=profile.checked(solution.coefficients),
-        motion=motion,
-        status=solution.status,
-        verification=Verification.between(
-            certified.steps, solution.energy, solution.residual, motion
-        ),
-        provenance=Provenance(settings.solver, settings, seconds=time.perf_counter() - began),
-        shadow_prices=solution.shadow_prices,
-    )
-    return plan, [one.coefficients for one in solved]

@@ -1,16 +1,23 @@
-"""Compare a solver's answer with the independent integrator, and correct it where they differ."""
+"""Compare a solver's answers with another integrator, and correct them where they differ.
+
+CVODES judges them. Many without limits are judged by much finer steps, which CVODES confirms at
+every tenth.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.limits import Limit, Ranged
+from quietarm.ocp.limits import QUANTITIES, Limit, Quantity, Ranged
+from quietarm.ocp.simulation.free_vibration import FreeVibration
+from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.solvers.batch import Batch, Values, batch
 from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.transcription import (
@@ -18,10 +25,12 @@ from quietarm.ocp.solvers.transcription import (
     STILL,
     STILL_SHARE,
     Transcription,
+    evaluate,
+    transcribe,
 )
 
-_RESIDUAL_AGREEMENT = 5e-3
-AT_REST = 0.3
+Array = NDArray[np.float64]
+_RESIDUAL_AGREEMENT, _AT_REST = 5e-3, 0.3
 """Of a limit, and of rest: by these shares may the two integrators' residuals differ."""
 _ROUNDS = 12
 _BELOW = 1 + 2e-8
@@ -29,6 +38,9 @@ _BELOW = 1 + 2e-8
 else the next peak passes the limit by as little again."""
 OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
+_EVERY, _AGREEMENT, _FINER = 10, 1e-6, 3
+"""CVODES checks one motion in so many, and its figures may differ by this share from those of so
+many times the solver's steps."""
 
 
 @dataclass(frozen=True)
@@ -53,23 +65,32 @@ OF_A_PLAN = Tolerances()
 
 
 @dataclass(frozen=True)
-class FinerFigures:
-    """Energy [J] and residual [m] by much finer steps; whether CVODES judged the motion, too."""
+class FinerFigures(Ranged):
+    """Energy [J], residual [m] and state on arrival by finer steps; whether CVODES confirmed them.
+
+    The state has shape (1, 2 * modes).
+    """
 
     energy: float
     residual: float
+    arrival: Array
     by_cvodes: bool = False
 
+    def range_of(self, quantity: Quantity) -> tuple[float, float]:
+        """As of `Ranged`, of the residual alone."""
+        del quantity
+        return -self.residual, self.residual
 
-Checked = TypeVar("Checked", Candidate, FinerFigures, covariant=True)
+
+Figures = Candidate | FinerFigures
 
 
 @dataclass(frozen=True)
-class Certified(Generic[Checked]):
+class Certified:
     """A solution with the figures of another integrator, and the problem, tightened, it solves."""
 
     solution: Solution
-    checked: Checked
+    checked: Figures
     problem: Problem
 
     @property
@@ -78,14 +99,17 @@ class Certified(Generic[Checked]):
         return self.problem.transcription.steps
 
 
+Outcome = Certified | SolverFailedError
+
+
 def certify(
-    problem: Problem,
-    solution: Solution,
+    problems: Sequence[Problem],
+    solutions: Sequence[Solution],
     solver: Solver,
     tolerances: Tolerances = OF_A_PLAN,
     limits: Sequence[Limit] | None = None,
-) -> Certified[Candidate]:
-    """Compare with CVODES; correct the arrival, double the steps, tighten what is exceeded.
+) -> list[Outcome]:
+    """Compare with CVODES; correct arrivals, double the steps, tighten what is exceeded.
 
     The solver's few steps miss the state on arrival by a little; limits hold at its nodes only, and
     the residual limit at its samples. The differences that the independent integrator finds are
@@ -93,77 +117,255 @@ def certify(
 
     Parameters
     ----------
-    problem : Problem
-        What was solved.
-    solution : Solution
-        Its solution.
+    problems : sequence of Problem
+        What was solved, of one plant and profile.
+    solutions : sequence of Solution
+        Their solutions.
     solver : Solver
-        What solves it again.
+        What solves them again.
     tolerances : Tolerances
         When both count as equal.
     limits : sequence of Limit, optional
-        What has to hold by CVODES; the problem's own limits by default.
+        What has to hold by CVODES; each problem's own limits by default.
 
-    Raises
-    ------
-    SolverFailedError
-        When a limit is exceeded all the same.
+    Returns
+    -------
+    list of Certified or SolverFailedError
+        The error stands for a motion that exceeds a limit all the same.
     """
-    (transcription, asked), best = problem, solution
-    limits, tightened = asked.limits if limits is None else limits, asked.limits
-    still = max(STILL, STILL_SHARE * transcription.plain_residual)
-    tolerated = max(AT_REST * still, _RESIDUAL_AGREEMENT * asked.residual_limit)
-    tried: list[Certified[Candidate]] = []
+    pairs = zip(problems, solutions, strict=True)
+    rows = [_Row(*pair, tolerances, limits) for pair in pairs]
+    found = dict[int, Outcome]()
+    many = [
+        i for i, row in enumerate(rows)
+        if not row.transcription.task.limits and row.transcription.task.uncertainty is None
+    ]  # fmt: skip
+    if len(many) >= _EVERY:
+        own = _confirm(_settle([rows[i] for i in many], solver, _judge_by_finer_steps))
+        found = dict(zip(many, own, strict=False))
+    others = [i for i in range(len(rows)) if not isinstance(found.get(i), Certified)]
+    anew = [_Row(problems[i], solutions[i], tolerances, limits) for i in others]
+    found |= dict(zip(others, _settle(anew, solver, _judge_by_cvodes), strict=True))
+    return [found[i] for i in range(len(rows))]
 
-    def check(problem: Problem, found: Solution) -> Candidate:
-        tried.append(Certified(found, judge(transcription, found.coefficients), problem))
-        return tried[-1].checked
 
-    simulated = check(problem, best)
+def certify_one(
+    problem: Problem,
+    solution: Solution,
+    solver: Solver,
+    tolerances: Tolerances = OF_A_PLAN,
+    limits: Sequence[Limit] | None = None,
+) -> Certified:
+    """The same of one solution; its error is raised."""
+    (found,) = certify([problem], [solution], solver, tolerances, limits)
+    if isinstance(found, SolverFailedError):
+        raise found
+    return found
+
+
+class _Row:
+    """A solution on its way: the problem that it solves, and all that was judged."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        solution: Solution,
+        tolerances: Tolerances,
+        limits: Sequence[Limit] | None,
+    ) -> None:
+        self.problem, self.best, self.asked = problem, solution, problem.scalarization
+        self.tolerances, self.tightened = tolerances, self.asked.limits
+        self.limits = self.asked.limits if limits is None else limits
+        self.still = max(STILL, STILL_SHARE * self.transcription.plain_residual)
+        self.tried = list[Certified]()
+        self.failure: SolverFailedError | None = None
+
+    @property
+    def transcription(self) -> Transcription:
+        """The task on the steps that it takes now."""
+        return self.problem.transcription
+
+    @property
+    def figures(self) -> Figures:
+        """Of the last motion."""
+        return self.tried[-1].checked
+
+    def judged(self, figures: Figures | SolverFailedError) -> None:
+        """Note what another integrator says of the last solution."""
+        if isinstance(figures, SolverFailedError):
+            self.failure = figures
+        else:
+            self.tried.append(Certified(self.best, figures, self.problem))
+            self.tightened = tighten(self.tightened, figures, self.limits)
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether the solver's steps are too few for the energy."""
+        energy = self.figures.energy
+        return abs(self.best.energy - energy) > self.tolerances.energy * energy
+
+    @property
+    def differs(self) -> bool:
+        """Whether the residuals differ, or a limit is exceeded."""
+        tolerated = max(_AT_REST * self.still, _RESIDUAL_AGREEMENT * self.asked.residual_limit)
+        missed = abs(self.best.residual - self.figures.residual) > tolerated
+        return missed or bool(self.figures.exceeded(self.limits))
+
+    def outcome(self) -> Outcome:
+        """The cheapest of the motions that keep every limit; else the last, or what it exceeds."""
+        if self.failure is not None:
+            return self.failure
+        keeping = [
+            one
+            for one in self.tried
+            if all(
+                limit.keeps(limit.peak_of(one.checked), 0.0, self.still) for limit in self.limits
+            )
+        ]
+        if keeping:
+            return min(keeping, key=lambda one: one.checked.energy)
+        remedy = (
+            "the solver's steps are too coarse for this motion; bound the coefficients or use "
+            "fewer terms"
+        )
+        try:
+            refuse_exceeded(self.figures, self.limits, remedy, self.still)
+        except SolverFailedError as error:
+            return error
+        return self.tried[-1]
+
+
+def _settle(rows: Sequence[_Row], solver: Solver, judge_all: Judge) -> list[Outcome]:
+    """Judge and solve again until nothing differs, or no solution is nearer."""
+    judge_all(rows)
+    going = rows
     for _ in range(_ROUNDS):
-        tightened = tighten(tightened, simulated, limits)
-        rough = abs(best.energy - simulated.energy) > tolerances.energy * simulated.energy
-        missed = abs(best.residual - simulated.residual) > tolerated
-        again = None
-        if not rough and (missed or simulated.exceeded(limits)):
-            offset = simulated.arrival - transcription.evaluate(best.coefficients).arrival
-            problem = Problem(transcription, asked._replace(limits=tightened, offset=offset))
-            (again,) = solve_again([problem], [best], solver)
-        elif not rough:
+        going = [row for row in going if row.failure is None]
+        rough = [row for row in going if row.is_rough]
+        differ = [row for row in going if not row.is_rough and row.differs]
+        corrected = _correct(differ, solver)
+        rough += [row for row in differ if row not in corrected]
+        going = [*corrected, *_refine(rough, solver)]
+        if not going:
             break
-        if again is None or not again.status.solved:
-            if 2 * transcription.steps > tolerances.most_steps:
-                break
-            transcription = transcription.refine()
-            problem = Problem(transcription, asked)
-            (again,) = solve_again([problem], [best], solver)
-            tightened = asked.limits
-            if not again.status.solved:
-                break
-        best, simulated = again, check(problem, again)
-    cheapest = _cheapest_kept(tried, limits, still)
-    remedy = "bound the coefficients or use fewer terms"
-    refuse_exceeded(
-        cheapest.checked,
-        limits,
-        f"the solver's steps are too coarse for this motion; {remedy}",
-        still,
-    )
-    return cheapest
+        judge_all(going)
+    return [row.outcome() for row in rows]
 
 
-def solve_again(
-    problems: Sequence[Problem], solutions: Sequence[Solution], solver: Solver
-) -> list[Solution]:
-    """Solve problems from solutions close by, whose iterations count as well."""
-    found = solver.solve(problems, [one.coefficients for one in solutions], warm=True)
-    return [
-        replace(new, iterations=old.iterations + new.iterations)
-        for new, old in zip(found, solutions, strict=True)
-    ]
+def _correct(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
+    """Solve rows with tighter limits, and with what the steps miss of their states on arrival."""
+    solved = list[_Row]()
+    for own in _alike(rows):
+        by_steps = evaluate([row.transcription for row in own], _table(own))
+        problems = [
+            Problem(row.transcription, row.asked._replace(
+                limits=row.tightened, offset=row.figures.arrival - motion.arrival))
+            for row, motion in zip(own, by_steps, strict=True)
+        ]  # fmt: skip
+        solved += _solve_again(own, problems, solver)
+    return solved
 
 
-def judge(transcription: Transcription, coefficients: NDArray[np.float64]) -> Candidate:
+def _refine(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
+    """Solve rows on twice the steps, if they may have as many."""
+    solved = list[_Row]()
+    rows = [row for row in rows if 2 * row.transcription.steps <= row.tolerances.most_steps]
+    for own in _alike(rows):
+        one, tasks = own[0].transcription, [row.transcription.task for row in own]
+        finer = transcribe(tasks, one.profile, 2 * one.steps)
+        for row in own:
+            row.tightened = row.asked.limits
+        pairs = zip(finer, own, strict=True)
+        solved += _solve_again(own, [Problem(each, row.asked) for each, row in pairs], solver)
+    return solved
+
+
+def _solve_again(
+    rows: Sequence[_Row], problems: Sequence[Problem], solver: Solver
+) -> Iterable[_Row]:
+    """The rows that are solved from their solutions, whose iterations count as well."""
+    found = solver.solve(problems, [row.best.coefficients for row in rows], warm=True)
+    for row, problem, new in zip(rows, problems, found, strict=True):
+        if new.status.solved:
+            row.best = replace(new, iterations=row.best.iterations + new.iterations)
+            row.problem = problem
+            yield row
+
+
+Judge = Callable[[Sequence[_Row]], None]
+
+
+def _judge_by_cvodes(rows: Sequence[_Row]) -> None:
+    for row in rows:
+        candidate = judge(row.transcription, row.best.coefficients)
+        try:
+            _ = candidate.energy, candidate.residual  # in all scenarios
+        except SolverFailedError as error:
+            row.judged(error)
+        else:
+            row.judged(candidate)
+
+
+def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
+    for own in _alike(rows):
+        of = [row.transcription for row in own]
+        tasks = [each.task for each in of]
+        values = _values(_finer(of[0]), of, _table(own))
+        window = tasks[0].residual_window
+        vibrations = FreeVibration(tasks[0].plant, [task.target for task in tasks], window)
+        wanted = np.array([task.final_state for task in tasks])
+        figures = zip(values.energy, vibrations.peak(values.arrival - wanted), strict=True)
+        for row, arrival, (energy, residual) in zip(own, values.arrival, figures, strict=True):
+            row.judged(FinerFigures(float(energy), float(residual), arrival[None]))
+
+
+def _confirm(found: Sequence[Outcome]) -> Sequence[Outcome]:
+    """Figures by finer steps with CVODES' word at every tenth; none where that is another."""
+    confirmed = list(found)
+    for i, one in enumerate(found):
+        if i % _EVERY or isinstance(one, SolverFailedError):
+            continue
+        exact, figures = judge(one.problem.transcription, one.solution.coefficients), one.checked
+        assert isinstance(figures, FinerFigures)
+        energy_differs = abs(exact.energy - figures.energy) > _AGREEMENT * exact.energy
+        room = _AGREEMENT * exact.residual + STILL
+        if energy_differs or abs(exact.residual - figures.residual) > room:
+            return []
+        confirmed[i] = replace(one, checked=replace(figures, by_cvodes=True))
+    return confirmed
+
+
+def _alike(rows: Sequence[_Row]) -> list[list[_Row]]:
+    """The rows of the same steps and residual window."""
+
+    def key(row: _Row) -> tuple[float, float]:
+        return row.transcription.steps, row.transcription.task.residual_window
+
+    return [list(own) for _, own in groupby(sorted(rows, key=key), key)]
+
+
+def _table(rows: Sequence[_Row]) -> Array:
+    return np.array([row.best.coefficients for row in rows])
+
+
+def finer_peaks(of: Sequence[Transcription], coefficients: Array) -> dict[str, Array]:
+    """Peaks of every quantity of one motion of each task, at the nodes of finer steps."""
+    finer = _finer(of[0], tuple(QUANTITIES.values()))
+    limited = _values(finer, of, coefficients).limited
+    return {name: np.abs(limited[:, place]).max(axis=1) for name, place in finer.places.items()}
+
+
+def _finer(one: Transcription, quantities: tuple[Quantity, ...] = ()) -> Batch:
+    steps = max(default_steps(one.task), _FINER * one.steps)
+    return batch(one.task.plant, one.profile, steps, quantities, energy=one.task.energy)
+
+
+def _values(finer: Batch, of: Sequence[Transcription], coefficients: Array) -> Values:
+    move = np.array([one.task.row for one in of])
+    return finer.values(coefficients, move, np.zeros((len(of), 0)))
+
+
+def judge(transcription: Transcription, coefficients: Array) -> Candidate:
     """The motion of coefficients, for CVODES."""
     return Candidate.of_profile(transcription.task, transcription.profile, coefficients)
 
@@ -188,15 +390,3 @@ def refuse_exceeded(
                 f"the verified {limit.name} is {limit.describe(peak)}, above its limit of "
                 f"{limit.bounds}: {remedy}"
             )
-
-
-def _cheapest_kept(
-    tried: list[Certified[Candidate]], kept: Sequence[Limit], still: float
-) -> Certified[Candidate]:
-    """The cheapest of the verified motions that keep every limit; else the last."""
-    keeping = [
-        one
-        for one in tried
-        if all(limit.keeps(limit.peak_of(one.checked), at_rest=still) for limit in kept)
-    ]
-    return min(keeping, key=lambda one: one.checked.energy) if keeping else tried[-1]

@@ -15,7 +15,7 @@ from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
     start_coefficients,
 )
-from quietarm.ocp.planning.certify_all import certify_all, finer_peaks
+from quietarm.ocp.planning.certify import certify, finer_peaks
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
@@ -29,8 +29,6 @@ from quietarm.ocp.task import PointToPoint
 Array = NDArray[np.float64]
 _PILOTS, _SAME_MOVE = 8, 1e-9
 """One move in so many is solved first; moves that differ by no more than this share are one."""
-_ROUNDS, _AT_REST = 4, 0.3
-"""Most corrections of the state on arrival, until a residual is below this share of `STILL`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,7 +158,7 @@ def _moves_of(problems: Sequence[Problem], found: Sequence[Solution], solver: So
     """The solutions certified, as arrays; without figures where there is none."""
     count, profile = len(found), problems[0].transcription.profile
     solved = [i for i, one in enumerate(found) if one.status.solved]
-    outcomes = certify_all([problems[i] for i in solved], [found[i] for i in solved], solver)
+    outcomes = certify([problems[i] for i in solved], [found[i] for i in solved], solver)
     ended, figures, of_moves = list(found), np.full((count, 2), np.nan), np.zeros(count, dtype=bool)
     coefficients = np.full((count, profile.size), np.nan)
     peaks = {name: np.full(count, np.nan) for name in QUANTITIES}

@@ -6,7 +6,7 @@ import io
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import positive
-from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.limits import Limit
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import REST, Provenance, Setting, SolveSettings, Verification
@@ -28,6 +30,7 @@ from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.batch import batch
+from quietarm.ocp.solvers.transcription import STILL
 from quietarm.ocp.tables import to_html
 from quietarm.ocp.task import PointToPoint
 
@@ -95,6 +98,12 @@ class Plan(MotionAnswer):
         if self.worst is None or settings is None or settings.residual_limit == 0:
             return None
         return self.worst.residual / settings.residual_limit - 1
+
+    def on(self, task: PointToPoint) -> Plan:
+        """The same motion with its figures on an uncertain task, of which it is the nominal one."""
+        motion = Candidate.of_profile(task, self.profile, self.coefficients).motion
+        worst = worst_of(task, self.profile, self.coefficients)
+        return replace(self, task=task, motion=motion, worst=worst)
 
     @cached_property
     def candidate(self) -> Candidate:
@@ -215,6 +224,27 @@ def evaluate_coefficients(
         provenance=Provenance(method, None, settings, seconds=time.perf_counter() - began),
         worst=worst_of(task, profile, checked),
     )
+
+
+def only_motion(
+    task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
+) -> Plan:
+    """The figures of the only motion that a profile has, within the task's limits."""
+    asked = {} if residual_limit is None else {"residual_limit": residual_limit}
+    plan = evaluate_coefficients(task, [], profile=profile, method="evaluated", settings=asked)
+    residual = [] if residual_limit is None else [Limit.of_residual(max(residual_limit, STILL))]
+    limits = {limit.name: limit for limit in (*residual, *task.limits)}
+    broken = [
+        f"its {name} reaches {limits[name].describe(limits[name].peak_of(plan.motion))}, above "
+        f"{limits[name].bounds}"
+        for name in plan.motion.exceeded(limits.values(), OVERRUN)
+    ]
+    if broken:
+        raise InfeasibleTaskError(
+            f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
+            "widen what is broken, or give a longer duration or another profile"
+        )
+    return plan
 
 
 def _by_fixed_steps(

@@ -1,42 +1,70 @@
-"""`plan_move`: least energy within a residual limit, from several starts, certified."""
+"""`plan_move`: least energy within a residual limit, certified, in every scenario of the task.
+
+A certain task has one scenario. Of an uncertain one the residual of every scenario is a constraint
+of one problem, and the peaks between them become scenarios until the limit holds there as well.
+"""
 
 from __future__ import annotations
 
-from numpy.typing import ArrayLike
-from quietarm.ocp.errors import InfeasibleTaskError
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.limits import Limit
-from quietarm.ocp.planning.best_of_starts import plan_from_starts
-from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
-from quietarm.ocp.planning.robust import plan_robustly
+from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.planning.best_of_starts import (
+    best_of_starts,
+    solve_from_starts,
+    start_coefficients,
+)
+from quietarm.ocp.planning.certify import OVERRUN, certify_one
+from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.solvers.choice import SolverName
-from quietarm.ocp.solvers.transcription import STILL
+from quietarm.ocp.record import REST, Provenance, SolveSettings, Verification
+from quietarm.ocp.robustness.measures import quiet_residual
+from quietarm.ocp.robustness.perturbed import Worst, peaks_between
+from quietarm.ocp.solvers.choice import SolverName, solver_of
+from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.transcription import Transcription
 from quietarm.ocp.task import PointToPoint
 
+EXCESS = 0.05
+"""Share of the limit by which the residual between scenarios may exceed it before more are added;
+and the room above the least worst case, where no lower limit can be reached."""
+_ROUNDS, _ADDED, _KEPT = 6, 4, 4
+"""Most rounds of added scenarios; most that one adds; most motions to go on from."""
+_SAME = 1e-6
+"""Errors that differ by less than this share of their range are one scenario."""
+_TIGHTENINGS = 4
+"""Most times that the limit is tightened by what is left of the excess."""
 
-def only_motion(
-    task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
-) -> Plan:
-    """The figures of the only motion that a profile has, within the task's limits."""
-    asked = {} if residual_limit is None else {"residual_limit": residual_limit}
-    plan = evaluate_coefficients(task, [], profile=profile, method="evaluated", settings=asked)
-    residual = [] if residual_limit is None else [Limit.of_residual(max(residual_limit, STILL))]
-    limits = {limit.name: limit for limit in (*residual, *task.limits)}
-    broken = [
-        f"its {name} reaches {limits[name].describe(limits[name].peak_of(plan.motion))}, above "
-        f"{limits[name].bounds}"
-        for name in plan.motion.exceeded(limits.values(), OVERRUN)
-    ]
-    if broken:
-        raise InfeasibleTaskError(
-            f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
-            "widen what is broken, or give a longer duration or another profile"
+Array = NDArray[np.float64]
+
+
+def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
+    """The residual limit that is given, or the largest that is taken by default.
+
+    Of an uncertain task `quiet_residual`; ValueError where that, or what is given, is 0.
+    """
+    if task.uncertainty is None:
+        return 0.0 if residual_limit is None else residual_limit
+    if residual_limit is None:
+        residual_limit = quiet_residual(task)
+        if residual_limit == 0:
+            raise ValueError(
+                "the plain cycloid does not bend this plant, so that 5 % of that is no limit; give "
+                "a residual limit above 0"
+            )
+    if residual_limit == 0:
+        raise ValueError(
+            "residual limit is 0, but no motion arrives at rest whatever the errors of its plant; "
+            "leave it out (5 % of how far the plain cycloid bends the tip) or give one above 0"
         )
-    return plan
+    return residual_limit
 
 
 @one_at_a_time
@@ -111,6 +139,149 @@ def plan_move(
     settings = SolveSettings(least, bound, starts, seed, steps, guess, solver, log)
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
-    if task.uncertainty is not None:
-        return plan_robustly(task, profile, settings, residual_limit)
-    return plan_from_starts(task, profile, settings)[0]
+    return _plan_within(task, profile, settings, residual_limit)
+
+
+def _plan_within(
+    task: PointToPoint,
+    profile: JointProfile,
+    settings: SolveSettings,
+    residual_limit: float | None,
+) -> Plan:
+    """The plan within a residual limit, or within the default one of a task."""
+    began, largest = time.perf_counter(), limit_of(task, residual_limit)
+    if task.uncertainty is not None and residual_limit is None:
+        plan = _hold_default(task, profile, settings, largest)
+    else:
+        plan = _hold(task, profile, replace(settings, residual_limit=largest))
+        if plan.worst is not None and (plan.excess or 0.0) > OVERRUN:
+            raise SolverFailedError(
+                f"the residual is {plan.worst.residual:.4g} m in the worst case, above its limit "
+                f"of {largest:g} m: give a larger residual limit, more {profile.term}s or a "
+                "smaller uncertainty"
+            )
+    return replace(plan, provenance=replace(plan.provenance, seconds=time.perf_counter() - began))
+
+
+def _hold_default(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, largest: float
+) -> Plan:
+    """The plan within the default limit, which is what the nominal plant's plan leaves at most.
+
+    Where neither can be reached, the limit is near the least residual over the scenarios, and where
+    not even that holds between them, it is what the plan leaves.
+    """
+    starts = start_coefficients(profile, settings)
+    try:
+        nominal = _hold(task.certain, profile, replace(settings, residual_limit=0.0))
+        nominal = nominal.on(task)
+    except SolverFailedError:  # only other motions may keep the limits
+        nominal = None
+    reached = np.inf
+    if nominal is not None and nominal.worst is not None:
+        reached = nominal.worst.residual
+        starts = [np.array(nominal.coefficients), *starts]
+    most = max(reached, REST)
+    try:
+        plan = _hold(task, profile, replace(settings, residual_limit=min(largest, most)), starts)
+    except InfeasibleTaskError:
+        transcription = Transcription.of(task, profile, settings.steps)
+        asked = Scalarization(task.limits, settings.bound, {RESIDUAL: 1.0})
+        problem, solver = Problem(transcription, asked), solver_of(settings)
+        (found,) = best_of_starts([problem], [starts], solver)
+        if not found.status.solved:
+            raise
+        limit = min((1 + EXCESS) * found.residual, most)
+        plan = _hold(task, profile, replace(settings, residual_limit=limit), starts)
+    assert plan.worst is not None
+    if plan.excess is None or plan.excess <= OVERRUN:
+        return plan
+    if nominal is not None and plan.worst.residual > reached:
+        plan = nominal
+    assert plan.worst is not None
+    settings = replace(settings, residual_limit=plan.worst.residual)
+    return replace(plan, provenance=replace(plan.provenance, settings=settings))
+
+
+def _hold(
+    task: PointToPoint,
+    profile: JointProfile,
+    settings: SolveSettings,
+    starts: Sequence[Array] | None = None,
+) -> Plan:
+    """The plan whose residual limit holds between the scenarios as well, if that can be had.
+
+    Where its residual exceeds the limit between them by more than `EXCESS`, those peaks become
+    scenarios, and the motions that were found are the next starts. What is left of the excess is
+    then taken off the limit.
+    """
+    plan, others = plan_from_starts(task, profile, settings, starts)
+    if task.uncertainty is None:
+        return plan
+    limit = used = settings.residual_limit
+    rounds = tightenings = 0
+    while True:
+        peaks = peaks_between(plan.task, profile, plan.coefficients, _ADDED)
+        plan, excess = replace(plan, worst=peaks[0]), peaks[0].residual / limit - 1
+        adding = excess > EXCESS and rounds < _ROUNDS and not tightenings
+        more = _new_scenarios(task, [one for one in peaks if one.residual > limit])
+        asked, starts = settings, [np.array(plan.coefficients)]
+        if adding and more:
+            rounds += 1
+            task = task.with_samples([*task.scenarios[1:], *more])
+            starts += others[:_KEPT]
+        elif excess > 0 and tightenings < _TIGHTENINGS:
+            tightenings += 1
+            used /= (1 + excess) * (1 + OVERRUN)
+            asked = replace(settings, residual_limit=used, steps=plan.verification.steps)
+        else:
+            break
+        try:
+            plan, others = plan_from_starts(task, profile, asked, starts)
+        except SolverFailedError:
+            if not tightenings:
+                raise
+            break
+    return replace(plan, provenance=replace(plan.provenance, settings=settings))
+
+
+def plan_from_starts(
+    task: PointToPoint,
+    profile: JointProfile,
+    settings: SolveSettings,
+    starts: Sequence[NDArray[np.float64]] | None = None,
+) -> tuple[Plan, list[NDArray[np.float64]]]:
+    """The plan from starts, by default those of the settings, whose limit holds in all scenarios.
+
+    And the coefficients of all that were solved, cheapest first. Errors are those of
+    `solve_from_starts` and `certify`.
+    """
+    began, solver = time.perf_counter(), solver_of(settings)
+    starts = start_coefficients(profile, settings) if starts is None else starts
+    transcription = Transcription.of(task, profile, settings.steps)
+    limits = (Limit.of_residual(settings.residual_limit), *task.limits)
+    problem = Problem(transcription, Scalarization(limits, settings.bound))
+    best, solved = solve_from_starts(problem, starts, solver)
+    certified = certify_one(problem, best, solver)
+    solution, motion = certified.solution, certified.checked.motion
+    plan = Plan(
+        task=task,
+        profile=profile,
+        coefficients=profile.checked(solution.coefficients),
+        motion=motion,
+        status=solution.status,
+        verification=Verification.between(
+            certified.steps, solution.energy, solution.residual, motion
+        ),
+        provenance=Provenance(settings.solver, settings, seconds=time.perf_counter() - began),
+        shadow_prices=solution.shadow_prices,
+    )
+    return plan, [one.coefficients for one in solved]
+
+
+def _new_scenarios(task: PointToPoint, peaks: list[Worst]) -> list[list[float]]:
+    """The errors of those peaks that are no scenario of the task yet."""
+    known = np.array(task.scenarios[1:])
+    near = _SAME * np.array(list(task.ranges.values()))
+    errors = [list(one.errors.values()) for one in peaks]
+    return [one for one in errors if (np.abs(known - one) > near).any(axis=1).all()]

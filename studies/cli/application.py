@@ -9,39 +9,50 @@ import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
-from keyword import iskeyword
 
 import click
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import unknown
+from quietarm.studies.cli.options import COMMON_HELP
 from quietarm.studies.cli.signals import as_ctrl_c
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
 COMMANDS = {
-    "identify": "Fit a plant's parameters to recordings of a machine.",
-    "plan": "Find the still move of least energy.",
-    "evaluate": "Compute the figures of given coefficients.",
-    "front": "Find the trade-off of residual and energy.",
-    "import": "Make a front of coefficients that another program found.",
-    "polish": "Improve a front by the gradient.",
-    "compare": "Compare fronts of one task.",
-    "floor": "Find the least energy over all joint motions.",
-    "sweep": "Plan every move of a grid.",
-    "lookup": "Take a move from a grid, between its cells.",
-    "robustness": "Show what plans leave when the plant is not the assumed one.",
-    "versus": "Hold a plan against shapers and ruckig.",
-    "explore": "Change a move by hand, on a page in the browser.",
-    "export": "Write a plan as C, csv, for ROS 2 or MATLAB.",
-    "plants": "List plants, and what their parameters mean.",
-    "problems": "List named problems with their exact fronts.",
-    "animate": "Draw plans in motion, as a GIF or an MP4.",
-    "study": "Run every method on a task, and write one report.",
-    "contest": "Hold methods with equal evaluations against exact fronts.",
+    "plan": "Find the move of least energy that arrives at rest.",
+    "evaluate": "Compute the figures of coefficients, a path, or a table of results.",
+    "front": "Find the trade-off of residual and energy by the gradient.",
+    "search": "Find the trade-off with a metaheuristic.",
+    "compare": "Compare fronts, or plans with shapers and under parameter errors.",
+    "bench": "Run methods on problems from many seeds, and rank them.",
     "reproduce": "Recompute the paper.",
+    "sweep": "Plan every move of a grid.",
+    "identify": "Fit a plant's parameters to recordings of a machine.",
+    "export": "Write a plan for a controller, or as an animation.",
+    "explore": "Change a move by hand, on a page in the browser.",
+    "list": "List plants, problems or methods.",
 }
-"""What each command does. `NAME` is the function `NAME` of `commands.NAME`, with an underscore
-behind it where NAME is a word of Python's."""
+"""What each command does. `NAME` is the function `NAME` of `commands.NAME`, and `list` is `list_`
+of `commands.list_`."""
+del COMMANDS["bench"]  # until it is here
+COMMANDS |= {  # until their heirs are here
+    "robustness": "", "versus": "", "study": "", "contest": "",
+}  # fmt: skip
+HEIRS = {
+    "floor": "plan --profile free", "lookup": "plan --from moves.zarr",
+    "import": "evaluate --coefficients results.csv", "polish": "front --polish front.json",
+    "study": "bench", "contest": "bench", "robustness": "compare", "versus": "compare --baselines",
+    "animate": "export --output move.gif", "plants": "list plants", "problems": "list problems",
+    "--csv": "--output NAME.csv", "--figure": "--output NAME.png", "--latex": "--output NAME.tex",
+    "--robust": "--error", "--sample-rate": "quietarm export --rate",
+    "plan --method": "quietarm search", "plan --polish": "quietarm search and then front --polish",
+    "front --runs": "quietarm search --runs", "front --population": "quietarm search",
+    "front --generations": "quietarm search", "front --setting": "quietarm search",
+    "sweep --refine": "--limit-margin, or a finer grid",
+    "--checkpoint": "quietarm search --from front.json",
+    "--resume": "quietarm search --from front.json",
+}  # fmt: skip
+"""What took the place of commands and options that are gone, for one release."""
 
 
 class LazyGroup(click.Group):
@@ -51,13 +62,20 @@ class LazyGroup(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """The name and the command that was asked for, and the other words."""
+        if args[0] in HEIRS and args[0] not in COMMANDS:
+            raise ValueError(f"quietarm {args[0]} is gone; give quietarm {HEIRS[args[0]]}")
         if not args[0].startswith("-") and args[0] not in COMMANDS:
             raise ValueError(unknown("command", args[0], COMMANDS))
         name, command, others = super().resolve_command(ctx, args)
         if name is not None:
-            own = f"{name}_" if iskeyword(name) else name
-            command = getattr(import_module(f"quietarm.studies.cli.commands.{own}"), own)
+            command = command_of(name)
         return name, command, others
+
+
+def command_of(name: str) -> click.Command:
+    """A command by its name."""
+    own = "list_" if name == "list" else name
+    return getattr(import_module(f"quietarm.studies.cli.commands.{own}"), own)
 
 
 @click.group(
@@ -65,21 +83,22 @@ class LazyGroup(click.Group):
     commands=[click.Command(name, short_help=does) for name, does in COMMANDS.items()],
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     no_args_is_help=True,
+    epilog=COMMON_HELP,
 )
 @click.version_option(package_name="quietarm")
 def quietarm() -> None:
-    """Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
+    """Plan point-to-point moves of flexible robot arms that arrive at rest and take little energy.
 
-    PLANT is single-link, arm-on-flexible-link, dual-link or flexible-beam, that of a --plant-file,
-    or the file of an identified machine. Angles are radians, or 30deg, pi/6, -pi/2; speeds rad/s,
-    or 60deg; lengths metres, or 1mm; times seconds, or 800ms.
+    PLANT is single-link, arm-on-flexible-link, dual-link or flexible-beam, one of --plant-file, or
+    the file of an identified machine. Angles are radians, or 30deg, pi/6, -pi/2; speeds rad/s, or
+    60deg/s; lengths metres, or 1mm; times seconds, or 800ms.
 
     \b
     Examples:
       quietarm reproduce --output results
-      quietarm plan single-link --target 30deg --duration 0.8 --figure move.png
+      quietarm plan single-link --target 30deg --duration 0.8 --output move.png
       quietarm plan arm-on-flexible-link --start=-pi/2 --target pi/4 --duration 1.0 \\
-          --torque-limit 0.4 --output plan.json --csv move.csv
+          --torque-limit 0.4 --output plan.json --output move.csv
       quietarm evaluate single-link --target pi/6 --duration 0.8 \\
           --coefficients=0.003347,-0.1697
     """  # noqa: D301  # \b is click's: do not rewrap
@@ -96,7 +115,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     status = NOT_SOLVED
     # one more Ctrl-C may come while the first is answered
     with suppress(KeyboardInterrupt), as_ctrl_c():
-        status = _run(arguments)
+        status = _run(sys.argv[1:] if arguments is None else list(arguments))
     if arguments is None:  # answered: nothing is left that another Ctrl-C could stop
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.exit(status)
@@ -108,15 +127,16 @@ def _unless_ctrl_c(lost: sys.UnraisableHookArgs) -> None:
         sys.__unraisablehook__(lost)
 
 
-def _run(arguments: Sequence[str] | None) -> int:
+def _run(words: Sequence[str]) -> int:
     try:
-        words = sys.argv[1:] if arguments is None else list(arguments)
         status = quietarm.main(words, prog_name="quietarm", standalone_mode=False, obj=words) or 0
         sys.stdout.flush()
         return status
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         return BAD_INPUT
+    except click.NoSuchOption as error:
+        return _complain(_with_heir(error), BAD_INPUT)
     except click.ClickException as error:
         return _complain(error.format_message(), BAD_INPUT)
     except (FileFormatError, ValueError) as error:
@@ -134,6 +154,13 @@ def _run(arguments: Sequence[str] | None) -> int:
         reason = (error.strerror or str(error)).lower()
         place = f"{error.filename}: " if error.filename else "standard output: "
         return _complain(f"{place}{reason}; choose another place", BAD_INPUT)
+
+
+def _with_heir(error: click.NoSuchOption) -> str:
+    """The message about an option that is not known, with its heir where it is gone."""
+    command = error.ctx.info_name if error.ctx else ""
+    heir = HEIRS.get(f"{command} {error.option_name}", HEIRS.get(error.option_name))
+    return f"{error.option_name} is gone; give {heir}" if heir else error.format_message()
 
 
 def _complain(message: str, status: int) -> int:

@@ -7,16 +7,25 @@ import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.files import unwritable
 from quietarm.ocp.interrupts import note_interrupts
+from quietarm.studies.cli.options import quiet
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import STDOUT, File
 from quietarm.studies.display.words import print_lines
 from quietarm.studies.document.blocks import Document
-from quietarm.studies.document.terminal import show
+from quietarm.studies.document.terminal import show as show_document
+from quietarm.studies.report.terminal import show, show_facts
 from rich.console import Console
+
+if TYPE_CHECKING:
+    from quietarm.studies.report import Report
+
+Facts = Sequence[tuple[str, str]]
+"""Names and their values, one below the other."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +39,10 @@ class Together:
 
 def finish(
     files: Sequence[File],
-    document: Document,
-    *,
+    *shown: Report | Facts | str,
     trouble: Exception | None = None,
     together: Together | None = None,
-    quiet: bool = True,
+    **_: object,  # quiet, of commands that do not write a Report yet
 ) -> None:
     """Save every file that was asked for, show what was found, and say what was written.
 
@@ -42,13 +50,14 @@ def finish(
     files are there. Words go to standard error where standard output is one of the files.
     """
     failures = list[Exception]()
-    with note_interrupts() as came, working("writing", Console(stderr=True), quiet=quiet):
+    with note_interrupts() as came, working("writing", Console(stderr=True), quiet=quiet()):
         written = [str(path) for path in _saved(files, failures) if path is not STDOUT]
         if together is not None and (inside := _saved(together.files, failures)):
             written.append(f"{len(inside)} {together.what} to {together.folder}")
     try:
         console = Console(stderr=any(path is STDOUT for path, _ in files))
-        show(console, document)
+        for part in filter(None, shown):
+            _show(console, part)
         for name in written:
             print_lines(console, f"wrote {name}")
     except KeyboardInterrupt:
@@ -59,6 +68,23 @@ def finish(
         kept = f"wrote {', '.join(written)}" if written else "nothing was written"
         trouble = QuietarmError(f"interrupted; {kept}")
     _raise(failures, trouble)
+
+
+def _show(console: Console, part: Report | Facts | str) -> None:
+    if isinstance(part, str):
+        print_lines(console, part)
+    elif isinstance(part, Sequence):
+        show_facts(console, part)
+    elif isinstance(part, Document):  # of commands that do not write a Report yet
+        show_document(console, part)
+    else:
+        show(console, part)
+
+
+def interruption(after: str | None = None) -> QuietarmError:
+    """The error to raise after Ctrl-C, which says how much of the work was done."""
+    when = f" after {after}" if after else ""
+    return QuietarmError(f"interrupted{when}; what was found until then is kept")
 
 
 def _saved(files: Iterable[File], failures: list[Exception]) -> list[Path]:
@@ -74,12 +100,6 @@ def _saved(files: Iterable[File], failures: list[Exception]) -> list[Path]:
             except Exception as error:  # of any kind: the next file may be saved all the same
                 failures.append(error)
     return paths
-
-
-def interruption(after: str | None = None) -> QuietarmError:
-    """The error to raise after Ctrl-C, which says how much of the work was done."""
-    when = f" after {after}" if after else ""
-    return QuietarmError(f"interrupted{when}; what was found until then is kept")
 
 
 def _save(path: Path, write: Callable[[Path], object]) -> None:

@@ -1,50 +1,94 @@
-"""The files of a plan: their options, and what writes them."""
+"""The files that a command writes: --output, whose ending says what goes into each."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial, wraps
-from typing import Any
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from quietarm.ocp import Plan
-from quietarm.ocp.planning.plan import ticks_of_move
-from quietarm.studies import figures
-from quietarm.studies.cli.options import options, typed
-from quietarm.studies.cli.types import CSV_FILE, JSON_FILE, PICTURE
-from quietarm.studies.display.saving import File, drawing
+from quietarm.ocp.files import check_writable, write_whole
+from quietarm.studies.cli.folders import check_folder
+from quietarm.studies.cli.types import Parsed
+from quietarm.studies.display.pictures import SUFFIXES
+from quietarm.studies.display.saving import STDOUT, File
 
-_RATE = "sample_rate"
-_PLAN_FILES = options(
-    click.option("--output", type=JSON_FILE,
-                 help="Write the plan to this JSON file; - is standard output."),
-    click.option("--csv", "csv_file", type=CSV_FILE, help="Write the move to this CSV file."),
-    click.option("--sample-rate", type=float, default=1000.0, show_default=True,
-                 help="Rows per second of the CSV file [Hz]."),
-    click.option("--figure", type=PICTURE,
-                 help="Draw the move over the plain cycloid (.png, .pdf or .svg)."),
-)  # fmt: skip
+if TYPE_CHECKING:
+    from quietarm.studies.report import Report
+
+F = TypeVar("F", bound=Callable[..., Any])
+Write = Callable[[Path], object]
+PICTURE, FOLDER, DATASET = SUFFIXES[0], "", ".zarr"
+_SAME = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv"}
+"""Endings that mean the same as another."""
 
 
-def plan_file_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options for the files of a plan; the command gets `files_of` a plan."""
+def output_option(kinds: Mapping[str, str], *, required: bool = False) -> Callable[[F], F]:
+    """--output, which may be repeated, and what the files of each ending hold.
 
-    @wraps(command)
-    def with_files(**named: Any) -> Any:
-        output, csv_file, rate, figure = map(named.pop, ("output", "csv_file", _RATE, "figure"))
-        duration = named["task"].duration if "task" in named else named["duration"]
-        if csv_file is not None and duration is not None:  # refused now, not after the solve
-            ticks_of_move(duration, rate)
-        elif csv_file is None and typed(_RATE):
-            raise ValueError("--sample-rate is for --csv: give that too, or leave it out")
+    A command whose answers go to standard output as well has the ending .json.
+    """
 
-        def files_of(plan: Plan) -> list[File]:
-            return [
-                (output, plan.save),
-                (csv_file, partial(plan.save_csv, sample_rate=rate)),
-                (figure, drawing(lambda: figures.motion_figure(plan))),
-            ]
+    def check(text: str) -> Path:
+        if text == str(STDOUT):
+            if ".json" in kinds:
+                return STDOUT
+            raise ValueError(f"this cannot go to standard output; give a name, or ./{text}")
+        path, kind = Path(text), ending_of(Path(text))
+        if kind not in kinds:
+            raise ValueError(f"{text} is none of the files that it writes; give {listed}")
+        return check_folder(path) if kind in (FOLDER, DATASET) else check_writable(path)
 
-        return command(files_of=files_of, **named)
+    names = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder *.zarr"}
+    listed = "; ".join(f"{names.get(kind, kind)} for {words}" for kind, words in kinds.items())
+    return click.option(
+        "--output", type=Parsed("file", check), multiple=True, required=required,
+        help=f"File to write, by its ending: {listed}. May be repeated.",
+    )  # fmt: skip
 
-    return _PLAN_FILES(with_files)
+
+def ending_of(path: Path) -> str:
+    """The ending that says what goes into a file; that of JSON for standard output."""
+    return ".json" if path == STDOUT else _SAME.get(path.suffix.lower(), path.suffix.lower())
+
+
+def files_of(output: Sequence[Path], writes: Mapping[str, Write]) -> list[File]:
+    """The files that were asked for, and what writes each by its ending."""
+    return [(path, writes[ending_of(path)]) for path in output]
+
+
+def report_files(output: Sequence[Path], report: Report) -> list[File]:
+    """A report as a folder, a page, Markdown or LaTeX, as the endings say."""
+    writes: dict[str, Callable[[], str]] = {
+        ".html": report.html, ".md": report.markdown, ".tex": report.latex,
+    }  # fmt: skip
+    found = list[File]()
+    for path in output:
+        if ending_of(path) == FOLDER:
+            found += report.files(path)
+        else:
+            text = writes[ending_of(path)]
+            found.append((path, lambda place, text=text: write_whole(place, text())))
+    return found
+
+
+def refuse_same_file(values: Mapping[str, Any]) -> None:
+    """Refuse a line that names one file twice, so that nothing that is read is written over."""
+    known = set[str]()
+    for value in values.values():
+        for path in value if isinstance(value, tuple | list) else [value]:
+            if not isinstance(path, Path) or path == STDOUT:
+                continue
+            place = os.path.realpath(path)  # of a link, too
+            if place in known:
+                raise ValueError(f"{path} is given twice; give it once, or another name")
+            known.add(place)
+
+
+def __getattr__(name: str) -> Any:  # of commands that are not moved yet
+    if name.startswith("__"):
+        raise AttributeError(name)
+    from quietarm.studies.cli import before
+
+    return getattr(before, name)

@@ -1,21 +1,87 @@
-"""The options that several commands share, and how they were typed."""
+"""The options that commands share, and how they were typed."""
 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
+from functools import partial
 from typing import Any, TypeVar
 
 import click
 from click.core import ParameterSource
+from quietarm.models import Plant
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.cli.quantities import literal, once
-from quietarm.studies.cli.types import METHOD_SETTING, OUTPUT, WHOLE, Named, Parsed
-from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL, PROFILES
+from quietarm.studies.cli.types import LENGTH, PLANT_FILE, SETTING, WHOLE, Named, Parsed
+from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL
 from rich.console import Console
 
 F = TypeVar("F", bound=Callable[..., Any])
+_PLANTS, _QUIET = "quietarm.plants", "quietarm.quiet"
+
+
+def _keep(name: str) -> Callable[[click.Context, click.Parameter, Any], None]:
+    def keep(context: click.Context, _: click.Parameter, value: Any) -> None:
+        context.meta[name] = value
+
+    return keep
+
+
+COMMON: list[click.Parameter] = [
+    click.Option(
+        ["--plant-file"], type=PLANT_FILE, is_eager=True, expose_value=False, hidden=True,
+        callback=_keep(_PLANTS),  # eager: the plants in it are then known by name
+    ),
+    click.Option(
+        ["--quiet"], is_flag=True, expose_value=False, hidden=True, callback=_keep(_QUIET)
+    ),
+]  # fmt: skip
+COMMON_HELP = (
+    "Every command takes --plant-file FILE for a plant of your own (a file in Python, which is "
+    "run), --quiet for no progress, and --help."
+)
+
+
+class Command(click.Command):
+    """A command with the options that all have."""
+
+    def get_params(self, ctx: click.Context) -> list[click.Parameter]:
+        """Its own options and those of all commands."""
+        return [*COMMON, *super().get_params(ctx)]
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run it, unless one file is named twice."""
+        from quietarm.studies.cli.files import refuse_same_file
+
+        refuse_same_file(ctx.params)
+        return super().invoke(ctx)
+
+    def get_help_option(self, ctx: click.Context) -> click.Option | None:
+        """--help, which is not repeated in every list."""
+        option = super().get_help_option(ctx)
+        if option is not None:
+            option.hidden = True
+        return option
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Say which options all commands have."""
+        formatter.write_paragraph()
+        formatter.write_text(COMMON_HELP)
+
+
+command = partial(click.command, cls=Command)
+"""The decorator of every command."""
+
+
+def plant_file() -> Mapping[str, type[Plant]] | None:
+    """The plants of the file that --plant-file names, by their names."""
+    return click.get_current_context().meta.get(_PLANTS)
+
+
+def quiet() -> bool:
+    """Whether no progress is shown."""
+    return bool(click.get_current_context().meta.get(_QUIET))
 
 
 def options(*several: Callable[[F], F]) -> Callable[[F], F]:
@@ -44,68 +110,69 @@ def refuse_typed(names: Collection[str], why: str) -> None:
     """Refuse options that were typed where they have no meaning."""
     for one in click.get_current_context().command.params:
         if one.name in names and typed(one.name):
-            raise ValueError(f"{one.opts[0]} {why}")
+            name = one.opts[0] if isinstance(one, click.Option) else one.name.upper()
+            raise ValueError(f"{name} {why}")
 
 
-def refuse_idle(method: str, only_for: Mapping[str, Sequence[str]], called: str = "") -> None:
-    """Refuse an option that would have no effect; ValueError says what it is for."""
-    for name, methods in only_for.items():
-        if typed(name) and method not in methods:
-            *some, last = methods
-            known = called or (f"{', '.join(some)} and {last}" if some else last)
-            raise ValueError(f"--{name} is for {known}, not for {method}; leave it out")
-
-
-sensitivities_option = click.option(
-    "--sensitivities", "sensitive", is_flag=True,
-    help="Say what residual and energy change with each parameter of the plant.",
-)  # fmt: skip
-_DEFAULT_TERMS = ", ".join(f"{family().terms} for {name}" for name, family in FAMILIES.items())
-_OF_CYCLOIDS = (
-    "How the joint moves: the cycloid of a polynomial, of Gaussians, of a neural network or of a "
-    "quintic spline"
-)
-profile_option = click.option(
-    "--profile", type=Named("profile", PROFILES), default=POLYNOMIAL, show_default=True,
-    help=f"{_OF_CYCLOIDS}; or the plain cycloid through an input shaper for the plant's "
-    "frequencies at the target.",
-)  # fmt: skip
 _OF_SHAPERS = {
     name: f"{name} is an input shaper: it has one motion for a move, and therefore no front; give "
     f"one of {', '.join(FAMILIES)}, or quietarm plan"
     for name in SHAPERS
 }
-family_option = click.option(
-    "--profile", type=Named("profile", FAMILIES, _OF_SHAPERS), default=POLYNOMIAL,
-    show_default=True,
-    help=f"{_OF_CYCLOIDS}.",
-)  # fmt: skip
-terms_option = click.option(
-    "--terms", type=WHOLE,
-    help="Size of the profile: terms of the polynomial, Gaussians, hidden nodes, or control "
-    f"points. [default: {_DEFAULT_TERMS}]",
-)  # fmt: skip
+_CYCLOIDS = (
+    "How the joint moves: a cycloid of a polynomial, of Gaussians, of a neural network or of a "
+    "spline"
+)
 
 
-def method_settings_option(example: str) -> Callable[[F], F]:
-    """The option for what else a metaheuristic is set to."""
-    return click.option(
-        "--setting", type=METHOD_SETTING, multiple=True,
-        help=f"Metaheuristic: set one of its settings, {example}; may be repeated. "
-        "docs/methods.md lists them.",
+def profile_options(*others: str, words: str = "") -> Callable[[F], F]:
+    """--profile and --terms; `others` are profiles without coefficients."""
+    names, none = [*FAMILIES, *others], {} if others else _OF_SHAPERS
+    sizes = ", ".join(f"{family().terms} for {name}" for name, family in FAMILIES.items())
+    return options(
+        click.option(
+            "--profile", type=Named("profile", names, none), default=POLYNOMIAL, show_default=True,
+            help=f"{_CYCLOIDS}{words}.",
+        ),
+        click.option(
+            "--terms", type=WHOLE,
+            help=f"Terms of the polynomial, Gaussians, hidden nodes or control points. [default: "
+            f"{sizes}]",
+        ),
     )  # fmt: skip
 
 
-def settings_of_one(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | bool | str]:
-    """Settings of the only method that runs; ValueError where one is an option of its own."""
-    given = settings_given(pairs)
-    for name in given:
-        if name in ("population", "generations"):
-            raise ValueError(
-                f"{name} is no setting but an option of quietarm front: give it there, as --{name} "
-                f"{given[name]}"
-            )
-    return given
+bound_option = click.option(
+    "--bound", type=float,
+    help="Largest size of a coefficient. [default: none; a search of polynomials needs one]",
+)  # fmt: skip
+residual_limit_option = click.option(
+    "--residual-limit", type=LENGTH,
+    help="Largest tip displacement after arrival. [default: at rest; with --error 5 % of how far "
+    "the plain cycloid bends the tip on its way]",
+)  # fmt: skip
+seed_option = click.option(
+    "--seed", type=WHOLE, default=0, show_default=True, help="Seed of the random numbers."
+)
+starts_option = click.option(
+    "--starts", type=WHOLE, default=4, show_default=True, help="Starts of the solver."
+)
+solver_option = click.option(
+    "--solver", type=Named("solver", SOLVERS), default=SOLVERS[0], show_default=True,
+    help="Sequential quadratic programs (quietarm's own, fast), or IPOPT.",
+)  # fmt: skip
+sensitivities_option = click.option(
+    "--sensitivities", is_flag=True,
+    help="List by how much residual and energy change with each parameter of the plant.",
+)  # fmt: skip
+
+
+def settings_option(example: str) -> Callable[[F], F]:
+    """The option for the settings of methods."""
+    return click.option(
+        "--setting", type=SETTING, multiple=True, metavar="NAME=VALUE",
+        help=f"Set {example}; may be repeated. quietarm list methods has the settings.",
+    )  # fmt: skip
 
 
 def settings_given(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | bool | str]:
@@ -114,7 +181,7 @@ def settings_given(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | 
 
 
 def settings_by_method(
-    pairs: Iterable[tuple[str, str]], methods: Sequence[str]
+    pairs: Iterable[tuple[str, str]], methods: Collection[str]
 ) -> dict[str, dict[str, float | int | bool | str]]:
     """Settings of several methods, each typed as ``method.name=value``, by method."""
     found: dict[str, dict[str, float | int | bool | str]] = {}
@@ -129,16 +196,15 @@ def settings_by_method(
     return found
 
 
-_SHARE = "Processes of this machine that share the work; 1 stays in this one."
-_SCHEDULER = click.option(
+workers_option = click.option(
+    "--workers", type=WHOLE, default=1, show_default=True,
+    help="Processes of this machine that share the work.",
+)  # fmt: skip
+scheduler_option = click.option(
     "--scheduler", metavar="ADDRESS",
     help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.",
 )  # fmt: skip
-workers_options = options(
-    click.option("--workers", type=WHOLE, default=1, show_default=True, help=_SHARE), _SCHEDULER
-)
-_AT_HAND = f"{_SHARE} By default one for each core, up to 4."
-workers_at_hand_options = options(click.option("--workers", type=WHOLE, help=_AT_HAND), _SCHEDULER)
+workers_options = options(workers_option, scheduler_option)
 
 
 def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
@@ -159,11 +225,6 @@ def _part(text: str) -> tuple[int, int]:
     return int(number), int(of)
 
 
-latex_option = click.option(
-    "--latex", type=OUTPUT, help="Write the tables as LaTeX, with the rules of booktabs."
-)
-
-
 def part_option(pieces: str) -> Callable[[F], F]:
     """The option for a share of the work, as in a queue's array job."""
     return click.option(
@@ -172,9 +233,9 @@ def part_option(pieces: str) -> Callable[[F], F]:
     )  # fmt: skip
 
 
-solver_option = click.option(
-    "--solver", type=Named("solver", SOLVERS), default=SOLVERS[0], show_default=True,
-    help="The gradient's: sequential quadratic programs, all starts and points at once, or IPOPT, "
-    "one after another.",
-)  # fmt: skip
-quiet_option = click.option("--quiet", is_flag=True, help="Show no progress.")
+def __getattr__(name: str) -> Any:  # of commands that are not moved yet
+    if name.startswith("__"):
+        raise AttributeError(name)
+    from quietarm.studies.cli import before
+
+    return getattr(before, name)

@@ -9,68 +9,49 @@ from math import tau
 from quietarm.models import FlexibleBeam, Plant, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import has_no, unknown
-from quietarm.studies.cli.quantities import is_number, once, parse_in, parse_share
+from quietarm.studies.cli.quantities import is_number, once, parse_pair, parse_quantity
 from quietarm.studies.display.words import print_lines
 from quietarm.studies.identify import Identified
 from rich.console import Console
 
+Kind = type[Plant] | Identified | None
+"""What PLANT names: a class of plants, an identified machine, or nothing."""
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""
 
 
 def parse_plant(name: str) -> type[Plant] | Identified:
-    """A class of plants by its name, or an identified machine by its file.
-
-    ValueError suggests the nearest name.
-    """
+    """A class of plants by its name, or an identified machine by its file."""
     if name.endswith(".json"):
         return Identified.load(name)
     plants = known_plants()
-    if name in plants:
-        return plants[name]
-    raise ValueError(
-        unknown(
-            "plant",
-            name,
-            sorted(plants),
-            "; your own by its --plant-file, an identified one by its .json",
-        )
-    )
-
-
-def parse_setting(text: str, what: str, example: str) -> tuple[str, str]:
-    """Read what is set to which value, ``omega=9``; ValueError when it is nothing."""
-    name, equals, value = text.partition("=")
-    if not (equals and name.strip() and value.strip()):
-        raise ValueError(f"{text!r} sets nothing; give {what} and its value, as {example}")
-    return name.strip(), value.strip()
+    if name not in plants:
+        also = "; your own by its --plant-file, an identified one by its .json"
+        raise ValueError(unknown("plant", name, sorted(plants), also))
+    return plants[name]
 
 
 def parse_error(text: str) -> tuple[str, float]:
-    """Read how far a parameter may be wrong, ``frequency=10%``; ValueError when it is none.
+    """Read how far a parameter may be wrong, ``frequency=10%``.
 
     ``measured`` stands for the intervals of an identified machine.
     """
     if text == MEASURED:
         return MEASURED, 0.0
-    name, equals, share = (part.strip() for part in text.partition("="))
-    if not (equals and name and share):
-        raise ValueError(f"{text!r} is no error; give a name and its share, as frequency=10%")
-    size = parse_share(share)
+    name, share = parse_pair(text, "an error", "frequency=10%")
+    size = parse_quantity(share, "-", "a share")
     if size >= 1 and is_number(share):
         raise ValueError(f"{text} is {100 * size:g} %; was {share} % meant? give {name}={share}%")
     return name.replace("-", "_"), size
 
 
-def uncertainty_of(
-    errors: Iterable[tuple[str, float]], kind: type[Plant] | Identified | None
-) -> Uncertainty | None:
+def uncertainty_of(errors: Iterable[tuple[str, float]], kind: Kind) -> Uncertainty | None:
     """How far a plant may be wrong, by these errors; None where there are none."""
-    ranges = once(errors, "--robust ")
+    ranges = once(errors, "--error ")
     if ranges.pop(MEASURED, None) is not None:
         if not isinstance(kind, Identified):
             raise ValueError(
-                "--robust measured is for an identified machine; give its file as PLANT, or errors "
+                "--error measured is for an identified machine; give its file as PLANT, or errors "
                 "as frequency=10%"
             )
         ranges = {**kind.errors, **ranges}
@@ -78,13 +59,11 @@ def uncertainty_of(
 
 
 def check_machine(
-    kind: type[Plant] | Identified | None,
-    settings: Iterable[tuple[str, str]],
-    errors: Iterable[tuple[str, float]],
+    kind: Kind, settings: Iterable[tuple[str, str]], errors: Iterable[tuple[str, float]]
 ) -> None:
     """Hold what is set of an identified machine against what was measured of it.
 
-    ValueError where --robust measured rests on it. A beam with another tip mass keeps its measured
+    ValueError where --error measured rests on it. A beam with another tip mass keeps its measured
     frequency, and standard error says so: it may have been weighed anew, or carry another payload.
     """
     if not isinstance(kind, Identified):
@@ -96,27 +75,25 @@ def check_machine(
     if isinstance(beam, FlexibleBeam) and "omega" not in given:
         mass = given.get("tip_mass", beam.tip_mass)
         if mass >= 0 and mass != beam.tip_mass:
-            loaded = beam.carrying(mass)
+            loaded = beam.carrying(mass).omega / tau
             print_lines(
                 Console(stderr=True),
                 f"warning: tip_mass is {mass:.4g} kg, and was {beam.tip_mass:.4g} kg when the "
-                f"frequency was measured, {beam.omega / tau:.4g} Hz, which is kept; if the "
-                f"payload has changed, give --set omega={loaded.omega / tau:.4g}Hz, by the beam's "
-                "equation, or record it anew",
+                f"frequency of {beam.omega / tau:.4g} Hz was measured, which is kept; if the "
+                f"payload has changed, give --set omega={loaded:.4g}Hz, by the beam's equation, or "
+                "record it anew",
             )
 
 
 def units_of_plant(plant: Plant | type[Plant], names: Iterable[str]) -> dict[str, str]:
     """Units of parameters; ValueError where there is no such parameter."""
-    known = {entry.name: entry.metadata.get("unit", "-") for entry in fields(plant)}
+    known = {entry.name: entry.metadata for entry in fields(plant)}
     for name in names:
         if name not in known:
-            its = [
-                entry.name for entry in fields(plant) if name in entry.metadata.get("meaning", "")
-            ]
+            its = [other for other, of in known.items() if name in of.get("meaning", "")]
             meant = f"; the {name} is {' or '.join(its)}" if its else ""
             raise ValueError(has_no(plant.name, "parameter", name, known) + meant)
-    return {name: known[name] for name in names}
+    return {name: known[name].get("unit", "-") for name in names}
 
 
 def values_of_plant(
@@ -125,13 +102,21 @@ def values_of_plant(
     """What parameters are set to."""
     texts = once(settings, "--set ")
     units = units_of_plant(plant, texts)
-    return {name: parse_in(units[name], text, name) for name, text in texts.items()}
+    return {name: _value(name, text, units[name]) for name, text in texts.items()}
+
+
+def _value(name: str, text: str, unit: str) -> float:
+    value = parse_quantity(text, unit, f"a value of {name}")
+    if name.startswith(("zeta", "damping")) and value >= 1 and is_number(text):
+        raise ValueError(
+            f"{name}={text} is a damping ratio of {100 * value:g} %; was {text} % meant? give "
+            f"{name}={text}%, or {name}={100 * value:g}%"
+        )
+    return value
 
 
 def chosen_plant(
-    kind: type[Plant] | Identified | None,
-    own: Mapping[str, type[Plant]] | None,
-    settings: Iterable[tuple[str, str]],
+    kind: Kind, own: Mapping[str, type[Plant]] | None, settings: Iterable[tuple[str, str]]
 ) -> Plant:
     """The plant that was asked for."""
     if kind is None:
@@ -142,17 +127,14 @@ def chosen_plant(
         if len(own) > 1:
             raise ValueError(f"the plant file defines {' and '.join(own)}; name one as PLANT")
         (kind,) = own.values()
-    machine = kind.plant if isinstance(kind, Identified) else None
     if isinstance(kind, Identified):
-        kind = type(kind.plant)
+        return replace(kind.plant, **values_of_plant(kind.plant, settings))
     if own is not None and kind not in own.values():
         raise ValueError(
             f"the plant file defines {' and '.join(own)}, not {kind.name}; leave {kind.name} or "
             "--plant-file out"
         )
     given = values_of_plant(kind, settings)
-    if machine is not None:
-        return replace(machine, **given)
     for entry in fields(kind):
         if entry.default is entry.default_factory is MISSING and entry.name not in given:
             raise ValueError(

@@ -1,8 +1,9 @@
-"""What an option may be: quantities with units, names, files."""
+"""What an option may be: quantities with units, names, pairs, files that are read."""
 
 from __future__ import annotations
 
-import os
+import math
+import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
@@ -11,31 +12,28 @@ from typing import Any
 import click
 from quietarm.models import load_plant_file
 from quietarm.ocp.checks import unknown
-from quietarm.ocp.files import check_writable
-from quietarm.studies.cli.folders import check_folder
-from quietarm.studies.cli.plants import parse_error, parse_plant, parse_setting
+from quietarm.studies.cli.plants import parse_error, parse_plant
 from quietarm.studies.cli.quantities import (
+    is_number,
     parse_coefficients,
-    parse_duration,
     parse_energy,
-    parse_joint_angle,
-    parse_length,
-    parse_residual,
-    parse_share,
+    parse_pair,
+    parse_quantity,
     parse_state,
-    parse_torque,
+    parse_torque_speed,
     parse_weights,
-    parse_whole,
 )
-from quietarm.studies.display.pictures import check_figure
-from quietarm.studies.display.saving import STDOUT
+from quietarm.studies.sweep.grid import axis_values
+
+_RARE = {"rad": (2 * math.pi, "deg"), "m": (0.1, "mm"), "s": (100.0, "ms")}
+"""Beyond this a number alone is asked about: it was easily meant in the other unit."""
 
 
 class Parsed(click.ParamType):
     """A value read by a function that raises ValueError with a message for the user."""
 
-    def __init__(self, name: str, parse: Callable[[str], Any], example: str = "") -> None:
-        self.name, self.parse, self._example = name, parse, example
+    def __init__(self, name: str, parse: Callable[[str], Any]) -> None:
+        self.name, self.parse = name, parse
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Read the text; a click error names the option."""
@@ -46,15 +44,12 @@ class Parsed(click.ParamType):
         except ValueError as error:
             self.fail(str(error), param, ctx)
 
-    def get_missing_message(
-        self, param: click.Parameter, ctx: click.Context | None = None
-    ) -> str | None:
-        """How the option is given."""
-        return f"Give it as {param.opts[0]} {self._example}" if self._example else None
-
 
 class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
-    """One of several names; an error suggests the nearest one, or says why a name is none here."""
+    """One of several names; an error suggests the nearest one, or says why a name is none here.
+
+    Large letters, hyphens and spaces do not matter: NSGA-II and nsga_2 are nsga2.
+    """
 
     def __init__(self, what: str, names: Iterable[str], none: Mapping[str, str] | None = None):
         super().__init__(list(names))
@@ -62,93 +57,81 @@ class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name."""
-        if value not in self.choices:
+        same = [name for name in self.choices if _spelling(name) == _spelling(value)]
+        if not same:
             known = unknown(self._what, value, self.choices)
             self.fail(self._none.get(value, known), param, ctx)
-        return value
+        return same[0]
 
 
-class FileName(Parsed):
-    """A file or folder; no two arguments of a line name the same one, unless both are read."""
-
-    def __init__(self, name: str, check: Callable[[str], Path], use: str) -> None:
-        super().__init__(name, check)
-        self._use = use
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The path."""
-        path = super().convert(value, param, ctx)
-        if ctx is None or param is None:
-            return path
-        is_option = isinstance(param, click.Option)
-        name = param.opts[0] if is_option else param.human_readable_name
-        place = os.path.realpath(path)  # of a link, too
-        named: list[tuple[str, str, str]] = ctx.meta.setdefault("quietarm.files", [])
-        for other, there, use in named:
-            if there == place and {use, self._use} not in _MAY_BE_ONE:
-                self.fail(f"{other} and {name} are both {path}; give two files", None, ctx)
-        named.append((name, place, self._use))
-        return path
+def _spelling(name: str) -> str:
+    """A name without what people spell differently: nsga-iii is nsga3."""
+    small = re.sub(r"[-_ ]", "", name.lower())
+    return re.sub(r"i{2,3}$", lambda match: str(len(match[0])), small)
 
 
-READ, KEPT, WRITTEN = "read", "kept", "written"
-_MAY_BE_ONE = ({READ}, {READ, KEPT})
-"""A checkpoint may be kept where the one that it continues was read."""
+def quantity(unit: str, what: str, text: str) -> float:
+    """Read a quantity; a number alone that is rarely meant in SI is asked about."""
+    value = parse_quantity(text, unit, what)
+    most, other = _RARE.get(unit, (math.inf, ""))
+    if math.isfinite(value) and abs(value) > most and is_number(text):
+        name = {"deg": "degrees", "mm": "millimetres", "ms": "milliseconds"}[other]
+        raise ValueError(
+            f"{text} is in {_NAMES[unit]}; were {name} meant? give {text}{other}, or {text}{unit}"
+        )
+    return value
 
 
-def _is_input(text: str) -> Path:
-    if not text:
-        raise ValueError("the name is empty; give one")
-    return Path(text)
+_NAMES = {"rad": "radians", "m": "metres", "s": "seconds"}
 
 
-def _is_output(text: str) -> Path:
-    return STDOUT if text == str(STDOUT) else check_writable(text)
+def _sides(parse: Callable[[str], float], text: str) -> float | tuple[float, ...]:
+    """A limit of both directions, or one for each: ``-30:40``."""
+    values = tuple(map(parse, text.split(":")))
+    if len(values) > 2:
+        raise ValueError(f"{text!r} is no limit; give one number, or one for each side as -30:40")
+    return values if len(values) == 2 else values[0]
 
 
-def _ends_in(endings: tuple[str, ...], what: str, text: str) -> Path:
-    path = _is_output(text)
-    if path is not STDOUT and path.suffix.lower() not in endings:
-        raise ValueError(f"{text} is for {what}; end its name in {endings[0]}")
-    return path
+def limit_type(name: str, unit: str) -> Parsed:
+    """A limit of a quantity: its largest size, or its least and largest value."""
+    return Parsed("limit", partial(_sides, partial(quantity, unit, f"a {name}")))
 
 
-def _in_place(check: Callable[[str], Path], text: str) -> Path:
-    if text == str(STDOUT):
-        raise ValueError(f"this cannot go to standard output; give a name, or ./{text}")
-    return check(text)
-
-
-def _is_dataset(text: str) -> Path:
-    if Path(text).suffix not in (".zarr", ""):
-        raise ValueError(f"{text} becomes a folder of Zarr; end its name in .zarr")
-    return check_folder(text)
-
-
+ANGLE, LENGTH, TIME, TORQUE, SHARE = (
+    Parsed(name, partial(quantity, unit, f"a{'n' * (name == 'angle')} {name}"))
+    for name, unit in (
+        ("angle", "rad"), ("length", "m"), ("time", "s"), ("torque", "N m"), ("share", "-")
+    )
+)  # fmt: skip
+ANGLES = Parsed("angle", partial(axis_values, parse=ANGLE.parse))
+FASTEST = "fastest"
+"""In the place of a duration: the shortest within the limits."""
+TIMES = Parsed(
+    "time", lambda text: FASTEST if text == FASTEST else axis_values(text, parse=TIME.parse)
+)
 PLANT = Parsed("plant", parse_plant)
 PLANT_FILE = Parsed("file", load_plant_file)
-SETTING = Parsed("parameter=value", partial(parse_setting, what="a parameter", example="omega=9"))
-METHOD_SETTING = Parsed(
-    "name=value", partial(parse_setting, what="a setting", example="mutation=1")
+SETTING = Parsed(
+    "name=value", partial(parse_pair, what="a parameter or setting", example="omega=9")
 )
 ERROR = Parsed("name=share", parse_error)
 ENERGY = Parsed("energy", parse_energy)
-ANGLE = Parsed("angle", parse_joint_angle, "30deg")
-LENGTH = Parsed("length", parse_length)
-RESIDUAL = Parsed("length", parse_residual)
-TIME = Parsed("time", parse_duration, "0.8")
-TORQUE = Parsed("torque", parse_torque)
-SHARE = Parsed("share", parse_share)
 MODES = Parsed("W:W'", parse_state)
-WHOLE = Parsed("integer", parse_whole)
-COEFFICIENTS = Parsed("numbers", parse_coefficients)
+COEFFICIENTS = Parsed(
+    "numbers",
+    lambda text: Path(text) if Path(text).suffix in _TABLES else parse_coefficients(text),
+)
+_TABLES = (".csv", ".txt", ".dat", ".npy", ".npz", ".mat")
+TORQUE_SPEED = Parsed("torque@speed", parse_torque_speed)
 WEIGHTS = Parsed("weights", parse_weights)
-INPUT = FileName("file", _is_input, READ)
-OUTPUT = FileName("file", _is_output, WRITTEN)
-STATE = FileName("file", partial(_in_place, check_writable), KEPT)
-JSON_FILE = FileName("file", partial(_ends_in, (".json", ""), "JSON"), WRITTEN)
-CSV_FILE = FileName("file", partial(_ends_in, (".csv", ".txt", ""), "a table as CSV"), WRITTEN)
-PAGE = FileName("page", partial(_ends_in, (".html", ".htm"), "a page of HTML"), WRITTEN)
-PICTURE = FileName("picture", check_figure, WRITTEN)
-DATASET = FileName("folder", partial(_in_place, _is_dataset), WRITTEN)
-FOLDER = FileName("folder", partial(_in_place, check_folder), WRITTEN)
+WHOLE = click.INT
+INPUT = click.Path(path_type=Path)
+
+
+def __getattr__(name: str) -> Any:  # of commands that are not moved yet
+    if name.startswith("__"):
+        raise AttributeError(name)
+    from quietarm.studies.cli import before
+
+    return getattr(before, name)

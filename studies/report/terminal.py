@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from quietarm.studies.display.words import print_lines
 from quietarm.studies.report.report import Report
 from rich.console import Console
-from rich.markdown import Markdown
 from rich.table import Table
 from rich.text import Text
 
@@ -17,6 +16,8 @@ _LEAST_VALUE = 30
 
 def show(console: Console, report: Report) -> None:
     """Print a report without its pictures."""
+    from rich.markdown import Markdown  # not at the top: it takes long to load
+
     lines = [line for line in report.markdown().splitlines() if not line.startswith("![")]
     console.print(Markdown("\n".join(lines)))
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.options import latex_option, quiet_option
+from quietarm.studies.cli.options import command, latex_option, quiet_option
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import FOLDER, INPUT
 from quietarm.studies.display.progress import working
 from rich.console import Console
 
 
-@click.command()
+@command()
 @click.argument("fronts", nargs=-1, type=INPUT, metavar="FRONT FRONT ...")
 @click.option("--reference", type=INPUT, help="Measure IGD+ and epsilon against this front.")
 @click.option(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 from quietarm.studies.cli.options import (
+    command,
     family_option,
     latex_option,
     method_settings_option,
@@ -32,7 +33,7 @@ _FEW = 6
 """Problems of which each has its table on the screen."""
 
 
-@click.command()
+@command()
 @click.argument("problems", nargs=-1, metavar="[PROBLEM]... | PLANT")
 @own_grid_options
 @family_option

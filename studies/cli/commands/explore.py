@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 from quietarm.models import Plant, known_plants
 from quietarm.ocp.checks import install
+from quietarm.studies.cli.options import command
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import SETTING
@@ -16,7 +17,7 @@ _USUAL = "single-link"
 """The plant where none is given."""
 
 
-@click.command()
+@command()
 @click.argument("what", required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]")
 @plant_file_option()
 @click.option("--set", "parameters", type=SETTING, multiple=True,
@@ -39,7 +40,7 @@ def explore(
       quietarm explore dual-link
       quietarm explore plan.json --no-browser
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.studies.explore.opening import is_file, menu, of_file, of_plant
+    from quietarm.studies.explore.opening import is_file, menu, open_file, open_plant
 
     try:
         from quietarm.studies.explore.server import serve
@@ -49,8 +50,8 @@ def explore(
     if what is not None and is_file(what):
         if parameters:
             raise ValueError(f"--set is for a PLANT, and {what} has its own; leave it out")
-        explored = of_file(Path(what))
+        explored = open_file(Path(what))
     else:
         kind = parse_plant(what or _USUAL) if what or plant_file is None else None
-        explored = of_plant(chosen_plant(kind, plant_file, parameters))
+        explored = open_plant(chosen_plant(kind, plant_file, parameters))
     serve(explored, menu(explored.task.plant, known_plants()), click.echo, not no_browser)

@@ -9,7 +9,7 @@ import click
 from quietarm.models import Plant
 from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.options import command, quiet_option
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import INPUT, JSON_FILE, PICTURE, SETTING, Parsed
@@ -29,7 +29,7 @@ def _plant_at_the_end(name: str) -> type[Plant] | Identified:
         raise ValueError(f"{error}; PLANT comes last, after the recordings") from None
 
 
-@click.command()
+@command()
 @click.argument("recordings", type=INPUT, nargs=-1, required=True, metavar="RECORDING...")
 @click.argument("plant", type=Parsed("plant", _plant_at_the_end), metavar="PLANT")
 @plant_file_option()
@@ -72,7 +72,7 @@ def identify(
     Examples:
       quietarm identify push.csv flexible-beam --tip tip_mm --output arm.json
       quietarm identify run*.mat flexible-beam --time t --angle theta --tip w --output arm.json
-      quietarm plan arm.json --robust measured --target 60deg --duration 0.9
+      quietarm plan arm.json --error measured --target 60deg --duration 0.9
     """  # noqa: D301  # \b is click's: do not rewrap
     columns = {
         quantity: [names] if isinstance(names, str) else list(names or ())

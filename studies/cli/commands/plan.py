@@ -1,177 +1,163 @@
-"""`quietarm plan`: the still move of least energy."""
+"""`quietarm plan`: the move of least energy."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.metaheuristics import search
-from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL
 from quietarm.ocp import (
-    JointProfile,
     Plan,
-    PointToPoint,
-    QuietarmError,
     SolverFailedError,
-    SolveSettings,
-    evaluate_coefficients,
+    energy_floor,
     fastest_move,
     plan_move,
 )
-from quietarm.ocp.planning.robust import limit_of
+from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
+from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.files import plan_file_options
+from quietarm.studies.cli.files import PICTURE, ending_of, files_of, output_option
 from quietarm.studies.cli.options import (
-    method_settings_option,
-    profile_option,
-    quiet_option,
-    refuse_idle,
+    bound_option,
+    command,
+    profile_options,
+    quiet,
+    refuse_typed,
+    residual_limit_option,
+    seed_option,
     sensitivities_option,
-    settings_of_one,
     solver_option,
-    terms_option,
+    starts_option,
+    typed,
 )
-from quietarm.studies.cli.task import robust_option, task_or_fastest_options
-from quietarm.studies.cli.types import RESIDUAL, WHOLE, Named
+from quietarm.studies.cli.plants import values_of_plant
+from quietarm.studies.cli.task import NAMES, TypedMove, task_options
+from quietarm.studies.cli.types import INPUT
 from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import File
-from quietarm.studies.display.search_progress import search_display
-from quietarm.studies.registry.methods import METHODS, Kind, methods_of
+from quietarm.studies.display.saving import File, drawing
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
-from quietarm.studies.reports.plan import plan_document
+from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
+from quietarm.studies.sweep.grid import OF_MOVES
 from rich.console import Console
 
-GRADIENT = "gradient"
-OF_FAMILIES = ("terms", "bound", "starts", "seed", "method", "setting", "polish")
-"""Options that need a profile with coefficients."""
-SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
+FREE = {"free": False, "free-smooth": True}
+"""Profiles without a parametrisation, and whether the acceleration is continuous."""
+_OF_COEFFICIENTS = ("terms", "bound", "residual_limit", "solver", "sensitivities")
+_OF_SOLVERS = ("starts", "seed")
 
 
-@click.command()
-@task_or_fastest_options
-@profile_option
-@terms_option
-@click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
-@click.option(
-    "--residual-limit", type=RESIDUAL,
-    help="Largest tip displacement after arrival; 0, the default, is at rest. With --robust the "
-    "default is 5 % of how far the plain cycloid bends the tip on its way.",
+@command()
+@task_options
+@profile_options(
+    *SHAPERS, *FREE,
+    words="; a plain cycloid through an input shaper for the plant's frequencies at the target; or "
+    "without a parametrisation (free), its acceleration continuous (free-smooth)",
 )  # fmt: skip
-@click.option("--starts", type=WHOLE, default=4, show_default=True, help="Starts of the solver.")
-@click.option("--seed", type=WHOLE, default=0, show_default=True, help="Seed of the random starts.")
+@bound_option
+@residual_limit_option
+@starts_option
+@seed_option
 @solver_option
 @click.option(
-    "--method", type=Named("method", [GRADIENT, *SEARCHES]), default=GRADIENT, show_default=True,
-    help="The gradient, or the cheapest point of a metaheuristic's front within the residual "
-    "limit (1mm where that is 0).",
+    "--from", "dataset", type=INPUT,
+    help="Take the move from this dataset of quietarm sweep, between its cells, without solving.",
 )  # fmt: skip
-@method_settings_option("as in --setting crossover=0.7")
-@click.option("--polish", is_flag=True, help="Improve a metaheuristic's point by the gradient.")
-@robust_option
 @sensitivities_option
-@quiet_option
-@plan_file_options
+@output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"})
 def plan(
-    task: PointToPoint,
-    fastest: bool,
+    move: TypedMove,
     profile: str,
     terms: int | None,
-    method: str,
-    setting: tuple[tuple[str, str], ...],
-    polish: bool,
-    sensitive: bool,
-    quiet: bool,
-    files_of: Callable[[Plan], list[File]],
+    dataset: Path | None,
+    sensitivities: bool,
+    output: Sequence[Path],
     **asked: Any,
 ) -> None:
     """Find the move of least energy whose residual vibration is within a limit.
 
-    With an input shaper as the profile there is nothing to choose: its motion is evaluated.
+    An input shaper has nothing to choose: its motion is evaluated.
 
     \b
     Examples:
       quietarm plan single-link --target 30deg --duration 0.8
       quietarm plan single-link --target pi/2 --duration 1.0 --bound 0.2 --residual-limit 1mm
       quietarm plan arm-on-flexible-link --target 90deg --duration 800ms --torque-limit 0.3 \\
-          --output plan.json --csv move.csv --figure move.png
-      quietarm plan single-link --target 30deg --duration 0.8 --profile network --terms 3
-      quietarm plan dual-link --target pi/2 --duration 0.9 --profile zv
+          --output plan.json --output move.csv --output move.png
       quietarm plan single-link --target 30deg --duration fastest --torque-limit 0.15
+      quietarm plan dual-link --target pi/2 --duration 0.9 --profile zv
+      quietarm plan single-link --target 30deg --duration 0.8 --profile free
+      quietarm plan --from moves.zarr --target 37deg --duration 930ms --output plan.json
     """  # noqa: D301  # \b is click's: do not rewrap
-    refuse_idle(profile, {name: list(FAMILIES) for name in OF_FAMILIES})
-    refuse_idle(method, {"starts": [GRADIENT], "solver": [GRADIENT]})
-    refuse_idle(method, {"setting": SEARCHES}, "a metaheuristic")
-    if method == GRADIENT and polish:
-        raise ValueError("--polish is for a metaheuristic's point; give --method nsga2 or another")
-    if fastest and (method != GRADIENT or profile not in FAMILIES):
-        raise ValueError(
-            "--duration fastest is for the gradient and profiles with coefficients; give a time"
-        )
-    motions, notes = profile_of(profile, task, terms), list[str]()
-    if method != GRADIENT:
-        found = _by_search(task, method, motions, settings_of_one(setting), polish, quiet, **asked)
-        if not (polish or asked["residual_limit"] or found.worst):
-            notes = [
-                "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; "
-                "--polish does"
-            ]
-    elif fastest:
+    if dataset is not None:
+        idle = (*_OF_COEFFICIENTS, *_OF_SOLVERS, "profile")
+        refuse_typed(idle, "is not for --from; leave it out")
+        _look_up(move, dataset, output)
+        return
+    if profile not in FAMILIES:
+        idle = _OF_COEFFICIENTS if profile in FREE else (*_OF_COEFFICIENTS[:-1], *_OF_SOLVERS)
+        why = f"is not for {profile}, only for profiles with coefficients"
+        refuse_typed(idle, f"{why}; leave it out")
+        if move.fastest:
+            raise ValueError(f"--duration fastest {why}; give a time")
+    if profile in FREE:
+        _plan_freely(move, FREE[profile], asked["starts"], asked["seed"], output)
+        return
+    task, notes = move.task(), list[str]()
+    motions = profile_of(profile, task, terms)
+    errors = Console(stderr=True)
+    if move.fastest:
+        if typed("starts"):
+            raise ValueError("--starts is not for --duration fastest; leave it out")
         del asked["starts"]
-        with working("looking for the shortest duration", Console(stderr=True), quiet=quiet):
+        with working("looking for the shortest duration", errors, quiet=quiet()):
             shortest = fastest_move(task, motions, **asked)
         found = shortest.plan
         notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
     else:
-        with working("solving", Console(stderr=True), quiet=quiet):
+        with working("solving", errors, quiet=quiet()):
             found = plan_move(task, motions, **asked)
-    finish(files_of(found), plan_document(found, notes, sensitive))
+    sensitive = sensitivity_rows(found) if sensitivities else []
+    title = "\nwhat a parameter that is 1 % larger adds to residual and energy:" * bool(sensitive)
+    finish(plan_files(output, found), plan_rows(found), title, sensitive, *notes)
 
 
-def _by_search(
-    task: PointToPoint,
-    method: str,
-    profile: JointProfile,
-    settings: Mapping[str, object],
-    polish: bool,
-    quiet: bool,
-    *,
-    residual_limit: float | None,
-    **asked: Any,
-) -> Plan:
-    """The cheapest point of a metaheuristic's front within the residual limit, as a plan."""
-    bound, seed = asked["bound"], asked["seed"]
-    limit = limit_of(task, residual_limit) or SEARCH_RESIDUAL
-    SolveSettings(residual_limit=limit, seed=seed)  # refused before the search, not after
-    with search_display(Console(stderr=True), quiet=quiet) as report:
-        front = search(
-            task, method, profile=profile, bound=bound, settings=settings, seed=seed, report=report
-        )
-    if not front.complete:
-        raise QuietarmError(
-            "interrupted; a plan needs a whole search, and nothing was written; `quietarm front` "
-            "keeps what a search has found until Ctrl-C"
-        )
-    try:
-        point = front.cheapest(limit)
-    except ValueError as error:
-        raise SolverFailedError(f"{METHODS[method].label} found no such plan: {error}") from None
-    used = {**front.settings, "seed": seed, "residual_limit": limit}
-    found = evaluate_coefficients(
-        task, point.coefficients, profile=profile, method=method, settings=used
-    )
-    found = _told(found, seconds=front.seconds)
-    if not polish:
-        return found
-    polished = plan_move(
-        task, profile, residual_limit=residual_limit, bound=bound, starts=1, seed=seed,
-        guess=point.coefficients,
-    )  # fmt: skip
-    by, seconds = polished.provenance.method, front.seconds + polished.provenance.seconds
-    return _told(polished, method=f"{method}, polished by {by}", search=used, seconds=seconds)
+def plan_files(output: Sequence[Path], plan: Plan) -> list[File]:
+    """A plan as JSON, its path as CSV, and its picture."""
+    picture = drawing(lambda: figures.motion_figure(plan))
+    return files_of(output, {".json": plan.save, ".csv": plan.save_csv, PICTURE: picture})
 
 
-def _told(plan: Plan, **changes: Any) -> Plan:
-    """The same plan with another record of how it was found."""
-    return replace(plan, provenance=replace(plan.provenance, **changes))
+def _plan_freely(
+    move: TypedMove, smooth: bool, starts: int, seed: int, output: Sequence[Path]
+) -> None:
+    """The least energy over all joint motions, beside the plan of a polynomial."""
+    task = move.task()
+    if any(ending_of(path) == ".csv" for path in output):
+        raise ValueError("a free motion is written as .json or as a picture, not as .csv")
+    with working("refining the grid", Console(stderr=True), quiet=quiet()):
+        found = energy_floor(task, smooth=smooth, starts=starts, seed=seed)
+        try:
+            beside = plan_move(task)
+        except SolverFailedError:
+            beside = None
+    writes = {
+        ".json": found.save,
+        PICTURE: drawing(lambda: figures.floor_figure(found, beside)),
+    }
+    finish(files_of(output, writes), floor_rows(found, beside))
+
+
+def _look_up(move: TypedMove, dataset: Path, output: Sequence[Path]) -> None:
+    """A move between the cells of a sweep; one that breaks a limit is written, with status 1."""
+    from quietarm.studies.sweep.library import plan_from
+    from quietarm.studies.sweep.store import Store
+
+    kept = [name for name in NAMES if name not in ("parameters", *OF_MOVES)]
+    move.refuse("is in the dataset of --from; leave it out", *kept)
+    with working("interpolating between the cells", Console(stderr=True), quiet=quiet()):
+        plant = Store(dataset).definition.grid.task.plant
+        at = values_of_plant(plant, move.given["parameters"])
+        at |= {name: move.given[name][0] for name in OF_MOVES if typed(name)}
+        found, between, trouble = plan_from(dataset, **at)
+    finish(plan_files(output, found), plan_rows(found), between.words, trouble=trouble)

@@ -5,12 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.options import quiet_option, warn_of_workers, workers_at_hand_options
+from quietarm.studies.cli.options import (
+    command,
+    quiet_option,
+    warn_of_workers,
+    workers_at_hand_options,
+)
 from quietarm.studies.cli.types import FOLDER, WHOLE
 from rich.console import Console
 
 
-@click.command()
+@command()
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
 @click.option(
     "--seeds", type=WHOLE, default=1, show_default=True,

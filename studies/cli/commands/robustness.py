@@ -10,7 +10,7 @@ import click
 from quietarm.ocp import Plan, Robustness, evaluate_robustness
 from quietarm.ocp.uncertainty import check_ranges
 from quietarm.studies.cli.ending import finish, interruption
-from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.options import command, quiet_option
 from quietarm.studies.cli.quantities import once
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import FOLDER, INPUT, SHARE, WHOLE
@@ -24,7 +24,7 @@ DEFAULT_RANGES: Mapping[str, float] = {"frequency": 0.2, "damping": 0.5}
 """The errors where none is asked for."""
 
 
-@click.command(context_settings={"ignore_unknown_options": True})
+@command(context_settings={"ignore_unknown_options": True})
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="PLAN ... [--PARAMETER SHARE]")
 @click.option("--frequency", type=SHARE, multiple=True,
               help="Largest error of all natural frequencies, as 20%.")  # fmt: skip

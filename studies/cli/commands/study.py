@@ -10,6 +10,7 @@ import click
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import PointToPoint
 from quietarm.studies.cli.options import (
+    command,
     latex_option,
     method_settings_option,
     quiet_option,
@@ -24,7 +25,7 @@ from quietarm.studies.registry.methods import PAPERS
 from rich.console import Console
 
 
-@click.command()
+@command()
 @own_task_options
 @click.option("--bound", type=float, help="Largest coefficient; the paper's for its plants.")
 @click.option("--terms", type=WHOLE, default=6, show_default=True, help="Terms of the polynomial.")

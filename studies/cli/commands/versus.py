@@ -7,10 +7,10 @@ from pathlib import Path
 
 import click
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.planning.robust import limit_of
+from quietarm.ocp.planning.plan_move import limit_of
 from quietarm.studies.cli.ending import finish, interruption
-from quietarm.studies.cli.options import quiet_option, terms_option
-from quietarm.studies.cli.task import robust_option, task_options
+from quietarm.studies.cli.options import command, quiet_option, terms_option
+from quietarm.studies.cli.task import old_task_options, robust_option
 from quietarm.studies.cli.types import FOLDER, RESIDUAL
 from quietarm.studies.display.progress import working
 from quietarm.studies.document.files import document_files
@@ -20,8 +20,8 @@ from quietarm.studies.versus.rivals import Rival, rivals
 from rich.console import Console
 
 
-@click.command()
-@task_options
+@command()
+@old_task_options
 @terms_option
 @click.option("--residual-limit", type=RESIDUAL, help="Of the robust plan; as for quietarm plan.")
 @robust_option
@@ -43,7 +43,7 @@ def versus(
     \b
     Examples:
       quietarm versus flexible-beam --set omega=3.2Hz --target 60deg --duration 0.7 \\
-          --torque-limit 1.5 --acceleration-limit 80 --robust frequency=8% --output versus
+          --torque-limit 1.5 --acceleration-limit 80 --error frequency=8% --output versus
     """  # noqa: D301  # \b is click's: do not rewrap
     profile = profile_of(POLYNOMIAL, task, terms)
     with working("planning and shaping", Console(stderr=True), quiet=quiet):

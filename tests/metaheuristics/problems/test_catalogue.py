@@ -9,7 +9,7 @@ from quietarm.metaheuristics import PROBLEMS, problem_of
 from quietarm.metaheuristics.objective.claims import check_figures
 from quietarm.metaheuristics.problems import finding
 from quietarm.ocp import evaluate_coefficients
-from quietarm.ocp.planning.best_of_starts import plan_from_starts
+from quietarm.ocp.planning.plan_move import plan_from_starts
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.uncertainty import perturb_plant
 

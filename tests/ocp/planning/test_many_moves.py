@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp.planning import certify_all
+from quietarm.ocp.planning import many
 
 import quietarm as qa
 
@@ -53,11 +53,12 @@ def test_a_move_without_a_plan_does_not_stop_the_others(plants):
 
 
 def test_a_move_that_cvodes_does_not_confirm_has_a_status_and_no_figures(moves, monkeypatch):
-    def refuse(problem, *others):
-        raise qa.SolverFailedError(f"refused at {problem.transcription.task.target:.3g} rad")
+    def refuse(problems, *others):
+        targets = [problem.transcription.task.target for problem in problems]
+        return [qa.SolverFailedError(f"refused at {target:.3g} rad") for target in targets]
 
     limited = [replace(task, speed_limit=4.0) for task in moves[:2]]
-    monkeypatch.setattr(certify_all, "certify", refuse)
+    monkeypatch.setattr(many, "certify", refuse)
     found = qa.plan_moves(limited)
     assert set(found.status) == {qa.SolveStatus.NOT_CERTIFIED}
     assert not any(status.solved for status in found.status)

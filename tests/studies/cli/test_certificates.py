@@ -33,18 +33,11 @@ def test_a_certificate_does_not_hold_where_integrators_differ(monkeypatch):
     assert not coarse.holds
 
 
-def test_it_is_checked_anew(call, monkeypatch):
-    code, out, err = call(f"problems --verify {NAME} --quiet")
-    assert (code, err) == (0, "")
-    assert KEPT[NAME].checksum[:12] in out
-
+def test_a_dearer_front_is_beaten(monkeypatch):
     (front,) = problem_of(NAME).fronts()
     dearer = tuple(replace(point, energy=point.energy * 1.001) for point in front.points)
     monkeypatch.setattr(catalogue, "_loaded", lambda path: replace(front, points=dearer))
     (worse,) = certified(problem_of(NAME))
     assert worse.gained == pytest.approx(1e-3, rel=0.01)
     assert not worse.holds
-    code, _, err = call(f"problems --verify {NAME} --quiet")
-    assert code == 1
-    assert "is not what was certified" in err
     assert certificate.BEATEN == 1e-4  # docs/problems.md states what was measured

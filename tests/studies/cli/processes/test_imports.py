@@ -42,7 +42,7 @@ def test_help_and_version_load_no_command(tmp_path):
 
 @pytest.mark.parametrize(
     "line",
-    ["front", "study"],
+    ["front", "search"],
 )
 def test_help_of_what_searches_and_draws_waits_for_neither(tmp_path, line):
     assert of_gradient(loaded(f"{line} --help", tmp_path))

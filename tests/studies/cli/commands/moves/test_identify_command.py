@@ -33,7 +33,7 @@ def test_a_push_makes_a_machine_that_is_planned_for(push, call):
     found = Identified.load(push / "arm.json")
     assert found.plant.length == 0.6
     code, out, err = call(
-        "plan arm.json --quiet --set friction=0.02 --target 30deg --duration 1 --robust measured "
+        "plan arm.json --quiet --set friction=0.02 --target 30deg --duration 1 --error measured "
         "--output plan.json"
     )
     assert (code, err) == (0, "")  # friction shows in the torque alone
@@ -54,11 +54,11 @@ def test_another_tip_mass_keeps_the_measured_frequency_and_says_so(push, call, r
     for quiet in ("", "--set tip_mass=36g", "--set tip_mass=0.1 --set omega=2Hz"):
         assert call(f"{line} {quiet}")[2] == ""
     for name, value in {"omega": "3Hz", "tip_mass": "0.1", "length": "0.5"}.items():
-        said = refused(f"{line} --set {name}={value} --robust measured")
+        said = refused(f"{line} --set {name}={value} --error measured")
         assert f"the measured intervals are of the machine with {name} " in said
         assert "or state errors of your own, as frequency=5%" in said
     said = refused("sweep arm.json --quiet --target 1 --duration 1 --set omega=3Hz,3.1Hz "
-                   "--robust measured --output m.zarr")  # fmt: skip
+                   "--error measured --output m.zarr")  # fmt: skip
     assert "with omega" in said
 
 
@@ -91,8 +91,8 @@ def test_files_of_other_programs_tell_the_same(push, call):
         (f"{PUSH} --units time:ms", "column time_s is in s by its name and in ms as given"),
         ("identify ms.csv flexible-beam --tip tip", "0.00319 Hz, as no arm does"),
         (
-            "plan single-link --target 1 --duration 1 --robust measured",
-            "--robust measured is for an identified machine",
+            "plan single-link --target 1 --duration 1 --error measured",
+            "--error measured is for an identified machine",
         ),
     ],
 )

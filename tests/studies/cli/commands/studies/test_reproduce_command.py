@@ -2,7 +2,6 @@
 
 import pytest
 import quietarm.studies.cli.commands.evaluate
-import quietarm.studies.cli.commands.floor
 import quietarm.studies.cli.commands.plan
 import quietarm.studies.reading.saved
 import quietarm.studies.reproduction.recompute

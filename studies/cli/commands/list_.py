@@ -1,0 +1,122 @@
+"""`quietarm list`: plants with their parameters, problems, methods with their settings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import MISSING, Field, fields
+from pathlib import Path
+from typing import Any
+
+import click
+from quietarm.metaheuristics import PRESETS
+from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
+from quietarm.models import Plant, known_plants
+from quietarm.ocp.checks import unknown
+from quietarm.studies.cli.ending import Together, finish
+from quietarm.studies.cli.files import FOLDER, output_option
+from quietarm.studies.cli.options import command, plant_file
+from quietarm.studies.display.saving import inside
+from quietarm.studies.display.words import counted, error_words
+from quietarm.studies.registry.methods import METHODS
+
+Row = tuple[str, str]
+KINDS = ("plants", "problems", "methods")
+
+
+@command()
+@click.argument("names", nargs=-1, metavar="[plants|problems|methods|NAME]...")
+@output_option({FOLDER: "the reference fronts of the problems"})
+def list_(names: Sequence[str], output: Sequence[Path]) -> None:
+    """List plants, problems and methods; or one of them by its name.
+
+    A plant comes with the value, unit, meaning and source of its parameters, a problem with its
+    move and box, a method with its settings.
+
+    \b
+    Examples:
+      quietarm list
+      quietarm list single-link
+      quietarm list plants --plant-file crane.py
+      quietarm list single-link-30deg-0.8s --output fronts
+      quietarm list nsga2
+    """  # noqa: D301  # \b is click's: do not rewrap
+    own = plant_file()
+    plants = known_plants() if own is None else own
+    known = [*KINDS, *plants, *PROBLEMS, *METHODS]
+    for name in names:
+        if name not in known:
+            raise ValueError(unknown("name", name, known))
+    shown = [part for name in names or KINDS for part in _rows(name, plants)]
+    problems = [PROBLEMS[name] for name in names if name in PROBLEMS]
+    if not names or "problems" in names:
+        problems = list(PROBLEMS.values())
+    together = None
+    if output:
+        writes = {
+            f"{name}.json": front.save
+            for problem in problems
+            for name, front in zip(problem.tasks(), problem.fronts(), strict=True)
+        }
+        if not writes:
+            raise ValueError("--output is for the reference fronts of problems; name one")
+        (folder,) = output
+        what = counted(len(writes), "front").partition(" ")[2]
+        together = Together(what, folder, inside(folder, writes))
+    finish([], *shown, together=together)
+
+
+def _rows(name: str, plants: Mapping[str, type[Plant]]) -> list[list[Row] | str]:
+    """A title, then names with what they are."""
+    if name == "plants":
+        rows = [(one, _first_line(kind)) for one, kind in plants.items()]
+        return [*_titled("plants, with `quietarm list NAME` for the parameters", rows)]
+    if name == "problems":
+        rows = [(one, _problem(problem)) for one, problem in PROBLEMS.items()]
+        return [*_titled("problems, each with a reference front", rows)]
+    if name == "methods":
+        rows = [(one, method.label) for one, method in METHODS.items()]
+        return [*_titled("methods, with `quietarm list NAME` for the settings", rows)]
+    if name in plants:
+        rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
+        return [*_titled(f"{name}: --set NAME=VALUE, in SI or as 2Hz, 600mm, 200g", rows)]
+    if name in PROBLEMS:
+        return [[(name, _problem(PROBLEMS[name]))]]
+    if name not in PRESETS:
+        return [[(name, f"{METHODS[name].label}, by quietarm front")]]
+    preset = PRESETS[name]
+    settings = [
+        (one.name, f"{'-' if one.default is None else one.default}: {one.meaning}")
+        for one in preset.settings
+    ]
+    size = ("population, generations", f"{preset.population}, {preset.generations}")
+    return [*_titled(f"{name}: {preset.label}, {preset.source}", [size, *settings])]
+
+
+def _titled(title: str, rows: list[Row]) -> list[list[Row] | str]:
+    return [f"{title}:", [(f"  {name}", words) for name, words in rows]]
+
+
+def _first_line(kind: type) -> str:
+    return (kind.__doc__ or "").partition("\n")[0]
+
+
+def _parameter(entry: Field[Any]) -> str:
+    """A parameter's value, meaning and source."""
+    of = entry.metadata
+    value = "no default" if entry.default is MISSING else f"{entry.default:.5g}"
+    unit = "" if of.get("unit", "-") == "-" else f" {of['unit']}"
+    meaning = f": {of['meaning']}" if of.get("meaning") else ""
+    source = f"  ({of['source']})" if of.get("source") else ""
+    return f"{value}{unit}{meaning}{source}"
+
+
+def _problem(problem: NamedProblem) -> str:
+    """The box of a problem, and what it has beyond two objectives."""
+    errors = error_words(problem.task)
+    limits = ", ".join(map(str, problem.task.limits))
+    return ", ".join([
+        f"{problem.profile.size} coefficients from {-problem.bound:g} to {problem.bound:g}",
+        *([f"limits {limits}"] if limits else []),
+        *([f"third objective peak {problem.peak}"] if problem.peak else []),
+        *([f"the largest residual with {errors}"] if errors else []),
+    ])  # fmt: skip

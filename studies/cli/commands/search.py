@@ -1,0 +1,126 @@
+"""`quietarm search`: the trade-off of residual and energy by a metaheuristic."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+from quietarm.metaheuristics.algorithms.presets import PAPER_BOX
+from quietarm.metaheuristics.ensemble import LostSeedsError, search_many, seeds_of
+from quietarm.ocp import Front, QuietarmError, SolverFailedError
+from quietarm.studies import figures
+from quietarm.studies.cli.ending import finish
+from quietarm.studies.cli.files import PICTURE, ending_of, files_of, output_option
+from quietarm.studies.cli.options import (
+    bound_option,
+    command,
+    profile_options,
+    quiet,
+    seed_option,
+    settings_given,
+    settings_option,
+    warn_of_workers,
+    workers_option,
+)
+from quietarm.studies.cli.task import TypedMove, task_options
+from quietarm.studies.cli.types import WHOLE, Named
+from quietarm.studies.display.saving import STDOUT, File, drawing
+from quietarm.studies.display.search_progress import search_display
+from quietarm.studies.registry.methods import NSGA2, Kind, methods_of
+from quietarm.studies.registry.profiles import profile_of
+from quietarm.studies.report.fronts import search_lines
+from rich.console import Console
+
+_SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
+_GRADIENT = {
+    method.name: f"{method.name} is by the gradient; give quietarm front --method {method.name}"
+    for method in methods_of(Kind.GRADIENT)
+}
+
+
+@command()
+@task_options
+@click.option(
+    "--method", type=Named("metaheuristic", _SEARCHES, _GRADIENT), default=NSGA2.name,
+    show_default=True, help="The metaheuristic; quietarm list methods has them.",
+)  # fmt: skip
+@profile_options()
+@bound_option
+@click.option("--population", type=WHOLE, help="Individuals, or particles in a swarm.")
+@click.option("--generations", type=WHOLE, help="Generations.")
+@settings_option("another setting of the method, as crossover=0.7")
+@seed_option
+@click.option(
+    "--runs", type=WHOLE, default=1, show_default=True,
+    help="Seeds, from --seed on; each has a file: front.json becomes front-seed0.json, ...",
+)  # fmt: skip
+@workers_option
+@output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"})
+def search(
+    move: TypedMove,
+    method: str,
+    profile: str,
+    terms: int | None,
+    setting: Sequence[tuple[str, str]],
+    runs: int,
+    output: Sequence[Path],
+    **settings: Any,
+) -> None:
+    """Find the trade-off of residual and energy with a metaheuristic, without derivatives.
+
+    \b
+    Examples; NSGA-II and VEPSO have the paper's settings:
+      quietarm search arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 \\
+          --output front.json --output front.png
+      quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \\
+          --runs 5 --workers 2 --output front.json --output fronts.png
+      quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
+          --population 100 --generations 200 --setting crossover=0.7
+    """  # noqa: D301  # \b is click's: do not rewrap
+    several = len(seeds_of(settings["seed"], runs)) > 1
+    if several and STDOUT in output:
+        raise ValueError("--output - is for one run; with --runs give the name of a file")
+    task, errors = move.task(), Console(stderr=True)
+    settings["profile"] = profile_of(profile, task, terms)
+    settings["settings"] = settings_given(setting)
+    if settings["bound"] is None and settings["profile"].default_bound is None:
+        papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
+        raise click.UsageError(
+            f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
+        )
+    warn_of_workers(errors, settings["workers"], runs)
+    lost: LostSeedsError | None = None
+    with search_display(errors, quiet=quiet()) as display:
+        try:
+            fronts = search_many(
+                task, method, runs, report=display, done=display.finish, **settings
+            )
+        except LostSeedsError as error:
+            fronts, lost = error.fronts, error
+    fronts = [front for front in fronts if front.complete]
+    if not any(front.points for front in fronts):
+        if lost or not fronts:
+            raise lost or KeyboardInterrupt
+        raise SolverFailedError(f"{method}: {fronts[0].why_empty()}")
+    trouble = lost
+    if len(fronts) < runs and not lost:
+        trouble = QuietarmError(f"interrupted: {len(fronts)} of {runs} seeds are done and kept")
+    finish(_files(output, fronts, several), search_lines(fronts), trouble=trouble)
+
+
+def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> list[File]:
+    """Every front as JSON and CSV, of several seeds with the seed in the name; one picture."""
+    pictures = [path for path in output if ending_of(path) == PICTURE]
+    files = [
+        (path.with_stem(f"{path.stem}-seed{front.seed}") if several else path, write)
+        for front in fronts
+        for path, write in files_of(
+            [path for path in output if path not in pictures],
+            {".json": front.save, ".csv": front.save_csv},
+        )
+        if path is not None
+    ]
+    draw = drawing(lambda: figures.front_figure(fronts))
+    return [*files, *((path, draw) for path in pictures)]

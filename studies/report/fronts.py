@@ -1,0 +1,157 @@
+"""Fronts in lines: how each was found, its ends and knee, what is missing, the spread of seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+
+import numpy as np
+from quietarm.metaheuristics.ensemble import (
+    SEARCH_RESIDUAL,
+    Spread,
+    energies_at,
+    energy_at,
+    hypervolumes,
+)
+from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT
+from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.robustness.perturbed import worst_of
+from quietarm.studies.display.words import counted, energy_words, millimetres, residual_words
+from quietarm.studies.report.moves import worst_in_words
+
+_ROWS = 10
+"""Points that the list of gains shows."""
+
+
+def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> str:
+    """A front by the gradient, of which so many points were asked for."""
+    levels = {level: energy_at(front, level) for level in LEVELS}
+    return "\n".join([
+        *energy_words(front.task),
+        f"{front.method}: {counted(len(front.points), 'point')}, "
+        f"{counted(front.iterations, 'iteration')} of the solver in {front.seconds:.1f} s",
+        *_chosen_points(front),
+        *(
+            f"  {f'within {millimetres(level)}':15}"
+            f"{f'{energy:.4g} J' if isfinite(energy) else 'none'}"
+            for level, energy in levels.items()
+        ),
+        *(
+            [f"residuals are the largest of {len(front.task.scenarios)} scenarios; between them "
+             "more may remain, as quietarm plan says"]
+            if front.task.uncertainty else []
+        ),
+        *([] if check is None else [_check_line(check)]),
+        *failure_lines(front, asked_for),
+        *(
+            f"no weight reaches residuals from {residual_words(begin)} to {millimetres(end)}: the "
+            "front is not convex there"
+            for begin, end in front.gaps
+        ),
+    ])  # fmt: skip
+
+
+def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
+    """Fronts of searches or tables, and the spread over several seeds."""
+    lines = energy_words(fronts[0].task)
+    for front in fronts:
+        seed = "" if front.seed is None else f", seed {front.seed}"
+        lines += [
+            f"{front.method}{seed}: {counted(len(front.points), 'point')}, "
+            f"{counted(front.evaluations, 'candidate')} in {front.seconds:.1f} s, "
+            f"{front.failed} failed{'' if front.complete else ' (interrupted)'}",
+            *_chosen_points(front),
+        ]
+    complete = [front for front in fronts if front.complete]
+    if len(complete) > 1:
+        energies, level = energies_at(complete), millimetres(SEARCH_RESIDUAL)
+        corner = complete[0].reference
+        lines += [
+            f"hypervolume: {_quartiles(hypervolumes(complete), '.4f')} of the box up to "
+            f"{millimetres(corner[0])} and {corner[1]:.3g} J",
+            f"energy at {level}: {_quartiles(energies, '.4g', ' J')}; "
+            f"{energies.count} of {energies.seeds} seeds reach {level}",
+        ]
+    return "\n".join([*lines, *notes])
+
+
+def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
+    """What the points of a front gained by the gradient."""
+    shares = np.array([gain.share for gain in gains])
+    dominated = len(given.points) - len(polished.points)
+    shown = np.linspace(0, len(gains) - 1, min(_ROWS, len(gains))).round().astype(int)
+    return "\n".join([
+        f"{polished.method}: {counted(len(given.points), 'point')}, "
+        f"{polished.iterations - given.iterations} iterations of the solver in "
+        f"{polished.seconds - given.seconds:.1f} s",
+        f"{'residual':>12}{'before':>12}{'after':>12}{'saved':>9}",
+        *(
+            f"{millimetres(one.residual):>12}{f'{one.before:.4g} J':>12}{f'{one.after:.4g} J':>12}"
+            f"{f'{one.share:.2%}':>9}"
+            for one in (gains[i] for i in shown)
+        ),
+        f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}",
+        *([f"{counted(dominated, 'point')} left out, dominated by another now"] * (dominated > 0)),
+        *failure_lines(polished, len(given.points)),
+    ])  # fmt: skip
+
+
+def failure_lines(front: Front, asked_for: int) -> list[str]:
+    """How many of the points asked for failed, and why; none where none did."""
+    if not front.failures:
+        return []
+    reasons: dict[str, list[str]] = {}
+    for failure in front.failures:
+        reasons.setdefault(failure.reason, []).append(_asked(failure))
+    return [
+        f"{len(front.failures)} of {asked_for} points could not be found:",
+        *(f"  {', '.join(asked)}: {reason}" for reason, asked in reasons.items()),
+    ]
+
+
+def _chosen_points(front: Front) -> list[str]:
+    """The ends and the knee, a line each; of two points none is a knee."""
+    if not front.points:
+        return []
+    chosen = {"least residual": front.stillest(), "knee": front.knee(),
+              "least energy": front.cheapest()}  # fmt: skip
+    if len(front.points) < 3:
+        del chosen["knee"]
+    return [f"  {name:15}{_point_in_words(front, point)}" for name, point in chosen.items()]
+
+
+def _point_in_words(front: Front, point: FrontPoint) -> str:
+    """Energy and residual; of an uncertain plant also the worst case."""
+    words = f"{point.energy:.4g} J at {residual_words(point.residual)}"
+    worst = worst_of(front.task, front.profile, point.coefficients)
+    return words if worst is None else f"{words}; worst case {worst_in_words(worst)}"
+
+
+def _check_line(check: CrossCheck) -> str:
+    """By how much the other solver's energies differ."""
+    found = [point.difference for point in check.points if isfinite(point.other)]
+    missing = len(check.points) - len(found)
+    shares = found or [float("nan")]
+    solver = {"sqp": "sequential quadratic programs", "ipopt": "IPOPT"}[check.solver]
+    return (
+        f"checked by {solver}, {counted(len(check.points), 'point')} from the plain cycloid: its "
+        f"energies differ by {min(shares):+.1g} to {max(shares):+.1g} of their size"
+        + f"; it found no motion for {missing}"
+        * (missing > 0)
+    )
+
+
+def _asked(failure: FailedPoint) -> str:
+    if RESIDUAL_LIMIT in failure.asked:
+        return f"residual <= {millimetres(failure.asked[RESIDUAL_LIMIT])}"
+    return ":".join(f"{weight:.3g}" for weight in failure.asked.values()) + " (residual:energy)"
+
+
+def _quartiles(spread: Spread, form: str, unit: str = "") -> str:
+    if not spread.count:
+        return "none"
+    if not isfinite(spread.median):
+        return "median not reached"
+    upper = f"{spread.upper:{form}}{unit}" if isfinite(spread.upper) else "not reached"
+    return f"median {spread.median:{form}}{unit}, quartiles {spread.lower:{form}} to {upper}"

@@ -1,0 +1,213 @@
+"""A plan, a floor or a recorded path in rows of a name and a value."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from quietarm.ocp import CycloidPolynomial, Floor, Motion, Plan, PointToPoint, ShapedCycloid, Worst
+from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.plan_move import EXCESS
+from quietarm.ocp.record import AGREEMENT
+from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
+
+if TYPE_CHECKING:
+    from quietarm.studies.reading.path import RecordedPath
+
+Row = tuple[str, str]
+HARD_REMEDY = "give what the drive can do, as --acceleration-limit or --torque-limit"
+_HARD = 5
+"""Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
+_FAR = 0.1
+"""A limit that a motion does not come to this share of does not act, and silences no warning."""
+_SEEN, _ROUNDING = 1e-6, 1e-12
+"""A joint turns back where it does so by more [rad]; smaller angles are rounding errors."""
+
+
+def plan_rows(plan: Plan) -> list[Row]:
+    """A plan's coefficients, figures and verification."""
+    back, settings = plan.turns_back, plan.provenance.settings
+    return [
+        *_move_rows(plan.task, plan.motion, settings.residual_limit if settings else 0.0),
+        _choice(plan),
+        *_figure_rows(plan.task, plan.motion),
+        *([("turns back", f"by {back:.3g} rad on the way")] if back > _SEEN else []),
+        *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
+        ("status", plan.status.text),
+        _verified_row(plan),
+        ("time", f"{plan.provenance.seconds:.2f} s"),
+    ]
+
+
+def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
+    """The motion without a profile that takes least energy, beside a plan of the same move."""
+    motion, check = floor.motion, floor.verification
+    beside = "none within these limits"
+    if plan is not None:
+        beside = f"{plan.energy:.6g} J, {plan.energy / floor.energy:.3g} times as much"
+    worst, missing = (
+        max(floor.starts) / min(floor.starts) - 1,
+        floor.provenance.settings.starts - len(floor.starts),
+    )
+    starts = [
+        f"{floor.agreeing()} of {len(floor.starts)} end within 0.5 % of the best",
+        *([f"the worst is {worst:.1%} above it"] if worst > 0.005 else []),
+        *([f"{missing} failed"] if missing > 0 else []),
+    ]
+    unsettled = "" if floor.settled else " On a finer grid it failed."
+    return [
+        *_move_rows(floor.task, motion),
+        ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
+        *_figure_rows(floor.task, motion),
+        ("finer grids", f"would save about {floor.left:.2g} J ({floor.left / floor.energy:.2%})"),
+        ("intervals", ", ".join(f"{one.steps}: {one.energy:.6g} J" for one in floor.levels)),
+        ("starts", ", ".join(starts)),
+        (f"{_size(plan)} terms", beside),
+        ("status", floor.status.text + unsettled),
+        (
+            "verified",
+            f"by CVODES, restarted at every jump: {check.steps} intervals differ by "
+            f"{abs(check.energy_difference) / motion.energy:.0e} in energy",
+        ),
+        ("time", f"{floor.provenance.seconds:.2f} s"),
+    ]
+
+
+def _size(plan: Plan | None) -> int:
+    return CycloidPolynomial().terms if plan is None else plan.profile.size
+
+
+def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
+    """A recorded path's figures by CVODES; of an uncertain plant also at the corners."""
+    free = path.motion
+    candidate = Candidate.of_free_motion(task.certain, free)
+    ends = (f"{1e3 * gap:.3g}" for gap in (free.lengths.min(), free.lengths.max()))
+    jump = np.abs(np.diff(free.acceleration)).max(initial=0.0)
+    rows = [
+        *_move_rows(task, candidate.motion),
+        ("path", f"{free.steps + 1} points, {' to '.join(dict.fromkeys(ends))} ms apart"),
+        ("smoothness", f"acceleration changes by up to {jump:.3g} rad/s^2 from point to point"),
+        *_figure_rows(task, candidate.motion),
+    ]
+    for scenario in task.scenarios[1:]:
+        errors = dict(zip(task.error_names, scenario, strict=True))
+        residual = candidate.perturbed(errors).residual
+        rows.append(("residual", f"{millimetres(residual)} with {_signed(errors)}"))
+    return [*rows, ("verified", "by CVODES alone, along the spline")]
+
+
+def sensitivity_rows(plan: Plan) -> list[Row]:
+    """What a parameter that is 1 % larger adds to residual and energy."""
+    return [
+        (one.parameter, f"{10 * one.residual:.3g} mm, {one.energy / plan.energy:+.3g} %")
+        for one in plan.sensitivities
+    ]
+
+
+def worst_in_words(worst: Worst) -> str:
+    """The residual of the worst case, and the parameter errors that it comes with."""
+    return f"{millimetres(worst.residual)} with {_signed(worst.errors)}"
+
+
+def _signed(errors: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} {100 * error:+.3g} %" for name, error in errors.items())
+
+
+def _worst_of_plan(plan: Plan, worst: Worst) -> str:
+    """The worst case of a robust plan, and how far it is from the residual limit."""
+    words = worst_in_words(worst)
+    if plan.excess is None:
+        return words
+    share = f"{100 * abs(plan.excess):.1f} %"
+    side = "above" if plan.excess > 0 else "below"
+    words += ", at the limit" if share == "0.0 %" else f", {share} {side} the limit"
+    if plan.excess > EXCESS:
+        words += (
+            f"; not robust enough: more than {EXCESS:.0%} above; give a larger --residual-limit, "
+            "more --terms or a smaller --error"
+        )
+    return words
+
+
+def _verified_row(plan: Plan) -> Row:
+    """How far the two integrators agree; the word `verified` only where that is near enough."""
+    check = plan.verification
+    differ = f"{check.energy_share:.0e} in energy and {millimetres(abs(check.residual_difference))}"
+    if check.agrees:
+        return "verified", f"by CVODES, which differs by {differ}"
+    remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
+    return "not verified", (
+        f"the figures are by CVODES; {check.steps} fixed steps differ by {differ} in residual, "
+        f"where {AGREEMENT:g} of each is agreement; give {remedy}"
+    )
+
+
+def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
+    """The move and its limits, and which of them the motion breaks."""
+    limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
+    for limit in task.limits:
+        peak = limit.peak_of(motion)
+        broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
+        limits.append(f"{limit}{broken}")
+    return [
+        ("move", f"{moved(task)}, {move_of(task)}"),
+        *([("at the start", state_words(task.initial))] if task.initial else []),
+        *([("on arrival", state_words(task.final))] if task.final else []),
+        *([("limits", ", ".join(limits))] if limits else []),
+    ]
+
+
+def _figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
+    """A motion's energy, residual, peaks and overshoot."""
+    residual = millimetres(motion.residual)
+    if motion.residual < REST:  # nobody sees a difference
+        where = "as wanted" if task.final else "at rest"
+        residual = f"{where} (below {millimetres(REST)})"
+    known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
+    return [
+        ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
+        ("residual (F1)", f"{residual} at the {_tip(task)} within {task.residual_window:g} s"),
+        *((f"peak {name}", _peak(name, task, motion)) for name in known),
+        ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot > _ROUNDING else "none"),
+    ]
+
+
+def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
+    """A peak, with a warning where the drive or the plant's equations may not follow."""
+    peak, unit = motion.peak(name), QUANTITIES[name].unit
+    if unit == "m":
+        small = task.plant.small_deflection
+        if small is None or max(motion.peak_deflection, motion.residual) <= small:
+            return millimetres(peak)
+        return (
+            f"{millimetres(peak)}  (warning: beyond {millimetres(small)}, up to which the plant's "
+            "deflections count as small; its equations are less exact there)"
+        )
+    words = f"{peak:.4g} {unit}"
+    cycloid = 2 * math.pi * abs(task.span) / task.duration**2  # of eq (1) with U = t / TE
+    near = any(one.peak_of(motion) > _FAR * one.size for one in task.limits)
+    if name == "acceleration" and not near and peak > _HARD * cycloid:
+        words += f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {HARD_REMEDY})"
+    return words
+
+
+def _choice(plan: Plan) -> Row:
+    """What makes the motion differ from others of its task, and its name."""
+    if isinstance(plan.profile, ShapedCycloid):
+        impulses = len(plan.profile.impulses.times)
+        shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
+        return "profile", f"{plan.profile.label}: {shaper}"
+    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    if not isinstance(plan.profile, CycloidPolynomial):
+        return "profile", f"{plan.profile.label}: {coefficients}"
+    return "coefficients", coefficients or "none: the plain cycloid"
+
+
+def _tip(task: PointToPoint) -> str:
+    tips, scenarios = task.plant.tips, len(task.scenarios)
+    words = "tip" if tips == 1 else f"worst of {tips} tips"
+    return words if scenarios == 1 else f"{words}, worst of {scenarios} scenarios"

@@ -1,0 +1,144 @@
+"""`quietarm front`: fronts by the gradient, and fronts of others polished."""
+
+import csv
+import json
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import (
+    CycloidPolynomial,
+    Front,
+    PointToPoint,
+    epsilon_front,
+    polish_front,
+    weighted_front,
+)
+from quietarm.ocp.front.points import LEVELS
+
+MOVE = "arm-on-flexible-link --target 90deg --duration 0.8 --terms 3"
+TASK, PROFILE = PointToPoint(ArmOnFlexibleLink(), np.pi / 2, 0.8), CycloidPolynomial(3)
+
+
+def test_an_epsilon_front_is_shown_and_written(call):
+    code, out, err = call(
+        f"front {MOVE} --points 6 --starts 2 --seed 3 --bound 0.5 --output f.json --output f.svg"
+    )
+    found = Front.load("f.json")
+    assert code == 0
+    again = epsilon_front(TASK, PROFILE, bound=0.5, points=6, at=LEVELS, starts=2, seed=3)
+    assert found == again
+    assert "<svg" in Path("f.svg").read_text()
+    lines = out.splitlines()
+    assert lines[0].startswith(f"epsilon: 9 points, {found.iterations} iterations of the solver ")
+    assert lines[1].endswith(f"{found.stillest().energy:.4g} J at rest")
+    assert lines[5].split() == ["within", "1", "mm", f"{found.cheapest(1e-3).energy:.4g}", "J"]
+    assert lines[7:] == ["wrote f.json", "wrote f.svg"]
+    assert err.splitlines()[-1] == "9 of 9 points"  # 0.1, 1 and 5 mm as well
+
+
+def test_a_weighted_front_takes_the_weights_that_are_typed(call):
+    line = f"front {MOVE} --method weighted --weights 1:1 --weights 1:3 --quiet --output f.json"
+    code, out, err = call(line)
+    assert (code, err) == (0, "")
+    assert Front.load("f.json") == weighted_front(TASK, PROFILE, weights=[(1, 1), (1, 3)])
+    assert out.startswith("weighted: 4 points, ")  # the ends and one for each weight
+
+
+def test_the_other_solver_checks_the_front(call):
+    code, out, err = call(f"front {MOVE} --points 4 --bound 0.5 --check --quiet --output f.json")
+    assert (code, err) == (0, "")
+    assert Front.load("f.json").settings["solver"] == "sqp"
+    (shares,) = re.findall(
+        r"^checked by IPOPT, 7 points .* differ by (\S+) to (\S+) of their size$", out, re.MULTILINE
+    )
+    low, high = map(float, shares)
+    assert -1e-6 <= low <= high <= 1e-6
+
+
+def test_ctrl_c_ends_a_front_and_writes_nothing(folder, at_a_terminal, ctrl_c):
+    # far more points than are found before the signal comes
+    line = f"front {MOVE} --points 10000 --output f.json --output f.png"
+    process = at_a_terminal(line)
+    found = 0
+    while found < 2:  # the ends of the front
+        found, *_ = map(int, re.findall(r"\d+", process.stderr.readline()))
+    out, err = ctrl_c(process)
+    assert (process.returncode, out) == (1, "")
+    assert err.splitlines()[-1] == "quietarm: interrupted; what was written until then is kept"
+    assert not list(folder.glob("f.*"))
+
+
+# --polish
+
+
+@pytest.fixture(scope="module")
+def rough():
+    """Points of the front of two terms, used with four: a front that can be improved."""
+    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, torque_limit=1.0)
+    found = epsilon_front(task, CycloidPolynomial(2), bound=0.5, points=8, starts=1)
+    points = tuple(replace(p, coefficients=(*p.coefficients, 0.0, 0.0)) for p in found.points)
+    return replace(found, profile=CycloidPolynomial(4), points=points, method="nsga2")
+
+
+def test_a_front_is_polished_shown_and_written(call, rough):
+    rough.save("rough.json")
+    expected = polish_front(rough)
+    files = "--output p.json --output p.csv --output p.svg"
+    code, out, err = call(f"front --polish rough.json {files}")
+    assert code == 0
+    assert Front.load("p.json") == expected.front
+    assert err.splitlines()[-1] == "8 of 8 points"
+    assert out.startswith("nsga2, polished: 8 points, ")
+    shares = np.array([gain.share for gain in expected.gains])
+    assert f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}" in out
+    assert shares.max() > 1e-3
+    with open("p.csv") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["energy_J"]) for row in rows] == [p.energy for p in expected.front.points]
+    assert "<svg" in Path("p.svg").read_text()
+
+
+# A file states figures, which are computed again before they count
+
+
+def one_doubled(document):
+    document["points"][1]["energy"] /= 1.01
+
+
+def enormous(document):
+    document["settings"]["bound"] = None
+    for point in document["points"]:
+        point["coefficients"] = [1e308] * 4
+
+
+def beyond_the_bound(document):
+    document["settings"]["bound"] = 0.01
+
+
+def beyond_a_limit(document):
+    document["task"]["torque_limit"] = 0.05
+
+
+WRONG = {
+    one_doubled: "point 2 of 8 states energy 0.",
+    enormous: "its coefficients give no finite figure",
+    beyond_the_bound: "beyond the stated bound of 0.01",
+    beyond_a_limit: "breaks the torque limit of 0.05 N m",
+}
+
+
+@pytest.mark.parametrize("line", ["front --polish f.json", "compare good.json f.json"])
+@pytest.mark.parametrize(("change", "words"), WRONG.items())
+def test_a_front_with_wrong_figures_is_refused(refused, rough, line, change, words):
+    rough.save("good.json")
+    rough.save("f.json")
+    document = json.loads(Path("f.json").read_text())
+    change(document)
+    Path("f.json").write_text(json.dumps(document))
+    said = refused(line)
+    assert words in said

@@ -1,0 +1,95 @@
+"""`quietarm search`: whole runs of a small size."""
+
+import math
+import os
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lines import MOVE, run
+from quietarm.metaheuristics import search
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint
+
+TERMS = "--bound 0.2 --terms 2 --population 8 --generations 4"
+SMALL = f"search {MOVE} {TERMS} --method vepso"
+TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
+
+
+def directly(method="vepso", seed=0, **settings):
+    """What `SMALL` is to find."""
+    given = {"bound": 0.2, "population": 8, "generations": 4, **settings}
+    return search(TASK, method, profile=CycloidPolynomial(2), seed=seed, **given)
+
+
+def test_one_search_is_shown_and_written(call):
+    code, out, err = call(f"{SMALL} --seed 3 --output f.json --output f.csv --output f.svg")
+    front = directly(seed=3)
+    assert code == 0
+    assert Front.load("f.json") == front
+    assert "<svg" in Path("f.svg").read_text()
+    lines = out.splitlines()
+    assert lines[0].startswith(f"vepso, seed 3: {len(front.points)} points, 64 candidates in ")
+    chosen = (front.stillest(), front.knee(), front.cheapest())
+    for line, point in zip(lines[1:4], chosen, strict=True):
+        assert line.endswith(f"{point.energy:.4g} J at {point.residual * 1e3:.3g} mm")
+    assert lines[4:] == ["wrote f.json", "wrote f.csv", "wrote f.svg"]
+    assert "generation 4/4, residual " in err
+
+
+@pytest.mark.parametrize("spelling", ["rvea", "RVEA"])
+def test_a_method_with_settings(call, spelling):
+    settings = "--setting alpha=3 --setting crossover=0.5"
+    code, out, err = call(
+        f"search {MOVE} {TERMS} --method {spelling} {settings} --quiet --output f.json"
+    )
+    assert (code, err) == (0, "")
+    assert out.startswith("rvea, seed 0: ")
+    wanted = directly("rvea", settings={"alpha": 3, "crossover": 0.5})
+    assert Front.load("f.json") == wanted != directly("rvea")
+
+
+def test_an_obvious_spelling_is_understood(call):
+    for spelling in ("NSGA-II", "nsga-2", "nsga_ii"):
+        code, out, _ = call(f"search {MOVE} {TERMS} --method {spelling} --quiet")
+        assert (code, out[:6]) == (0, "nsga2,")
+
+
+def test_a_search_that_finds_nothing_says_why(refused):
+    said = refused(f"{SMALL} --torque-limit 0.001 --quiet --output f.json", status=1)
+    assert "64 of 64 candidates break the limits (torque 0.001" in said
+
+
+def test_several_seeds_are_written_to_a_file_each_with_their_spread(call):
+    code, out, err = call(f"{SMALL} --seed 4 --runs 3 --output f.json --output f.png")
+    fronts = [Front.load(f"f-seed{seed}.json") for seed in (4, 5, 6)]
+    assert code == 0
+    assert fronts == [directly(seed=seed) for seed in (4, 5, 6)]
+    assert out.splitlines()[-4:] == [*(f"wrote f-seed{s}.json" for s in (4, 5, 6)), "wrote f.png"]
+    low, middle, high = np.quantile([f.history[-1].hypervolume for f in fronts], [0.25, 0.5, 0.75])
+    assert f"hypervolume: median {middle:.4f}, quartiles {low:.4f} to {high:.4f} of the box" in out
+    for seed in (4, 5, 6):
+        assert f"\nvepso, seed {seed}: " in f"\n{out}"
+        assert f"seed {seed} is done: hypervolume " in err
+    assert not Path("f.json").exists()
+
+
+def test_workers_share_the_runs(folder):
+    """The installed command: each worker starts by running its file."""
+    ran = run(f"{SMALL} --quiet --runs 2 --workers 2 --output f.json")
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert all(Front.load(f"f-seed{seed}.json").complete for seed in range(2))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_search_that_is_stopped_writes_nothing(at_a_terminal, folder, number):
+    if signal.getsignal(number) is signal.SIG_IGN:
+        pytest.skip("ignored where these tests run, as after nohup")
+    process = at_a_terminal(f"{SMALL} --generations 100000 --output f.json")
+    assert "generation " in process.stderr.readline()
+    os.killpg(process.pid, number)
+    out, err = process.communicate(timeout=240)
+    assert (process.returncode, out) == (1, "")
+    assert err.splitlines()[-1] == "quietarm: interrupted; what was written until then is kept"
+    assert list(folder.iterdir()) == []

@@ -1,0 +1,223 @@
+"""`quietarm evaluate`: coefficients, recorded paths, and tables that another program wrote."""
+
+import io
+import math
+import re
+
+import numpy as np
+import pytest
+import scipy.io
+from fixed_steps import rollout
+from lines import MOVE
+from quietarm.metaheuristics import problem_of
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint
+
+TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
+
+
+def test_coefficients_and_an_angle_below_zero_need_no_equals_sign(call):
+    line = "evaluate arm-on-flexible-link --start -pi/2 --target pi/2 --duration 1.2"
+    assert call(f"{line} --coefficients -0.1,-0.4 --output e.json")[0] == 0
+    saved = Plan.load("e.json")
+    assert saved.task.start == pytest.approx(-math.pi / 2, rel=1e-15)
+    assert saved.coefficients == (-0.1, -0.4)
+
+
+def test_a_broken_limit_is_shown_with_what_is_reached(call):
+    line = f"evaluate {MOVE} --coefficients=0 --torque-limit 0.01 --deflection-limit 100mm"
+    _, out, _ = call(f"{line} --output plan.json")
+    peak = Plan.load("plan.json").motion.peak_torque
+    shown = re.search(r"limits +(.*\S)", out).group(1)
+    assert shown == f"torque 0.01 N m (broken: {peak:.4g} N m), deflection 0.1 m"
+
+
+# A recorded path
+
+
+def changed(change):
+    """The path of a plan after a change, in a file."""
+    table = np.genfromtxt("path.csv", delimiter=",", names=True)[::5]
+    time, angle = change(1e3 * table["time_s"], np.degrees(table["angle_rad"]))
+    rows = "".join(f"{t},{a}\n" for t, a in zip(time, angle, strict=True))
+    with open("changed.csv", "w") as file:
+        file.write(f"time_ms,angle_deg\n{rows}")
+
+
+def test_the_path_of_a_plan_has_the_plans_figures(call, plan):
+    plan.save_csv("path.csv")
+    changed(lambda t, a: (t, a))
+    code, out, err = call("evaluate single-link --path changed.csv --error frequency=5%")
+    assert (code, err) == (0, "")
+    assert "0 to 30 deg in 0.8 s" in out
+    energy = float(re.search(r"energy \(F2\) +([0-9.]+) J", out)[1])
+    assert energy == pytest.approx(plan.energy, rel=1e-4)
+    assert "161 points, 5 ms apart" in out
+    assert len(re.findall(r"mm with frequency [-+]5 %", out)) == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda t, a: (t, a + 10 * (t > 400)), "the angle jumps by"),
+        (lambda t, a: (t[::-1], a), "the time does not increase from row"),
+        (lambda t, a: (t, 1000 * a), r"an angle of 5\d\d(\.\d+)? rad; is it in degrees"),
+        (lambda t, a: (t[:3], a[:3]), "has 3 rows; give 5 to 5000"),
+        (lambda t, a: (t, np.where(t == 400, np.nan, a)), "a number that is not finite"),
+    ],
+)
+def test_a_path_that_cannot_be_is_refused(call, plan, change, words):
+    plan.save_csv("path.csv")
+    changed(change)
+    code, out, err = call("evaluate single-link --path changed.csv")
+    assert (code, out) == (2, "")
+    assert re.search(words, err)
+
+
+def test_a_path_in_degrees_without_a_unit_is_asked_about(refused, folder):
+    rows = [f"{k / 10},{30 * k / 4}" for k in range(5)]
+    (folder / "path.csv").write_text("\n".join(["time_s,angle", *rows]))
+    message = refused("evaluate single-link --path path.csv")
+    assert "were degrees meant? name it angle_deg" in message
+
+
+# A table of results
+
+(REFERENCE,) = problem_of("single-link-30deg-0.8s-2-terms").fronts()
+POINTS = REFERENCE.points[3::6]
+X = np.array([point.coefficients for point in POINTS])
+CLAIMS = np.array([(point.residual, point.energy) for point in POINTS])
+
+
+def table(columns, rows, between=","):
+    lines = [between.join(columns), *(between.join(map(repr, row)) for row in rows)]
+    return "\n".join(lines) + "\n"
+
+
+def written(name, content):
+    with open(name, "wb") as file:
+        file.write(content if isinstance(content, bytes) else content.encode())
+
+
+def assert_same(front):
+    """The front is that of `X`: the file's order does not matter, nor which figures it states."""
+    assert [p.coefficients for p in front.points] == [tuple(row) for row in X.tolist()]
+    # the reference front's figures are by CVODES as well
+    assert front.residuals == pytest.approx(CLAIMS[:, 0], rel=1e-5, abs=1e-9)
+    assert front.energies == pytest.approx(CLAIMS[:, 1], rel=1e-8)
+
+
+def evaluate(call, name, more=""):
+    return call(f"evaluate {MOVE} --coefficients {name} --output f.json --quiet {more}")
+
+
+def test_a_table_with_right_figures_becomes_a_front(call):
+    rows = np.column_stack([X, CLAIMS])[::-1].tolist()
+    written("swarm.csv", table(["a_1", "a_2", "residual_m", "energy_J"], rows))
+    more = "--bound 0.2 --terms 2 --output f.csv --output f.svg"
+    code, out, err = evaluate(call, "swarm.csv", more)
+    assert (code, err) == (0, "")
+    front = Front.load("f.json")
+    assert_same(front)
+    assert (front.method, front.evaluations) == ("swarm", len(X))
+    assert dict(front.settings) == {"imported": "swarm.csv", "bound": 0.2}
+    lines = out.splitlines()
+    assert f"the file's residual is right for all {len(X)} motions" in lines
+    assert f"the file's energy is right for all {len(X)} motions" in lines
+    assert lines[-3:] == ["wrote f.json", "wrote f.csv", "wrote f.svg"]
+    assert evaluate(call, "f.csv")[0] == 0  # what it wrote is a table as well
+    assert_same(Front.load("f.json"))
+
+
+def test_wrong_figures_are_told_and_do_not_enter_the_front(call):
+    claims = CLAIMS.copy()
+    claims[1, 1] *= 1.1
+    rows = np.column_stack([claims * [1000, 1], X]).tolist()
+    written("f.csv", table(["residual", "energy", "x1", "x2"], rows, ";"))
+    code, out, err = evaluate(call, "f.csv", "--evaluations 500")
+    assert (code, err) == (0, "")
+    assert_same(Front.load("f.json"))
+    assert Front.load("f.json").evaluations == 500
+    assert f"the file's energy is wrong for 1 of {len(X)} motions" in out
+    assert f"the file's residual is wrong for {len(X)} of {len(X)} motions" in out
+    assert "is it in mm? name the column residual_mm" in out
+
+
+def matlab(**variables):
+    content = io.BytesIO()
+    scipy.io.savemat(content, variables)
+    return content.getvalue()
+
+
+def numpy_file(values, save=np.save, **arrays):
+    content = io.BytesIO()
+    save(content, *([] if values is None else [values]), **arrays)
+    return content.getvalue()
+
+
+STRUCTURED = np.array(
+    [tuple(row) for row in np.column_stack([X, CLAIMS[:, 1]])],
+    dtype=[("a_1", float), ("a_2", float), ("energy", float)],
+)
+NUMBERED = np.column_stack([np.arange(len(X)), X]).tolist()
+FILES = {
+    "no-names.txt": ("\n".join(" ".join(map(repr, row)) for row in X.tolist()), "neither"),
+    "comments.txt": ("# found\n% by\n\n" + table(["A1", "A 2", "f2"], np.column_stack(
+        [X, CLAIMS[:, 1]]).tolist(), "\t"), "energy is right"),
+    "commas.csv": (table(["a_1", "a_2"], X.tolist(), ";").replace(".", ","), "neither"),
+    "others.csv": (table(["run", "a_1", "a_2"], NUMBERED), "ignored: run"),
+    "pandas.csv": (table(["", "a_1", "a_2"], NUMBERED), "ignored: a column without a name"),
+    "pandas-numbers.csv": (table(["", "0", "1"], NUMBERED), "ignored: a column without a name"),
+    "mm.csv": (table(["a_1", "a_2", "residual_mm"], np.column_stack(
+        [X, CLAIMS[:, 0] * 1e3]).tolist()), "residual is right"),
+    "matrix.npy": (numpy_file(X), "neither"),
+    "named.npy": (numpy_file(STRUCTURED), "energy is right"),
+    "named.npz": (numpy_file(None, np.savez, X=X, F=CLAIMS), "energy is right"),
+    "found.mat": (matlab(X=X, energy=CLAIMS[:, 1:]), "energy is right"),
+    "alone.mat": (matlab(best=X, note=3.0), "ignored: note"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_tables_of_many_kinds(call, name):
+    content, words = FILES[name]
+    written(name, content)
+    code, out, err = evaluate(call, name)
+    assert (code, err) == (0, "")
+    assert_same(Front.load("f.json"))
+    assert words in out
+
+
+BAD = [
+    ("a_1,a_2\n0.1\n", "line 2 has 1 columns, the first 2"),
+    ("a_1,a_3\n0.1,0.1\n", "there is no column for coefficient 2; give all"),
+    ("time,energy\n0.1,0.1\n", "no column is a coefficient; name them a_1, a_2"),
+    ("", "it is empty; give rows of numbers"),
+    ("a_1,a_2\nnan,0.1\n", "motion 1: coefficient 1 is nan; give a finite number"),
+    ("a_1,a_2\n0.3,0.1\n", "beyond the stated bound of 0.2; correct it, or state a wider bound"),
+    ("0,0.1,0.1\n1,0.1,0.2\n", "its first column counts the rows; leave it out, in pandas by"),
+]
+
+
+@pytest.mark.parametrize(("content", "words"), BAD)
+def test_a_table_that_does_not_fit_is_refused_in_one_line(call, folder, content, words):
+    written("f.csv", content)
+    code, out, err = evaluate(call, "f.csv", "--bound 0.2")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith("quietarm: f.csv")
+    assert words in err
+    assert not (folder / "f.json").exists()
+
+
+def test_a_table_without_a_motion_that_keeps_the_limits(call):
+    written("f.csv", table(["a_1", "a_2"], X.tolist()))
+    code, out, err = evaluate(call, "f.csv", "--torque-limit 0.001")
+    assert (code, out) == (1, "")
+    (least,) = re.findall(
+        r"keeps the limits best is (\S+) N m, above 0.001 N m; widen that limit", err
+    )
+    peaks = [rollout(TASK, CycloidPolynomial(2), x).motion.peak_torque for x in X]
+    assert float(least) == pytest.approx(min(peaks), rel=1e-2)
+    written("f.csv", "1e300,1\n")
+    code, _, err = evaluate(call, "f.csv")
+    assert (code, "their figures overflow" in err) == (1, True)

@@ -1,0 +1,161 @@
+"""`quietarm plan`: what it finds, shows and writes."""
+
+import json
+import math
+import re
+from pathlib import Path
+
+import pytest
+from lines import MOVE, run
+from quietarm.ocp import (
+    CopperLoss,
+    CycloidNetwork,
+    Floor,
+    FloorSettings,
+    Plan,
+    PositivePower,
+    plan_move,
+)
+
+
+def test_a_plan_says_what_it_found_and_what_it_wrote(folder):
+    """One process, with a start that looks like an option."""
+    ran = run(
+        "plan arm-on-flexible-link --start -pi/2 --target 45deg --duration 1000ms "
+        "--torque-limit 0.4 --starts 2 --seed 3 --output plan.json --output move.csv "
+        "--output move.svg --quiet"
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert ran.stdout.splitlines()[-3:] == ["wrote plan.json", "wrote move.csv", "wrote move.svg"]
+    assert sorted(path.name for path in folder.iterdir()) == ["move.csv", "move.svg", "plan.json"]
+    found = Plan.load("plan.json")
+    settings = found.provenance.settings
+    assert (settings.starts, settings.seed, found.task.torque_limit) == (2, 3, 0.4)
+    assert "arm-on-flexible-link, -90 to 45 deg in 1 s" in ran.stdout
+    assert f"{found.energy:.6g} J" in ran.stdout
+    assert f"{found.motion.peak_torque:.4g} N m" in ran.stdout
+
+
+def test_json_goes_to_standard_output_and_words_to_standard_error(call, plan):
+    code, out, err = call(f"plan {MOVE} --terms 2 --quiet --output -")
+    assert code == 0
+    assert json.loads(out)["motion"]["energy"] == pytest.approx(plan.energy, rel=1e-9)
+    assert "energy (F2)" in err
+
+
+def test_a_limit_that_is_too_low_says_the_least_that_would_do(refused, call):
+    line = f"plan {MOVE} --terms 3 --starts 2"
+    message = refused(f"{line} --torque-limit 0.01 --output plan.json", status=1)
+    assert "torque <= 0.01 N m" in message
+    least = re.search(r"torque limit ([\d.]+) N m", message).group(1)
+    assert call(f"{line} --torque-limit {least}")[0] == 0
+
+
+def test_a_profile_with_other_coefficients(call):
+    code, out, err = call(
+        f"plan {MOVE} --profile network --terms 4 --starts 1 --quiet --output p.json"
+    )
+    assert (code, err) == (0, "")
+    found = Plan.load("p.json")
+    assert found.profile == CycloidNetwork(4)
+    assert found.profile.label in " ".join(out.split())
+
+
+def test_a_shaper_has_impulses_for_each_mode(call):
+    code, out, _ = call("plan dual-link --target pi/2 --duration 0.9 --profile ZV")
+    assert code == 0
+    assert "zv shaper for 10.64 and 12.59 rad/s: 4 impulses" in " ".join(out.split())
+
+
+def test_the_motion_without_a_parametrisation_takes_less(call):
+    line = "plan arm-on-flexible-link --target pi/2 --duration 0.8 --acceleration-limit 100 --quiet"
+    code, out, err = call(
+        f"{line} --profile free --starts 2 --seed 3 --output f.json --output f.png"
+    )
+    assert (code, err) == (0, "")
+    floor = Floor.load("f.json")
+    settings = FloorSettings(smooth=False, starts=2, seed=3, tolerance=0.005)
+    assert floor.provenance.settings == settings
+    plan = plan_move(floor.task)
+    assert plan.energy > floor.energy
+    for energy in (plan.energy, floor.energy):
+        assert f"{energy:.6g} J" in out
+    assert Path("f.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_shortest_duration_within_the_limits(call):
+    line = "plan single-link --target 30deg --terms 2 --torque-limit 0.3 --quiet"
+    code, _, err = call(f"{line} --duration fastest --output p.json")
+    assert (code, err) == (0, "")
+    found = Plan.load("p.json")
+    assert found.task.duration < 0.8
+    shorter = 0.98 * found.task.duration
+    code, _, err = call(f"{line} --duration {shorter}")
+    assert (code, "found no motion" in err) == (1, True)
+
+
+def test_a_robust_plan_keeps_its_limit_in_the_worst_case(call):
+    code, out, err = call(f"plan {MOVE} --error frequency=4% --starts 1 --output p.json --quiet")
+    assert (code, err) == (0, "")
+    found = Plan.load("p.json")
+    assert found.task.ranges == {"frequency": 0.04}
+    assert found.excess <= 0
+    error = 100 * found.worst.errors["frequency"]
+    assert f"{1e3 * found.worst.residual:.3g} mm with frequency {error:+.3g} %" in out
+
+
+def test_an_energy_that_is_not_the_papers_is_named(call):
+    line = "single-link --target 30deg --duration 0.8 --energy positive+copper:0.12 --quiet"
+    energies = {}
+    for name, words in (
+        ("free", "plan --profile free"), ("plan", "plan"), ("cycloid", "evaluate --coefficients=0")
+    ):  # fmt: skip
+        code, out, err = call(f"{words} {line} --output {name}.json")
+        assert (code, err) == (0, "")
+        assert "0 to 30 deg in 0.8 s, energy positive+copper:0.12" in " ".join(out.split())
+        energies[name] = json.loads(Path(f"{name}.json").read_text())["motion"]["energy"]
+    assert energies["free"] < energies["plan"] < energies["cycloid"]
+    assert Plan.load("plan.json").task.energy == PositivePower() + CopperLoss(0.12)
+
+
+def test_sensitivities_are_a_row_a_parameter_where_asked_for(call):
+    line = f"evaluate {MOVE} --coefficients=0.003347,-0.1697"
+    code, out, err = call(f"{line} --sensitivities")
+    assert (code, err) == (0, "")
+    assert re.search(r"^omega +[0-9.]+ mm, [-+][0-9.]+ %", out, re.MULTILINE)
+    assert "1 % larger" not in call(line)[1]
+
+
+def test_speeds_accelerations_and_states_have_units(call):
+    code, _, err = call(
+        "evaluate dual-link --target 1 --duration 0.9 --coefficients=0 --quiet --output e.json "
+        "--speed-limit 60deg --acceleration-limit 90deg/s^2 --jerk-limit 2pi "
+        "--initial 5mm,-0.01:0,40mm/s --final 0,1cm:0,0 --residual-window 500ms"
+    )
+    assert (code, err) == (0, "")
+    task = Plan.load("e.json").task
+    limits = task.speed_limit, task.acceleration_limit, task.jerk_limit
+    assert limits == pytest.approx((math.pi / 3, math.pi / 2, 2 * math.pi), rel=1e-15)
+    assert (task.initial.W, task.initial.dW) == ((0.005, -0.01), (0.0, 0.04))
+    assert (task.final.W, task.final.dW) == ((0.0, 0.01), (0.0, 0.0))
+    assert task.residual_window == 0.5
+
+
+def test_limits_of_a_drive_by_direction_and_by_speed(call):
+    line = f"evaluate {MOVE} --set zeta=1% --coefficients=0"
+    typed = (
+        "--acceleration-limit=-300deg:40 --torque-limit=-200mNm:0.3 --torque-speed 1.5Nm@0,1@190rpm"
+    )
+    assert call(f"{line} {typed} --output plan.json")[0] == 0
+    task = Plan.load("plan.json").task
+    assert task.acceleration_limit == pytest.approx((-5 * math.pi / 3, 40.0), rel=1e-12)
+    assert task.torque_limit == (-0.2, 0.3)
+    assert task.torque_speed == ((1.5, 0.0), (1.0, pytest.approx(19.8968, rel=1e-5)))
+
+
+@pytest.mark.parametrize(("limit", "warned"), [("", True), ("57", True), ("1.5", False)])
+def test_a_limit_far_off_does_not_silence_the_warning_of_high_acceleration(call, limit, warned):
+    given = f"--torque-limit {limit}" if limit else ""
+    code, out, _ = call(f"plan {MOVE} --starts 1 {given}")
+    assert code == 0
+    assert ("times the plain cycloid's" in out) is warned

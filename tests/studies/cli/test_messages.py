@@ -1,0 +1,29 @@
+"""Lines that are refused: one line on standard error, with the remedy, and nothing written."""
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+from lines import MOVE
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front, evaluate_coefficients
+
+TABLE = Path(__file__).with_name("messages.txt").read_text().splitlines()
+LINES = [line.split(" => ") for line in TABLE if not line.startswith("#")]
+
+
+@pytest.fixture(scope="module")
+def answers(task, plan):
+    """Two plans and a front, by the names of their files."""
+    arm = evaluate_coefficients(PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), [])
+    front = epsilon_front(task, CycloidPolynomial(2), bound=0.3, points=3, starts=1)
+    return {"plan": plan, "arm": arm, "front": front}
+
+
+@pytest.mark.parametrize(("line", "words"), LINES)
+def test_it_is_refused_in_one_line_with_the_remedy(refused, answers, line, words):
+    for name, answer in answers.items():
+        answer.save(f"{name}.json")
+    said = refused(line.replace("MOVE", MOVE))
+    assert re.search(".*".join(map(re.escape, words.split(" ... "))), said)
