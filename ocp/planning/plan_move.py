@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL, Limit
@@ -272,6 +273,7 @@ def plan_from_starts(
     problem = Problem(transcription, Scalarization(limits, settings.bound))
     best, solved = solve_from_starts(problem, starts, solver)
     certified = certify_one(problem, best, solver)
+    assert isinstance(certified.checked, Candidate)  # one alone is judged by CVODES
     solution, motion = certified.solution, certified.checked.motion
     plan = Plan(
         task=task,
