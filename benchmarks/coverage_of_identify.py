@@ -11,7 +11,6 @@ then stand, seen by an encoder that flickers.
 
 import argparse
 import time
-from functools import partial
 
 import numpy as np
 from scipy.signal import StateSpace, lsim
@@ -24,14 +23,19 @@ TURN = 2 * np.pi
 def decay(t, hertz, damping, amplitude=1.0, start=0.0, phase=0.0):
     """A free swing from its start on."""
     w, s = TURN * hertz, np.maximum(t - start, 0.0)
-    return (t >= start) * amplitude * np.exp(-damping * w * s) * np.cos(
-        w * np.sqrt(1 - damping**2) * s + phase
+    return (
+        (t >= start)
+        * amplitude
+        * np.exp(-damping * w * s)
+        * np.cos(w * np.sqrt(1 - damping**2) * s + phase)
     )
 
 
 def machine(rng):
     """Frequency [Hz] and damping ratio."""
-    return float(np.exp(rng.uniform(0, np.log(60)))), float(np.exp(rng.uniform(np.log(0.003), np.log(0.1))))
+    return float(np.exp(rng.uniform(0, np.log(60)))), float(
+        np.exp(rng.uniform(np.log(0.003), np.log(0.1)))
+    )
 
 
 def sampled(rng, hertz, periods):
@@ -55,7 +59,11 @@ def pushed(rng, hertz, damping, name="push", shape=decay):
     tip, begin = np.zeros(len(t)), rng.uniform(0, 2) / hertz
     for k in range(count):
         start = begin + k * lasts / hertz
-        tip = np.where(t >= start, shape(t, hertz, damping, rng.uniform(0.5, 1), start, rng.uniform(-1, 1)), tip)
+        tip = np.where(
+            t >= start,
+            shape(t, hertz, damping, rng.uniform(0.5, 1), start, rng.uniform(-1, 1)),
+            tip,
+        )
     return qa.Recording(t, tip=sensed(rng, 10 * tip), name=name)
 
 
@@ -70,13 +78,17 @@ def moved(rng, hertz, damping, name="move", late=0.0, stiffness=None, count=4096
     if stiffness is None:
         theta = goal
         ddtheta = span * TURN / duration**2 * np.sin(TURN * x) * ((x > 0) & (x < 1))
-        mode = StateSpace([[0, 1], [-(w**2), -2 * damping * w]], [[0], [-1]], np.eye(2), np.zeros((2, 1)))
+        mode = StateSpace(
+            [[0, 1], [-(w**2), -2 * damping * w]], [[0], [-1]], np.eye(2), np.zeros((2, 1))
+        )
         q = lsim(mode, ddtheta, t)[1][:, 0]
     else:
         k, c = (stiffness * w) ** 2, 2 * 0.4 * stiffness * w
         M = np.array([[1, coupling], [1, 1]])
         K, D = np.diag([k, w**2]), np.diag([c, 2 * damping * w])
-        A = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
+        A = np.block(
+            [[np.zeros((2, 2)), np.eye(2)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]]
+        )
         B = np.concatenate([[0, 0], np.linalg.solve(M, [k, 0])])[:, None]
         x = lsim(StateSpace(A, B, np.eye(4), np.zeros((4, 1))), goal, t)[1]
         theta, q = x[:, 0], x[:, 1]
@@ -99,9 +111,16 @@ def a_machine(seed):
         return [pushed(rng, hertz, damping)], hertz, damping
     spread = rng.choice([0.0, 0.003, 0.03])
     files = int(rng.integers(2, 7))
-    each = [make(rng, varied(rng, hertz, spread), damping, f"{make.__name__} {k}") for k in range(files)]
+    each = [
+        make(rng, varied(rng, hertz, spread), damping, f"{make.__name__} {k}") for k in range(files)
+    ]
     if make is pushed and spread:  # pushes of one file are swings of one machine, a file a day
-        each = [pushed(np.random.default_rng([seed, k]), varied(rng, hertz, spread), damping, f"push {k}") for k in range(files)]
+        each = [
+            pushed(
+                np.random.default_rng([seed, k]), varied(rng, hertz, spread), damping, f"push {k}"
+            )
+            for k in range(files)
+        ]
     return each, varied(rng, hertz, spread), damping
 
 
@@ -125,7 +144,9 @@ def saturates(rng, hertz, damping):
 def drifts(rng, hertz, damping):
     one = pushed(rng, hertz, damping)
     share, size = one.time / one.time[-1], np.ptp(one.tip)
-    slow = rng.choice([0, 1]) * np.sin(TURN * rng.uniform(0.5, 2) * share) + rng.uniform(-3, 3) * share
+    slow = (
+        rng.choice([0, 1]) * np.sin(TURN * rng.uniform(0.5, 2) * share) + rng.uniform(-3, 3) * share
+    )
     return qa.Recording(one.time, tip=one.tip + size * slow, name="push")
 
 
@@ -158,7 +179,15 @@ def identify(recordings):
 
 
 def warned(found):
-    return isinstance(found, str) or bool(found.warnings or found.left_out or any(p.warning for p in found.parts))
+    return isinstance(found, str) or bool(
+        found.warnings or found.left_out or any(p.warning for p in found.parts)
+    )
+
+
+def why(found):
+    if isinstance(found, str):
+        return found
+    return [*found.warnings, found.left_out, *(part.warning for part in found.parts)]
 
 
 def ends(found, name):
@@ -191,10 +220,19 @@ def intervals(runs, seed, verbose):
                 told[name] += 1
                 held[name].append(at[0] <= truth <= at[1])
                 if verbose and not held[name][-1]:
-                    print(f"  {k}: {name} {truth / (TURN if name == 'omega' else 1):.5g} not in {[x / (TURN if name == 'omega' else 1) for x in at]} {len(found.parts)} parts, {recordings[0].name}")
+                    print(
+                        f"  {k}: {name} {truth:.5g} not in {at[0]:.5g} to {at[1]:.5g}, "
+                        f"{len(found.parts)} parts, {recordings[0].name}"
+                    )
     for name, hits in held.items():
-        print(f"{name}: identifiable in {told[name]} of {runs}, the next swing's within its interval in {100 * np.mean(hits):.1f} %")
-    print(f"refused: {refused}; {np.median(seconds):.2f} s of processor time at the median, {max(seconds):.2f} s at most")
+        print(
+            f"{name}: identifiable in {told[name]} of {runs}, the next swing's within its interval "
+            f"in {100 * np.mean(hits):.1f} %"
+        )
+    print(
+        f"refused: {refused}; {np.median(seconds):.2f} s of processor time at the median, "
+        f"{max(seconds):.2f} s at most"
+    )
 
 
 def warnings(planted, clean, seed, verbose):
@@ -208,9 +246,16 @@ def warnings(planted, clean, seed, verbose):
         good[name][0] += fine
         good[name][1] += 1
         if verbose and not fine:
-            print(f"  {k} {name}: {hertz:.5g} Hz {damping:.4g}, {[x / TURN for x in ends(found, 'omega') or []]}")
-    total = [sum(x) for x in zip(*good.values())]
-    print(f"defects: {total[0]} of {total[1]} warned of or right (" + ", ".join(f"{n} {a}/{b}" for n, (a, b) in good.items()) + ")")
+            print(
+                f"  {k} {name}: {hertz:.5g} Hz {damping:.4g}, "
+                f"{[x / TURN for x in ends(found, 'omega') or []]}"
+            )
+    total = [sum(x) for x in zip(*good.values(), strict=True)]
+    print(
+        f"defects: {total[0]} of {total[1]} warned of or right ("
+        + ", ".join(f"{n} {a}/{b}" for n, (a, b) in good.items())
+        + ")"
+    )
     false = 0
     for k in range(clean):
         rng = np.random.default_rng([seed, k, 3])
@@ -219,15 +264,19 @@ def warnings(planted, clean, seed, verbose):
         found, _ = identify([one])
         false += warned(found)
         if verbose and warned(found):
-            print(f"  {k} {one.name}: {hertz:.5g} Hz {damping:.4g}: {found if isinstance(found, str) else [found.warnings, found.left_out, [(p.begin, p.end, p.warning) for p in found.parts]]}")
+            print(f"  {k} {one.name}: {hertz:.5g} Hz {damping:.4g}: {why(found)}")
     print(f"clean: {false} of {clean} warned of")
 
 
 def times():
     rng = np.random.default_rng(5)
+
     def one(rows, seconds, name="push"):
         t = np.linspace(0, seconds, rows)
-        return qa.Recording(t, tip=decay(t, 3.2, 0.01, 20) + 0.3 * rng.standard_normal(rows), name=name)
+        return qa.Recording(
+            t, tip=decay(t, 3.2, 0.01, 20) + 0.3 * rng.standard_normal(rows), name=name
+        )
+
     cases = {
         "10 s at 1 kHz": [one(10_000, 10)],
         "40,000 rows": [one(40_000, 40)],
@@ -238,7 +287,9 @@ def times():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     for name, usual in {"runs": 300, "planted": 60, "clean": 60, "seed": 0}.items():
         parser.add_argument(f"--{name}", type=int, default=usual)
     parser.add_argument("--verbose", action="store_true", help="name each that is missed")

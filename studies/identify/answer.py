@@ -42,7 +42,9 @@ class Estimate:
     @property
     def error(self) -> float:
         """The larger distance to an end of the widest interval, as a share of the value."""
-        ends = [end for end in (self.low, self.high, self.next_low, self.next_high) if end is not None]
+        ends = [
+            end for end in (self.low, self.high, self.next_low, self.next_high) if end is not None
+        ]
         return max(abs(end - self.value) for end in ends) / abs(self.value)
 
     @property

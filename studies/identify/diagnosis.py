@@ -67,14 +67,14 @@ def cause_of(
     left_words = f"{share:.1%} of the swing is left beside the noise"
     if most == "slow":
         return "drift", (
-            f"{left_words}, below the swing at {peak:.3g} Hz: the sensor drifts, the base sways, or "
-            "the hub moves; fix them, or name the joint's angle by --angle"
+            f"{left_words}, below the swing at {peak:.3g} Hz: the sensor drifts, the base sways, "
+            "or the hub moves; fix them, or name the joint's angle by --angle"
         )
     if most == "near":
         return "amplitude", (
             f"{left_words}, at the swing's own frequency: frequency or damping change with the "
-            f"amplitude, a second mode is near ({peak:.3g} Hz), or the hub gives way; name its angle "
-            "by --angle, or push as hard as your moves do"
+            f"amplitude, a second mode is near ({peak:.3g} Hz), or the hub gives way; name its "
+            "angle by --angle, or push as hard as your moves do"
         )
     ratio = peak / frequency
     if abs(ratio - round(ratio)) < 0.04 and round(ratio) in (2, 3, 5):
@@ -109,23 +109,27 @@ def _beside(power: Array) -> Array:
     return np.concatenate([[local[0]], np.maximum(local, 0.2 * high)]) + 1e-30 * power.max()
 
 
-def saturated(values: Array) -> NDArray[np.bool_]:
-    """Samples at the largest or least value of a signal, where there are many of these."""
-    flat = np.zeros(len(values), bool)
-    for column in values.T:
-        reach = 1e-9 * float(np.ptp(column))
-        for extreme in (column.max(), column.min()):
-            there = np.abs(column - extreme) <= reach
-            if np.count_nonzero(there) >= _AT_LIMIT:
-                flat |= there
-    return flat
+def limits_of(values: Array) -> tuple[Array, Array]:
+    """Least and largest value of every signal that is there many times, else none (infinity)."""
+    ends = []
+    for extreme, none in ((values.min(axis=0), -np.inf), (values.max(axis=0), np.inf)):
+        there = np.abs(values - extreme) <= 1e-9 * np.ptp(values, axis=0)
+        ends.append(np.where(there.sum(axis=0) >= _AT_LIMIT, extreme, none))
+    return ends[0], ends[1]
+
+
+def saturated(values: Array, fitted: Array | None = None) -> NDArray[np.bool_]:
+    """Samples at a signal's limits; by a fit, those where it comes near them by the noise."""
+    low, high = limits_of(values)
+    near = 0.0 if fitted is None else 2 * noise_of(values)
+    at = values if fitted is None else fitted
+    return ((at <= low + near) | (at >= high - near)).any(axis=1)
 
 
 def exceeds(values: Array, fitted: Array, flat: NDArray[np.bool_]) -> bool:
     """Whether a swing fitted to the other samples passes what the flat ones show by far."""
-    noise = noise_of(values)
     side = np.sign(values - np.median(values, axis=0))
-    beyond = ((fitted - values) * side)[flat].mean(axis=0)
+    further = ((fitted - values) * side)[flat].mean(axis=0)
     levels = np.diff(np.unique(values))
     resolution = float(levels.min()) if len(levels) else 0.0
-    return bool((beyond > np.maximum(2 * noise, 0.6 * resolution)).any())
+    return bool((further > np.maximum(2 * noise_of(values), 0.6 * resolution)).any())

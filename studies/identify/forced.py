@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,7 +68,7 @@ class ForcedModel:
         self._kept: tuple[bytes, tuple[Array, Array, Array]] | None = None
 
     def __call__(self, p: Array) -> tuple[Array, Array, Array]:
-        """Residual (rows, signals), its derivatives (parameters, ...), the joint's share by time."""
+        """Residual (rows, signals), its derivatives by parameters, and by the joint's time."""
         if self._kept is None or self._kept[0] != p.tobytes():
             self._kept = p.tobytes(), self._evaluated(p)
         return self._kept[1]
@@ -105,26 +106,25 @@ def fit_forced(model: ForcedModel, plant: Plant, names: Sequence[str]) -> Forced
     start = values_of(plant, names)
     lower, upper = bounds_of(plant, names, start)
     frequencies = [k for k, name in enumerate(names) if is_frequency(plant, name)]
-    best, scale = None, np.where(start != 0, np.abs(start), 1e-2)
-    deviation = model.values.std(axis=0) + 1e-300
-    for loss in ("linear", "huber"):
-        for factor in _FACTORS if best is None and frequencies else (1.0,):
-            p = np.array(start if best is None else best.x * scale, float)
-            p[frequencies] *= factor
-            found = least_squares(
-                lambda x: (model(x * scale)[0] / deviation).ravel(),
-                np.clip(p, lower, upper) / scale,
-                lambda x: (model(x * scale)[1] / deviation).reshape(len(x), -1).T * scale,
-                bounds=(lower / scale, upper / scale), x_scale="jac", loss=loss, f_scale=_HUBER,
-                ftol=1e-9, xtol=1e-10, max_nfev=60,
-            )  # fmt: skip
-            if best is None or loss == "huber" or found.cost < best.cost:
-                best = found
-        assert best is not None
-        left = model(best.x * scale)[0]
-        robust = 1.4826 * np.median(np.abs(left), axis=0)
-        deviation = np.clip(robust, 0.1 * left.std(axis=0), left.std(axis=0)) + 1e-300
-    p = best.x * scale
+    scale = np.where(start != 0, np.abs(start), 1e-2)
+
+    def fitted(p: Array, deviation: Array, loss: str) -> Any:
+        return least_squares(
+            lambda x: (model(x * scale)[0] / deviation).ravel(),
+            np.clip(p, lower, upper) / scale,
+            lambda x: (model(x * scale)[1] / deviation).reshape(len(x), -1).T * scale,
+            bounds=(lower / scale, upper / scale), x_scale="jac", loss=loss, f_scale=_HUBER,
+            ftol=1e-9, xtol=1e-10, max_nfev=60,
+        )  # fmt: skip
+
+    starts = [start.copy() for _ in (_FACTORS if frequencies else (1.0,))]
+    for p, factor in zip(starts, _FACTORS, strict=False):
+        p[frequencies] *= factor
+    size = model.values.std(axis=0) + 1e-300
+    p = min((fitted(p, size, "linear") for p in starts), key=lambda one: one.cost).x * scale
+    deviation = _deviation(model(p)[0])
+    p = fitted(p, deviation, "huber").x * scale
+    deviation = _deviation(model(p)[0])
     left, J, later = (entry / deviation for entry in model(p))
     flat, later = J.reshape(len(p), -1).T, later.ravel()
     power = _correlated_power(left)
@@ -142,9 +142,12 @@ def described(recording: Recording, names: Sequence[str], fit: Forced, frequency
     cause, warning = cause_of(fit.time, fit.residual, swinging, frequency, noise)
     if cause and fit.delay:
         side = "late" if fit.delay > 0 else "early"
-        cause, warning = "delay", (
-            f"{fit.misfit:.1%} of the signal is left, less if the angle were not "
-            f"{abs(fit.delay) * 1e3:.3g} ms {side}: record both by one clock"
+        cause, warning = (
+            "delay",
+            (
+                f"{fit.misfit:.1%} of the signal is left, less if the angle were not "
+                f"{abs(fit.delay) * 1e3:.3g} ms {side}: record both by one clock"
+            ),
         )
     deviations = np.sqrt(np.diag(fit.covariance))
     return Part(
@@ -154,6 +157,12 @@ def described(recording: Recording, names: Sequence[str], fit: Forced, frequency
         float(np.abs(swinging).max()), fit.misfit,
         noise, cause, warning, hub="equations",
     )  # fmt: skip
+
+
+def _deviation(left: Array) -> Array:
+    """Of every signal's residuals, robustly."""
+    robust, spread = 1.4826 * np.median(np.abs(left), axis=0), left.std(axis=0)
+    return np.clip(robust, 0.1 * spread, spread) + 1e-300
 
 
 def _correlated_power(left: Array) -> float:
@@ -178,7 +187,9 @@ def _delay(left: Array, J: Array, later: Array, power: float) -> float:
     return -delay if abs(delay) > _LATE * (power / told) ** 0.5 else 0.0
 
 
-def not_identifiable(models: Sequence[ForcedModel], names: Sequence[str], p: Array) -> dict[str, str]:
+def not_identifiable(
+    models: Sequence[ForcedModel], names: Sequence[str], p: Array
+) -> dict[str, str]:
     """The parameters that recordings cannot tell, in their order, and why."""
     J = np.concatenate([(m(p)[1] / m.values.std(axis=0)).reshape(len(p), -1).T for m in models])
     J = J * np.where(p != 0, np.abs(p), 1e-2)

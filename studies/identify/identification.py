@@ -129,18 +129,21 @@ def _swings_alone(plant: Plant, names: Sequence[str], kinds: Sequence[str]) -> b
 
 def _model(plant: Plant, names: Sequence[str], recording: Recording) -> ForcedModel:
     kinds = list(recording.signals)
-    return ForcedModel(
-        Response(plant, names, kinds), recording, _swings_alone(plant, names, kinds)
-    )
+    return ForcedModel(Response(plant, names, kinds), recording, _swings_alone(plant, names, kinds))
 
 
 def _thinned(recording: Recording, frequency: float) -> Recording:
     """A recording averaged to what a forced fit needs."""
-    given = {k: v for k, v in vars(recording).items() if isinstance(v, np.ndarray) and k != "values"}
+    given = {
+        k: v for k, v in vars(recording).items() if isinstance(v, np.ndarray) and k != "values"
+    }
     share = _SAMPLES * frequency * recording.step
     if not share or share > 0.5:
         return recording
-    mean = {k: averaged(v.reshape(len(v), -1), share).reshape(-1, *v.shape[1:]) for k, v in given.items()}
+    mean = {
+        k: averaged(v.reshape(len(v), -1), share).reshape(-1, *v.shape[1:])
+        for k, v in given.items()
+    }
     return replace(recording, **mean)
 
 
@@ -171,7 +174,7 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
 
 
 def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
-    """The frequency of every recording's swing [Hz]: of several candidates that of all, if it has it."""
+    """The frequency of every recording's swing [Hz]: that of all, where it is a candidate."""
     rests = [longest_rest(one) for one in recordings]
     tables = [{f: prominence(one, f) for f in candidates(one)} for one in rests]
     for one, table in zip(recordings, tables, strict=True):
@@ -215,13 +218,13 @@ def _doubts(recordings: Sequence[Recording], frequencies: Sequence[float]) -> li
             )
         if frequency > _FASTEST / 2:
             found.append(
-                f"{one.name}: {frequency:.4g} Hz is fast for an arm; is its time in seconds? say so "
-                "by --units time:s"
+                f"{one.name}: {frequency:.4g} Hz is fast for an arm; is its time in seconds? say "
+                "so by --units time:s"
             )
         if one.angle is not None and np.ptp(one.angle) > _TURNS:
             found.append(
-                f"{one.name}: its joint turns by {np.ptp(one.angle):.3g} rad, more than two turns; is "
-                "it in degrees? say so by --units angle:deg"
+                f"{one.name}: its joint turns by {np.ptp(one.angle):.3g} rad, more than two turns; "
+                "is it in degrees? say so by --units angle:deg"
             )
     return found
 
@@ -244,7 +247,9 @@ def _forced(
     unknown = not_identifiable([_model(plant, names, one) for one in thin], names, p)
     names = [name for name in names if name not in unknown]
     if not names:
-        raise ValueError(f"the recordings tell nothing of {', '.join(unknown)}; name others by free")
+        raise ValueError(
+            f"the recordings tell nothing of {', '.join(unknown)}; name others by free"
+        )
     fits = [fit_forced(_model(plant, names, one), plant, names) for one in thin]
     least = min(fit.misfit for fit in fits)
     if least > _BAD:

@@ -18,7 +18,9 @@ _MOST_DAMPING = 0.9
 
 def is_frequency(plant: Plant, name: str) -> bool:
     """Whether a parameter is the frequency of a mode, by its unit."""
-    return next(one.metadata.get("unit", "") for one in fields(plant) if one.name == name) == "rad/s"
+    return (
+        next(one.metadata.get("unit", "") for one in fields(plant) if one.name == name) == "rad/s"
+    )
 
 
 def is_modal(plant: Plant, name: str) -> bool:
@@ -45,4 +47,8 @@ def bounds_of(plant: Plant, names: Sequence[str], start: Array) -> tuple[Array, 
 def started_at(plant: Plant, names: Sequence[str], frequency: float) -> Plant:
     """The plant with a swing's frequency [Hz], where it has but one to be set."""
     of_modes = [name for name in names if is_frequency(plant, name)]
-    return replace(plant, **{of_modes[0]: tau * frequency}) if len(of_modes) == 1 and frequency else plant
+    return (
+        replace(plant, **{of_modes[0]: tau * frequency})
+        if len(of_modes) == 1 and frequency
+        else plant
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,7 +52,9 @@ class Envelope:
     noise: float
 
 
-def envelope(recording: Recording, frequency: float, values: Array | None = None) -> Envelope | None:
+def envelope(
+    recording: Recording, frequency: float, values: Array | None = None
+) -> Envelope | None:
     """The amplitude at a frequency over time, free of offset and slope; None where none fits in.
 
     Cosine, sine, offset and slope are fitted to three periods at a time by weighted least squares:
@@ -69,9 +72,7 @@ def envelope(recording: Recording, frequency: float, values: Array | None = None
     X = np.stack([np.cos(phase), np.sin(phase), np.ones(count), t], axis=1)
     weight = np.hanning(count + 2)[1:-1]
     kernel = np.linalg.solve(X.T @ (weight[:, None] * X), X.T * weight)[:2]
-    parts = [
-        fftconvolve(y, k[::-1, None], mode="valid", axes=0) for k in kernel
-    ]
+    parts = [fftconvolve(y, k[::-1, None], mode="valid", axes=0) for k in kernel]
     noise = float(np.linalg.norm(kernel[0]))
     size = np.sqrt(sum((part**2).sum(axis=1) for part in parts))
     return Envelope(frequency, even[: len(size)] + (count - 1) / 2 * h, size, noise)
@@ -80,7 +81,8 @@ def envelope(recording: Recording, frequency: float, values: Array | None = None
 def _evenly(recording: Recording, frequency: float, values: Array) -> tuple[Array, Array]:
     """Times with the same step, and the signals there in units of their noise."""
     time = recording.time
-    noise = np.maximum(noise_of(values), 1e-9 * np.ptp(values, axis=0)) + 1e-300
+    least = 1e-9 * np.ptp(values, axis=0) + 1e-12 * np.abs(values).max(axis=0) + 1e-300
+    noise = np.maximum(noise_of(values), least)
     thin = max(1, int(1 / (32 * frequency * recording.step)))
     rows = len(time) // thin * thin
     mean = lambda x: x[:rows].reshape(-1, thin, *x.shape[1:]).mean(axis=1)  # noqa: E731
@@ -147,7 +149,9 @@ def ring_downs(recording: Recording, frequency: float, standing: NDArray[np.bool
             continue
         for begin, end in _decays(swing, part):
             rows = recording.rows(begin, end)
-            if (end - begin) * frequency > 0.9 * LEAST_PERIODS and rows.stop - rows.start >= LEAST_ROWS:
+            if (
+                end - begin
+            ) * frequency > 0.9 * LEAST_PERIODS and rows.stop - rows.start >= LEAST_ROWS:
                 among = (swing.time >= begin) & (swing.time <= end)
                 found.append((float(swing.size[among].max(initial=0.0)), rows))
     largest = max((size for size, _ in found), default=0.0)
@@ -157,14 +161,16 @@ def ring_downs(recording: Recording, frequency: float, standing: NDArray[np.bool
 def _between_gaps(recording: Recording, frequency: float) -> list[Run]:
     edges = np.flatnonzero(np.diff(recording.time) * frequency > _GAP) + 1
     ends = [0, *edges.tolist(), len(recording.time)]
-    return list(zip(ends[:-1], ends[1:], strict=True))
+    return list(pairwise(ends))
 
 
 def _runs(between: Sequence[Run], yes: NDArray[np.bool_]) -> list[Run]:
     found: list[Run] = []
     for first, last in between:
         edges = np.flatnonzero(np.diff(np.concatenate([[0], yes[first:last].astype(int), [0]])))
-        found += [(first + int(a), first + int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+        found += [
+            (first + int(a), first + int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)
+        ]
     return found
 
 
@@ -180,7 +186,9 @@ def _decays(swing: Envelope, part: Recording) -> list[tuple[float, float]]:
             continue
         # up to the top: where it has not been surpassed for half a window
         top = k
-        reach = max(1, round(half / max(float(swing.time[-1] - swing.time[0]) / max(count - 1, 1), 1e-300)))
+        reach = max(
+            1, round(half / max(float(swing.time[-1] - swing.time[0]) / max(count - 1, 1), 1e-300))
+        )
         while True:
             ahead = top + int(np.argmax(size[top : top + reach + 1]))
             if ahead == top:

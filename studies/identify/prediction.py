@@ -82,7 +82,8 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
             ))  # fmt: skip
     if not found:
         raise ValueError(
-            f"{recordings[0].name}: no ring-down of three periods of {1 / period:.3g} Hz; record longer"
+            f"{recordings[0].name}: no ring-down of three periods of {1 / period:.3g} Hz; record "
+            "longer"
         )
     return found
 
@@ -100,5 +101,10 @@ def _shares(window: Window, B: Array, period: float) -> list[tuple[float, float]
         amplitudes, *_ = np.linalg.lstsq(B[known], y[known], rcond=None)
         left = y[ahead] - B[ahead] @ amplitudes
         swing = y[ahead] - y[ahead].mean(axis=0)
-        found.append((float(begin + _KNOWN * period), 1 - float(np.linalg.norm(left) / np.linalg.norm(swing))))
+        found.append(
+            (
+                float(begin + _KNOWN * period),
+                1 - float(np.linalg.norm(left) / np.linalg.norm(swing)),
+            )
+        )
     return found

@@ -111,7 +111,9 @@ class Recording:
 
     def part(self, rows: slice) -> Recording:
         """Some of its rows."""
-        names = [name for name in ("time", "angle", *self.signals) if getattr(self, name) is not None]
+        names = [
+            name for name in ("time", "angle", *self.signals) if getattr(self, name) is not None
+        ]
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
 

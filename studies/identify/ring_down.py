@@ -23,8 +23,8 @@ _MET = 0.05
 """Share of a whole recording that its joint's motion may leave, to be better than ring-downs."""
 _HUB = 0.03
 """Share of a swing that the hub's own swing may feed: the frequency is off by half of it."""
-_FACTORS = (0.7, 1.0, 1.4)
-"""Of a frequency, from which whole recordings are fitted."""
+_FACTORS = np.geomspace(0.5, 2, 40)
+"""Of a frequency, from the best of which whole recordings are fitted."""
 _SLOW = 0.25
 """Of the swing's frequency: slower motions are taken for drift."""
 _FAR = 4.0
@@ -83,24 +83,28 @@ class RingDowns:
         """A fit without saturated samples, with drift or hub, as a part says."""
         values, _ = self._eigenvalues(start)
         fastest, slowest = values[-1].imag / tau, values[0].imag / tau
-        if part.saturated:
-            piece, fastest = piece.part(~saturated(piece.values)), 0.0
         slow = _SLOW * slowest if part.drifts else 0.0
-        return self._fit(Window.of(piece, fastest, slow, bool(part.hub)), start)
+        if not part.saturated:
+            return self._fit(Window.of(piece, fastest, slow, bool(part.hub)), start)
+        flat = saturated(piece.values)
+        for _ in range(2):  # the second time by the fit: near the limit the noise is cut as well
+            rest = piece.part(~flat)
+            fit = self._fit(Window.of(rest, trend=slow), start)
+            flat = saturated(piece.values, fit.at(piece.time))
+        return fit
 
     def _fit(self, window: Window, start: Array) -> Swing:
         ends = bounds_of(self.plant, self.names, start)
         return fit_swing(window, self._eigenvalues, start, *ends)
 
-    def _start(self, window: Window, frequency: float) -> Array:
+    def _start(self, window: Window, frequencies: Array) -> Array:
         """The best of a grid of frequencies and dampings, whichever mode swings."""
-        span = float(np.ptp(window.time))
         grid: list[Array] = []
         for mode in self._modes:
-            for shift in np.linspace(-0.6, 0.6, 9):
+            for frequency in frequencies:
                 for damping in _DAMPINGS:
                     p = self._given.copy()
-                    p[self._rates] *= tau * max(frequency + shift / span, 0.3 * frequency) / mode.imag
+                    p[self._rates] *= tau * frequency / mode.imag
                     p[~self._rates] = damping
                     grid.append(p)
         return min(grid, key=lambda p: cost_of(window, self._eigenvalues, p))
@@ -111,7 +115,8 @@ class RingDowns:
         """A ring-down fitted alone: grown to what it meets; then what helps its model is added."""
         fastest = frequency * float(self._modes[-1].imag / self._modes[0].imag)
         window = Window.of(recording.part(rows), fastest)
-        fit = self._fit(window, self._start(window, frequency))
+        near = frequency + np.linspace(-0.6, 0.6, 9) / float(np.ptp(window.time))
+        fit = self._fit(window, self._start(window, np.maximum(near, 0.3 * frequency)))
         if not fixed:
             rows = _grown(recording, rows, fit, before, frequency)
             fit = self._fit(Window.of(recording.part(rows), fastest), fit.p)
@@ -121,8 +126,7 @@ class RingDowns:
         if flat.any() and np.count_nonzero(~flat) > max(LEAST_ROWS, 0.1 * len(flat)):
             tried = replace(part, saturated=int(np.count_nonzero(flat)))
             other = self._fit_as(tried, piece, fit.p)
-            shift = float(piece.time[~flat][0] - piece.time[0])
-            if exceeds(piece.values, other.at(piece.time - piece.time[0] - shift), flat):
+            if exceeds(piece.values, other.at(piece.time), flat):
                 part, fit = self._described(tried, piece, other), other
         if moves(piece) and "acceleration" not in recording.signals and not part.saturated:
             tried = replace(part, hub="creeps")
@@ -146,8 +150,7 @@ class RingDowns:
         if parts and not any(abs(ratio) for _, ratio in swinging):
             return parts
         window = Window.of(recording, 2 * frequency, hub=True)
-        tried = [self._fit(window, self._start(window, one * frequency)) for one in _FACTORS]
-        fit = min(tried, key=lambda one: one.misfit)
+        fit = self._fit(window, self._start(window, frequency * _FACTORS))
         gains = fit.amplitudes[2 : 3 * len(self._modes) : 3, 0]
         fed = [(part, float(np.abs(gains).max() * abs(ratio))) for part, ratio in swinging]
         if parts and max(share for _, share in fed) < _HUB:
@@ -165,14 +168,16 @@ class RingDowns:
         ]  # fmt: skip
 
     def _hub_swing(self, part: Part, recording: Recording) -> complex:
-        """What the hub swings by in a part, over what the tip does; 0 where it is the encoder's noise."""
+        """What the hub swings by in a part, over what the tip does; 0 for an encoder's noise."""
         piece = recording.part(recording.rows(part.begin, part.end))
         assert piece.angle is not None
         value = self._eigenvalues(np.array(list(part.values.values())))[0][0]
         time = piece.time - piece.time[0]
         swing = np.exp(value * time)
         X = np.stack([swing.real, swing.imag, np.ones_like(time), time], axis=1)
-        share, *_ = np.linalg.lstsq(X, np.column_stack([piece.angle, piece.values[:, 0]]), rcond=None)
+        share, *_ = np.linalg.lstsq(
+            X, np.column_stack([piece.angle, piece.values[:, 0]]), rcond=None
+        )
         hub, tip = (complex(share[0, k], -share[1, k]) for k in range(2))
         noise = float(noise_of(piece.angle)[0])
         least = max(8 * noise / len(time) ** 0.5, noise / 2)
@@ -209,8 +214,7 @@ def _grown(recording: Recording, rows: slice, fit: Swing, before: int, frequency
     """The rows with those before that the same swing meets, and without those that it does not."""
     size = max(2, round(0.25 / (frequency * recording.step)))
     earliest = max(before, rows.start - 12 * size)
-    time = recording.time[earliest : rows.stop]
-    left = recording.values[earliest : rows.stop] - fit.at(time - recording.time[rows.start])
+    left = recording.values[earliest : rows.stop] - fit.at(recording.time[earliest : rows.stop])
     count = len(left) // size
     blocks = (left[len(left) - count * size :] ** 2).sum(axis=1).reshape(count, size).mean(axis=1)
     inside = (rows.stop - rows.start) // size

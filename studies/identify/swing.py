@@ -29,7 +29,7 @@ MOST_DAMPING = 0.9
 
 
 class Eigenvalues:
-    """Eigenvalues of a plant's modes with its joint at rest, and their derivatives by parameters."""
+    """Eigenvalues of a plant with its joint at rest, and their derivatives by parameters."""
 
     def __init__(self, plant: Plant, names: Sequence[str]) -> None:
         p = ca.SX.sym("p", len(names))
@@ -55,8 +55,9 @@ class Eigenvalues:
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """A part of a recording, thinned to what its modes need; its time begins at 0."""
+    """A part of a recording, thinned to what its modes need; its time is from its begin [s]."""
 
+    begin: float
     time: Array
     values: Array
     angle: Array | None
@@ -85,7 +86,13 @@ class Window:
         table = averaged(np.hstack(columns), _PER_PERIOD * fastest * recording.step)
         time, angle = table[:, 0], table[:, -1] if len(columns) == 3 else None
         basis = steady(time, time, int(2 * trend * np.ptp(time)))
-        return cls(time, table[:, 1 : 1 + recording.values.shape[1]], angle, basis)
+        return cls(
+            float(recording.time[0]),
+            time,
+            table[:, 1 : 1 + recording.values.shape[1]],
+            angle,
+            basis,
+        )
 
     def columns(self, eigenvalues: Any, slopes: Any) -> tuple[Array, Array]:
         """What a signal is made of (rows, columns), and its derivatives (parameters, ...)."""
@@ -175,10 +182,12 @@ class Swing:
     amplitudes: Array
 
     def at(self, time: Array) -> Array:
-        """The signals at other times, without the hub's motion."""
+        """The signals at other times of the recording, without the hub's motion."""
+        time = time - self.window.begin
         swings = [np.exp(value * time) for value in self.eigenvalues]
         B = np.stack([part for one in swings for part in (one.real, one.imag)], axis=1)
-        return np.hstack([B, steady(time, self.window.time)]) @ self.amplitudes
+        cosines = self.window.trend.shape[1] - 2
+        return np.hstack([B, steady(time, self.window.time, cosines)]) @ self.amplitudes
 
     @property
     def frequency(self) -> float:
@@ -241,13 +250,18 @@ def fit_swing(
         return (J / deviation[:, None, None]).reshape(-1, len(x))
 
     for round_ in range(_ROUNDS):
-        loss = "linear" if round_ == 0 else "huber"
-        found = least_squares(residuals, x, jacobian, bounds=bounds, x_scale="jac", loss=loss,
-                              f_scale=_HUBER, xtol=1e-12, ftol=1e-10, gtol=1e-14)  # fmt: skip
+        loss, most = ("huber", 20) if round_ else ("linear", 40)
+        found = least_squares(
+            residuals, x, jacobian, bounds=bounds, x_scale="jac", loss=loss, f_scale=_HUBER,
+            xtol=1e-12, ftol=1e-9, gtol=1e-14, max_nfev=most,
+        )  # fmt: skip
         x = found.x
         left = residuals(x).reshape(-1, y.shape[1], order="F") * deviation
         spread, robust = left.std(axis=0), 1.4826 * np.median(np.abs(left), axis=0)
-        before, deviation = deviation, np.clip(robust, np.maximum(0.1 * spread, least), spread + least)
+        before, deviation = (
+            deviation,
+            np.clip(robust, np.maximum(0.1 * spread, least), spread + least),
+        )
         if round_ and np.allclose(before, deviation, rtol=0.02):
             break
     p = x[:count] * scale

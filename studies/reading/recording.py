@@ -14,7 +14,9 @@ from quietarm.studies.identify import Recording
 from quietarm.studies.reading.table import read_table
 from quietarm.studies.reading.units import UNITS, normal
 
-_FACTOR = re.compile(r"\s*([+-]?[\d.]*(?:e[+-]?\d+)?)\s*\*?\s*(pi)?\s*(?:/\s*([\d.]+(?:e[+-]?\d+)?))?\s*")
+_FACTOR = re.compile(
+    r"\s*([+-]?[\d.]*(?:e[+-]?\d+)?)\s*\*?\s*(pi)?\s*(?:/\s*([\d.]+(?:e[+-]?\d+)?))?\s*"
+)
 
 
 def units_of(text: str) -> dict[str, str]:
@@ -88,7 +90,9 @@ def read_recording(
     }  # fmt: skip
     rows = {len(values) for values in signals.values()}
     if len(rows) > 1:
-        raise FileFormatError(f"{path}: its columns have {' and '.join(map(str, sorted(rows)))} rows")
+        raise FileFormatError(
+            f"{path}: its columns have {' and '.join(map(str, sorted(rows)))} rows"
+        )
     flat = {one: signals[one][:, 0] for one in ("time", "angle", "torque") if one in signals}
     try:
         return Recording(**{**signals, **flat}, name=name)

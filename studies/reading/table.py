@@ -84,15 +84,20 @@ class Table:
             return column.values * scale
         written = column.unit or split_name(column.name)[1]
         known = UNITS[quantity]
-        if unit and written and normal(written) in known and known[normal(unit)] != known[normal(written)]:
+        if (
+            unit
+            and written
+            and normal(written) in known
+            and known[normal(unit)] != known[normal(written)]
+        ):
             raise FileFormatError(
                 f"{self.path}: column {column.name} is in {written} by its name and in {unit} as "
                 "given; leave the unit out, or rename the column"
             )
         if not unit and written and normal(written) not in known:
             raise FileFormatError(
-                f"{self.path}: is {written!r} of column {column.name} a unit? give the {quantity}'s "
-                f"by --units {quantity}:{next(iter(known))}, or by --scale {quantity}=0.001"
+                f"{self.path}: is {written!r} of column {column.name} a unit? give the "
+                f"{quantity}'s by --units {quantity}:{next(iter(known))}, or by --scale"
             )
         unit = normal(unit or written)
         return column.values * known[unit] if unit else column.values
@@ -132,12 +137,14 @@ def _matlab(content: bytes) -> dict[str, Any]:
     try:
         values = loadmat(io.BytesIO(content), simplify_cells=True)
     except NotImplementedError:
-        raise FileFormatError("it is of MATLAB's version 7.3; save it by save(..., '-v7')") from None
+        raise FileFormatError(
+            "it is of MATLAB's version 7.3; save it by save(..., '-v7')"
+        ) from None
     return {name: value for name, value in values.items() if not name.startswith("__")}
 
 
 def _of_variables(values: Mapping[str, Any], front: str = "") -> list[Column]:
-    """Vectors by name; a matrix by name and column (``X:2``), a structure by its fields (``a.b``)."""
+    """Vectors by name, a matrix by name and column (``X:2``), a structure by field (``a.b``)."""
     found: list[Column] = []
     for name, value in values.items():
         if isinstance(value, Mapping):
@@ -166,7 +173,9 @@ def _of_array(name: str, values: NDArray[Any]) -> list[Column]:
 
 
 def _decoded(content: bytes) -> str:
-    encodings = ("utf-16",) if content[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252")
+    encodings = (
+        ("utf-16",) if content[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252")
+    )
     for encoding in encodings:
         try:
             text = content.decode(encoding)
@@ -187,8 +196,8 @@ def _of_text(text: str) -> list[Column]:
     begins = {one: begin for one in _SEPARATORS if (begin := _begin(lines, data, one))}
     if not begins:
         raise FileFormatError(
-            f"no rows of numbers in it (its first line: {lines[filled[0]][:60]!r}); give columns of "
-            "numbers, with semicolons between numbers with decimal commas"
+            f"no rows of numbers in it (its first line: {lines[filled[0]][:60]!r}); give columns "
+            "of numbers, with semicolons between numbers with decimal commas"
         )
     separator = min(begins, key=lambda one: begins[one][1])
     data = data[begins[separator][0] :]
@@ -218,7 +227,7 @@ def _is_number(cell: str, separator: str | None) -> bool:
 
 
 def _begin(lines: list[str], data: list[int], separator: str | None) -> tuple[int, int] | None:
-    """Where rows begin that have numbers in the same places, and how many of their cells have not."""
+    """Where rows begin with numbers in the same places, and how many cells there are words."""
     kinds: list[tuple[bool, ...]] = []
     for k, row in enumerate(data):
         cells = _cells(lines[row], separator)

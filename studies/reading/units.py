@@ -31,11 +31,14 @@ UNITS: Mapping[str, Mapping[str, float]] = {
     "torque": {"nm": 1.0, "mnm": 1e-3, "nmm": 1e-3, "ncm": 1e-2, "knm": 1e3},
 }  # fmt: skip
 """What a unit of a quantity is in SI units."""
-_OTHERS = frozenset(
-    "h hr hrs hour hours mins minutes day days samples ticks tick ft feet yd mil thou kg lb lbf oz "
-    "ozin lbin lbft kgf kgcm gf a ma ua amps volt volts k c bar pa kpa mpa psi kn n hz khz rpm % "
-    "rad/s deg/s arcmin arcsec cnt count counts steps pulses lsb".split()
-) | {unit for table in UNITS.values() for unit in table if unit not in ("in", "c", "h", "a", "k", "n")}
+_ELSEWHERE = """
+    hr hrs hour hours mins minutes day days samples ticks tick ft feet yd mil thou kg lb lbf oz ozin
+    lbin lbft kgf kgcm gf ma ua amps volt volts bar pa kpa mpa psi kn hz khz rpm % rad/s deg/s
+    arcmin arcsec cnt count steps pulses lsb a h n
+"""
+_LIKE_UNITS = {unit for table in UNITS.values() for unit in table if unit != "in"} | set(
+    _ELSEWHERE.split()
+)
 """Endings that look like a unit, of whatever quantity."""
 _IN_BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*([^()\[\]{}<>]+?)\s*[)\]}>]")
 _AFTER = re.compile(r"(.*?[^\s_/,:;-])\s*(?:[_/,:; -]| in )\s*([^\s_,:;-]+(?:\s*[*·]\s*m)?)")
@@ -61,7 +64,7 @@ def split_name(name: str) -> tuple[str, str]:
         for front in ("m", ""):
             if name.lower().endswith(f"{front}{ending}"):
                 return name[: -len(front + ending)].rstrip(" _/,:"), front + ending
-    if (match := _AFTER.fullmatch(name.strip())) and normal(match[2]) in _OTHERS:
+    if (match := _AFTER.fullmatch(name.strip())) and normal(match[2]) in _LIKE_UNITS:
         return match[1], match[2]
     if name.strip().endswith("°"):
         return name.strip()[:-1], "°"
@@ -72,4 +75,4 @@ def is_unit(text: str) -> bool:
     """Whether a cell is a unit and nothing else, as in a row of units below the names."""
     text = text.strip()
     bracketed = text[:1] in "([{" and text[-1:] in ")]}" and len(text) > 1
-    return bracketed or normal(text) in _OTHERS
+    return bracketed or normal(text) in _LIKE_UNITS

@@ -21,7 +21,9 @@ _HUB = {
 def identified_document(found: Identified) -> Document:
     """The parameters with their intervals, then each part of the recordings."""
     rows = [("plant", found.plant.name)]
-    rows += [(one.parameter, text) for one in found.estimates for text in _estimate(found.plant, one)]
+    rows += [
+        (one.parameter, text) for one in found.estimates for text in _estimate(found.plant, one)
+    ]
     rows += [
         (name, f"not identifiable: {why}; {getattr(found.plant, name):.4g} as given")
         for name, why in found.not_identifiable.items()
@@ -37,19 +39,21 @@ def identified_document(found: Identified) -> Document:
 
 def prediction_document(plant: Plant, predictions: Sequence[Prediction]) -> Document:
     """How much of each ring-down a machine predicts."""
-    rows = [("plant", plant.name)] + [
-        (one.recording, f"{one.begin:.3g} to {one.end:.3g} s: {one.share:.1%} of the swing predicted "
-         f"over five periods, at worst {max(one.worst, 0):.1%} from {one.worst_at:.3g} s on; by "
-         f"itself {one.frequency:.4g} Hz")
-        for one in predictions
-    ]  # fmt: skip
+    rows = [("plant", plant.name)]
+    for one in predictions:
+        worst = f"at worst {max(one.worst, 0):.1%} from {one.worst_at:.3g} s on"
+        rows.append((one.recording, f"{one.begin:.3g} to {one.end:.3g} s: {one.share:.1%} of the "
+                     f"swing predicted over five periods, {worst}; by itself {one.frequency:.4g} Hz"
+        ))  # fmt: skip
     notes = ["The state is taken from two periods, and the five after them are predicted."]
     return Document("", [Facts(rows), Lines(notes)])
 
 
 def _notes(found: Identified, given: Sequence[str]) -> list[str]:
     """What is to be known before the intervals are believed."""
-    notes = ["Left: root mean square of what the fit leaves, as a share of the swing's; and the noise's."]
+    notes = [
+        "Left: root mean square of what the fit leaves, as a share of the swing's; and the noise's."
+    ]
     if given:
         notes.append(
             "Torque and energy depend on what is as given: set what you know by --set, as "
@@ -60,10 +64,12 @@ def _notes(found: Identified, given: Sequence[str]) -> list[str]:
             "One ring-down does not tell how much the machine varies: record several. Until then "
             "--robust takes errors of your own, as frequency=5%."
         )
-    for one in found.estimates:
-        if one.varies:
-            notes.append(f"The machine varies: {one.parameter} differs between ring-downs by more than "
-                         f"their fits are uncertain{_by_amplitude(found, one)}.")  # fmt: skip
+    notes += [
+        f"The machine varies: {one.parameter} differs between ring-downs by more than their fits "
+        f"are uncertain{_by_amplitude(found, one)}."
+        for one in found.estimates
+        if one.varies
+    ]
     notes += [f"warning: {text}" for text in found.warnings]
     return notes + [
         f"warning: {part.recording}, {part.begin:.3g} to {part.end:.3g} s: {part.warning}"
@@ -79,6 +85,8 @@ def _by_amplitude(found: Identified, one: Estimate) -> str:
     if len(found.parts) < 5:
         return ""
     sizes = [part.amplitude for part in found.parts]
+    if max(sizes) < 1.3 * min(sizes):
+        return ""
     values = [part.values[one.parameter] for part in found.parts]
     rank, chance = spearmanr(sizes, values)
     if chance > 0.05:
@@ -91,7 +99,9 @@ def _part(plant: Plant, part: Part) -> str:
     left = f"{part.misfit:.1%} left, noise {part.noise:.1%}"
     saturated = f"; {part.saturated} saturated samples left out" if part.saturated else ""
     drift = "; a slow motion left out" if part.drifts else ""
-    return f"{part.begin:.3g} to {part.end:.3g} s: {values}, {left}{_HUB[part.hub]}{saturated}{drift}"
+    return (
+        f"{part.begin:.3g} to {part.end:.3g} s: {values}, {left}{_HUB[part.hub]}{saturated}{drift}"
+    )
 
 
 def _short(plant: Plant, name: str, value: float) -> str:
@@ -116,9 +126,10 @@ def _estimate(plant: Plant, one: Estimate) -> list[str]:
     if unit == "rad/s":
         size, words = 2 * pi, " Hz"
     share = max((one.high - one.low) / 2 / abs(one.value), 1e-12) if one.value else 1.0
-    digits = max(3, 1 - floor(log10(share)))  # two of the interval
+    digits = max(4, 1 - floor(log10(share)))  # two of the interval
     text = lambda x: f"{x / size:.{digits}g}"  # noqa: E731
     lines = [f"{text(one.value)}{words}, within {text(one.low)} to {text(one.high)}{words} (95 %)"]
     if one.next_low is not None and one.next_high is not None:
-        lines.append(f"of the next swing within {text(one.next_low)} to {text(one.next_high)}{words} (95 %)")
+        ends = f"{text(one.next_low)} to {text(one.next_high)}"
+        lines.append(f"of the next swing within {ends}{words} (95 %)")
     return lines

@@ -51,8 +51,8 @@ def _plant_at_the_end(name: str) -> type[Plant] | identification.Identified:
               help="The parameters that are sought, as omega,zeta. [default: frequencies and "
               "dampings, and with a torque what shows in it alone]")  # fmt: skip
 @click.option("--check", type=Parsed("machine", parse_plant),
-              help="A machine that was identified: how much of the recordings it predicts. PLANT is "
-              "left out.")  # fmt: skip
+              help="A machine that was identified: how much of the recordings it predicts. PLANT "
+              "is left out.")  # fmt: skip
 @click.option("--output", type=JSON_FILE,
               help="Write the machine to this JSON file, which serves as a PLANT.")  # fmt: skip
 @click.option("--figure", type=PICTURE, help="Draw recordings and fit (.png, .pdf or .svg).")
@@ -103,8 +103,7 @@ def identify(
     ]
     if check:
         if output or figure or parts or free:
-            raise click.UsageError("--check only tells what is predicted; leave --output, --figure, "
-                                   "--part and --free out")  # fmt: skip
+            raise click.UsageError("--check fits nothing: leave --output, --figure, --part, --free")
         finish([], prediction_document(known, identification.predict(known, read)))
         return
     with working("fitting", Console(stderr=True), quiet=quiet):
