@@ -11,7 +11,7 @@ _STANDS_OUT = 14.0
 """A line of a spectrum has so many times the noise's power beside it."""
 _MATTERS = 0.03
 """Share of the swing that lines together have; less changes no plan."""
-_MUCH = 0.2
+_MUCH = 0.1
 """Share of the swing, from which on what is left is doubted even where it looks like noise."""
 _AT_LIMIT = 6
 """Samples at the same extreme value, from which on a sensor may be saturated."""
@@ -90,7 +90,7 @@ def cause_of(
 
 def _unexplained(misfit: float, noise: float) -> tuple[str, str]:
     """Where no line stands out, but much more is left than the noise from sample to sample."""
-    if misfit < max(_MUCH, 3 * noise):
+    if misfit < max(_MUCH, 4 * noise):
         return "", ""
     return "misfit", (
         f"{misfit:.0%} of the swing is left, and its noise is {noise:.0%}: it is no free decay of "

@@ -26,6 +26,8 @@ _DEPENDENT = 1e-3
 """Parameters cannot be told apart where others explain all but this share of what one does."""
 _FACTORS = (1.0, 0.8, 1.25, 0.6, 1.6)
 """Of the frequencies at the start."""
+_MORE = 2.0
+"""Times the noise that is left, from which on a delay of the angle matters."""
 _LATE = 5.0
 """An angle is called late where that many deviations of the delay do not reach none."""
 
@@ -140,7 +142,7 @@ def described(recording: Recording, names: Sequence[str], fit: Forced, frequency
     size = np.maximum(np.sqrt((swinging**2).mean(axis=0)), 1e-300)
     noise = float((noise_of(recording.values) / size).max())
     cause, warning = cause_of(fit.time, fit.residual, swinging, frequency, noise)
-    if cause and fit.delay:
+    if fit.delay and (cause or fit.misfit > _MORE * noise):
         side = "late" if fit.delay > 0 else "early"
         cause, warning = (
             "delay",
