@@ -229,15 +229,15 @@ def _is_number(cell: str, separator: str | None) -> bool:
 def _begin(lines: list[str], data: list[int], separator: str | None) -> tuple[int, int] | None:
     """Where rows begin with numbers in the same places, and how many cells there are words."""
     kinds: list[tuple[bool, ...]] = []
+    run = 0
     for k, row in enumerate(data):
         cells = _cells(lines[row], separator)
         kinds.append(tuple(bool(cell) and not _is_number(cell, separator) for cell in cells))
-        first = max(k + 1 - _LIKE, 0)
-        alike = kinds[first:] == [kinds[-1]] * len(kinds[first:])
-        if alike and (len(kinds[first:]) == _LIKE or k + 1 == len(data)):
+        run = run + 1 if k and kinds[-1] == kinds[-2] else 1
+        if run == _LIKE or k + 1 == len(data):
             texts = sum(kinds[-1])
-            if len(cells) - texts >= 2 and sum(map(bool, cells)) >= 2:
-                return first, texts
+            if sum(map(bool, cells)) - texts >= 2:
+                return k + 1 - run, texts
     return None
 
 
