@@ -117,9 +117,11 @@ class RingDowns:
         window = Window.of(recording.part(rows), fastest)
         near = frequency + np.linspace(-0.6, 0.6, 9) / float(np.ptp(window.time))
         fit = self._fit(window, self._start(window, np.maximum(near, 0.3 * frequency)))
-        if not fixed:
-            rows = _grown(recording, rows, fit, before, frequency)
-            fit = self._fit(Window.of(recording.part(rows), fastest), fit.p)
+        for _ in range(0 if fixed else 2):
+            grown = _grown(recording, rows, fit, before, frequency)
+            if grown == rows:
+                break
+            rows, fit = grown, self._fit(Window.of(recording.part(grown), fastest), fit.p)
         piece = recording.part(rows)
         part = self._described(Part(piece.name, piece.time[0], piece.time[-1]), piece, fit)
         flat = saturated(piece.values)
