@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.studies.identify.answer import Part
 from quietarm.studies.identify.diagnosis import cause_of
-from quietarm.studies.identify.parameters import bounds_of, is_frequency, values_of
+from quietarm.studies.identify.parameters import bounds_of, values_of
 from quietarm.studies.identify.recording import Recording, noise_of
 from quietarm.studies.identify.response import Joint, Response
 
@@ -24,8 +24,6 @@ Array = NDArray[np.float64]
 _HUBER = 2.5
 _DEPENDENT = 1e-3
 """Parameters cannot be told apart where others explain all but this share of what one does."""
-_FACTORS = (1.0, 0.8, 1.25, 0.6, 1.6)
-"""Of the frequencies at the start."""
 _MORE = 2.0
 """Times the noise that is left, from which on a delay of the angle matters."""
 _LATE = 5.0
@@ -101,14 +99,14 @@ class ForcedModel:
         return left, J, project(later).reshape(y.shape)
 
 
-def fit_forced(model: ForcedModel, plant: Plant, names: Sequence[str]) -> Forced:
-    """Least squares with Huber's loss, from several frequencies; the best is taken."""
+def fit_forced(model: ForcedModel, plants: Sequence[Plant], names: Sequence[str]) -> Forced:
+    """Least squares with Huber's loss, from several plants; the best is taken."""
     from scipy.optimize import least_squares  # not at the top: it takes long to load
 
-    start = values_of(plant, names)
-    lower, upper = bounds_of(plant, names, start)
-    frequencies = [k for k, name in enumerate(names) if is_frequency(plant, name)]
-    scale = np.where(start != 0, np.abs(start), 1e-2)
+    starts = [values_of(plant, names) for plant in plants]
+    bounds = np.array([bounds_of(plants[0], names, start) for start in starts])
+    lower, upper = bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)
+    scale = np.where(starts[0] != 0, np.abs(starts[0]), 1e-2)
 
     def fitted(p: Array, deviation: Array, loss: str) -> Any:
         return least_squares(
@@ -119,9 +117,6 @@ def fit_forced(model: ForcedModel, plant: Plant, names: Sequence[str]) -> Forced
             ftol=1e-9, xtol=1e-10, max_nfev=60,
         )  # fmt: skip
 
-    starts = [start.copy() for _ in (_FACTORS if frequencies else (1.0,))]
-    for p, factor in zip(starts, _FACTORS, strict=False):
-        p[frequencies] *= factor
     size = model.values.std(axis=0) + 1e-300
     p = min((fitted(p, size, "linear") for p in starts), key=lambda one: one.cost).x * scale
     deviation = _deviation(model(p)[0])

@@ -35,7 +35,9 @@ _TURNS = 2 * tau
 """A joint that turns further may be in degrees."""
 _BAD = 0.9
 """Share of the signal's size that a forced fit may leave."""
-_SAMPLES = 40
+_FACTORS = (1.0, 0.8, 1.25, 0.6, 1.6)
+"""Of the spectrum's frequency, from which forced fits start, beside the plant's own."""
+_SAMPLES = 200
 """A period, of what is fitted to the joint's motion."""
 
 
@@ -118,7 +120,7 @@ def fit_again(found: Identified, part: Part, recordings: Sequence[Recording]) ->
     names = list(part.values)
     if part.hub == "equations":
         model = _model(found.plant, names, _thinned(recording, find_frequencies([recording])[0]))
-        return fit_forced(model, found.plant, names)
+        return fit_forced(model, [found.plant], names)
     return RingDowns(found.plant, names).again(part, recording)
 
 
@@ -239,9 +241,8 @@ def _forced(
                 f"{one.name}: the joint does not move, and what is sought shows while it moves "
                 "alone; record its angle during a move"
             )
-    loudest = max(frequencies)
-    modal = [name for name in names if is_modal(plant, name)]
-    plant = started_at(plant, modal, loudest)
+    modal, loudest = [name for name in names if is_modal(plant, name)], max(frequencies)
+    starts = [plant, *(started_at(plant, modal, loudest * factor) for factor in _FACTORS)]
     thin = [_thinned(one, f) for one, f in zip(recordings, frequencies, strict=True)]
     p = values_of(plant, names)
     unknown = not_identifiable([_model(plant, names, one) for one in thin], names, p)
@@ -250,7 +251,9 @@ def _forced(
         raise ValueError(
             f"the recordings tell nothing of {', '.join(unknown)}; name others by free"
         )
-    fits = [fit_forced(_model(plant, names, one), plant, names) for one in thin]
+    fits = [
+        fit_forced(_model(plant, names, one), list(dict.fromkeys(starts)), names) for one in thin
+    ]
     least = min(fit.misfit for fit in fits)
     if least > _BAD:
         raise ValueError(
