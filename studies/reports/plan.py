@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from quietarm.models import joint_unit
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.robust import EXCESS
@@ -103,7 +104,7 @@ def _residual_limit(plan: Plan) -> float:
 def move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and where the motion breaks one."""
     limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
-    limits += [_limit(name, most, motion.peak(name)) for name, most in task.limits.items()]
+    limits += [_limit(name, most, motion.peak(name), task.plant.joint) for name, most in task.limits.items()]
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),
@@ -132,7 +133,7 @@ def _left(task: PointToPoint, residual: float) -> str:
 
 
 def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
-    peak, unit = motion.peak(name), QUANTITIES[name].unit
+    peak, unit = motion.peak(name), joint_unit(QUANTITIES[name].unit, task.plant.joint)
     if unit == "m":
         return f"{millimetres(peak)}{_large(task, motion)}"
     return f"{peak:.4g} {unit}{_hard(name, task, peak)}"
@@ -191,8 +192,8 @@ def _tip(task: PointToPoint) -> str:
     return words if scenarios == 1 else f"{words}, worst of {scenarios} samples"
 
 
-def _limit(name: str, limit: float, peak: float) -> str:
+def _limit(name: str, limit: float, peak: float, joint: str) -> str:
     """A limit, and how it is broken; nothing where it is kept to the README's tolerance."""
-    unit = QUANTITIES[name].unit
+    unit = joint_unit(QUANTITIES[name].unit, joint)
     broken = "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {unit})"
     return f"{name} {limit:g} {unit}{broken}"
