@@ -68,9 +68,7 @@ def plan_with_chosen_terms(
         chosen[OF_SIX] = six.energy
     record, seconds = found.provenance, time.perf_counter() - began
     used = record.settings and replace(record.settings, starts=settings.starts, guess=None)
-    return replace(
-        found, provenance=replace(record, settings=used, search=chosen, seconds=seconds)
-    )
+    return replace(found, provenance=replace(record, settings=used, search=chosen, seconds=seconds))
 
 
 def _solve_with_six(task: PointToPoint, settings: SolveSettings) -> Solution:

@@ -104,7 +104,10 @@ def _residual_limit(plan: Plan) -> float:
 def move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and where the motion breaks one."""
     limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
-    limits += [_limit(name, most, motion.peak(name), task.plant.joint) for name, most in task.limits.items()]
+    limits += [
+        _limit(name, most, motion.peak(name), task.plant.joint)
+        for name, most in task.limits.items()
+    ]
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),
