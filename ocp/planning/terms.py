@@ -67,8 +67,9 @@ def plan_with_chosen_terms(
     chosen: dict[str, float] = {CHOSEN: found.profile.size}
     if six.status.solved and task.uncertainty is None:
         chosen[OF_SIX] = six.energy
-    seconds = time.perf_counter() - began
-    return replace(found, provenance=replace(found.provenance, search=chosen, seconds=seconds))
+    record, seconds = found.provenance, time.perf_counter() - began
+    used = record.settings and replace(record.settings, starts=settings.starts, guess=None)
+    return replace(found, provenance=replace(record, settings=used, search=chosen, seconds=seconds))
 
 
 def _solve_with_six(task: PointToPoint, settings: SolveSettings) -> Solution:
