@@ -34,7 +34,7 @@ from parts.measuring import console, forget_compiled, load_plugins, machine, tim
 from quietarm.metaheuristics import SearchProgress, search
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, epsilon_front, plan_move
-from quietarm.studies.comparison.staircase import filled, objectives
+from quietarm.studies.compare.staircase import filled, objectives
 from rich.table import Table
 
 PROFILE = CycloidPolynomial(6)

@@ -21,7 +21,7 @@ from parts.measuring import console, forget_compiled, load_plugins, machine, tim
 from quietarm.metaheuristics import PRESETS, PopulationObjective, search, search_many
 from quietarm.metaheuristics.ensemble import energies_at, energy_at
 from quietarm.ocp import evaluate_coefficients
-from quietarm.studies.paper import (
+from quietarm.studies.reproduce.paper import (
     ARM_HALF,
     COEFFICIENTS,
     MENDED,

@@ -56,5 +56,6 @@ from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .simulation.trajectory import Trajectory as Trajectory
 from .task import ModalState as ModalState
 from .task import PointToPoint as PointToPoint
+from .task_difference import task_difference as task_difference
 from .uncertainty import Uncertainty as Uncertainty
 from .uncertainty import perturb_plant as perturb_plant

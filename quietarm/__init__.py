@@ -6,8 +6,8 @@
     plan = qa.plan_move(task)
 
 Every public name of `quietarm.models`, `quietarm.ocp` and `quietarm.metaheuristics`, and of
-`figures`, `identify`, `contest` and `sweep` in `quietarm.studies`; each package is imported with
-the first of its names that is asked for.
+`figures`, `compare`, `identify`, `contest` and `sweep` in `quietarm.studies`; each package is
+imported with the first of its names that is asked for.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from quietarm.metaheuristics import *  # noqa: F403
     from quietarm.models import *  # noqa: F403
     from quietarm.ocp import *  # noqa: F403
+    from quietarm.studies.compare import *  # noqa: F403
     from quietarm.studies.contest import *  # noqa: F403
     from quietarm.studies.figures import *  # noqa: F403
     from quietarm.studies.identify import *  # noqa: F403
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
 _PACKAGES = (
     "models", "ocp", "metaheuristics",
-    "studies.figures", "studies.identify", "studies.contest", "studies.sweep",
+    "studies.figures", "studies.compare", "studies.identify", "studies.contest", "studies.sweep",
 )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ import pytest
 from pages import COMMANDS, NOTEBOOK, PAGES, README, ROOT, TWO_COMMANDS
 from quietarm.ocp import evaluate_coefficients, plan_move
 from quietarm.studies.cli import quietarm
-from quietarm.studies.paper import SINGLE_LINK_SIXTH
+from quietarm.studies.reproduce.paper import SINGLE_LINK_SIXTH
 
 # The two commands
 

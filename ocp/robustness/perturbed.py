@@ -30,6 +30,8 @@ _STEP = 1e-4
 """Relative error to either side: of what follows 1e-8 is curvature, and 1e-6 the integrator's."""
 _ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
 """Errors along each side of the grid, by the number of ranges."""
+_ALONG_BY_CVODES = {1: 41, 2: 9, 3: 5, 4: 3}
+"""The same where each takes some milliseconds."""
 _ZOOMS, _BESIDE = 3, (-1.0, -0.5, 0.0, 0.5, 1.0)
 """How often the grid around a peak is made finer, and its points in steps of the grid before."""
 
@@ -85,28 +87,48 @@ def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike)
     return peaks_between(task, profile, coefficients)[0] if task.ranges else None
 
 
+def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
+    """The same within ranges of errors for a motion that has no profile, by CVODES alone."""
+
+    def residuals(errors: Array) -> Array:
+        found = (dict(zip(ranges, one, strict=True)) for one in errors.tolist())
+        return np.array([candidate.perturbed(one).residual for one in found])
+
+    return _peaks(residuals, candidate, ranges, _ALONG_BY_CVODES[len(ranges)])[0]
+
+
 def peaks_between(
     task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, most: int = 1
 ) -> list[Worst]:
     """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first."""
-    largest = np.array(list(task.ranges.values()))
-    count, along = len(largest), _ALONG[len(largest)]
 
-    def residuals(shares: Array) -> Array:
-        errors = shares * largest
+    def residuals(errors: Array) -> Array:
         return perturbed_figures(task, profile, coefficients, task.ranges, errors)[:, 0]
+
+    candidate = Candidate.of_profile(task, profile, coefficients)
+    return _peaks(residuals, candidate, task.ranges, _ALONG[len(task.ranges)], most)
+
+
+def _peaks(
+    residuals: Callable[[Array], Array],
+    candidate: Candidate,
+    ranges: Mapping[str, float],
+    along: int,
+    most: int = 1,
+) -> list[Worst]:
+    """Peaks on a grid, refined around each."""
+    largest, count = np.array(list(ranges.values())), len(ranges)
 
     def zoom(peak: Array) -> Worst:
         for finer in range(_ZOOMS):
             step = 2 / (along - 1) / 2**finer
             around = np.clip(peak + step * _grid(_BESIDE, count), -1, 1)
-            peak = around[np.argmax(residuals(around))]
-        errors = dict(zip(task.error_names, (peak * largest).tolist(), strict=True))
+            peak = around[np.argmax(residuals(around * largest))]
+        errors = dict(zip(ranges, (peak * largest).tolist(), strict=True))
         return Worst(errors, candidate.perturbed(errors).residual)
 
-    candidate = Candidate.of_profile(task, profile, coefficients)
     shares = _grid(np.linspace(-1, 1, along), count)
-    values = residuals(shares)
+    values = residuals(shares * largest)
     tops = np.flatnonzero(_is_peak(values.reshape([along] * count)))
     tops = tops[np.argsort(-values[tops])][:most]
     return sorted((zoom(shares[i]) for i in tops), key=lambda one: -one.residual)

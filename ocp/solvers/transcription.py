@@ -99,10 +99,6 @@ class Transcription:
         """Residual of the plain motion [m]."""
         return self.peaks(self.plain)[RESIDUAL]
 
-    def refine(self) -> Transcription:
-        """The same on twice the steps."""
-        return Transcription(self.task, self.profile, 2 * self.steps)
-
     def evaluate(self, coefficients: Array) -> Derivatives:
         """One candidate in all scenarios."""
         return evaluate([self], coefficients[None])[0]

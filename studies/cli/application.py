@@ -36,7 +36,7 @@ COMMANDS = {
 of `commands.list_`."""
 del COMMANDS["bench"]  # until it is here
 COMMANDS |= {  # until their heirs are here
-    "robustness": "", "versus": "", "study": "", "contest": "",
+    "contest": "",
 }  # fmt: skip
 HEIRS = {
     "floor": "plan --profile free", "lookup": "plan --from moves.zarr",

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.budget.record import CORNER, Visits
 from quietarm.ocp.front.points import LEVELS
-from quietarm.studies.comparison.staircase import objectives, within
+from quietarm.studies.compare.staircase import objectives, within
 from quietarm.studies.contest.landscape import Landscape
 from quietarm.studies.contest.names import label_of
 from quietarm.studies.contest.store import Run, Store, Yardstick

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 import numpy as np
 from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
 from quietarm.metaheuristics.problems.certificate import checksum
-from quietarm.studies.comparison.staircase import objectives
+from quietarm.studies.compare.staircase import objectives
 from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from quietarm.studies.contest.measures import Arena, Field, methods_in
 from quietarm.studies.contest.names import is_own, label_of, method_in

@@ -15,10 +15,10 @@ from quietarm.metaheuristics.budget.record import Mark, Scale, Visits
 from quietarm.ocp import CycloidPolynomial, FileFormatError, Front
 from quietarm.ocp.checks import CountFromOne, Positive
 from quietarm.ocp.saved import Saved
-from quietarm.studies.comparison.staircase import filled
+from quietarm.studies.compare.staircase import filled
 from quietarm.studies.contest.landscape import LEVEL, Landscape
 from quietarm.studies.contest.names import folder_of, is_own
-from quietarm.studies.paper import CONDITIONS
+from quietarm.studies.reproduce.paper import CONDITIONS
 
 _FILL = 2_000
 """Points of an exact front with the motions between them: with twenty times as many its hypervolume

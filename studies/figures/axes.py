@@ -45,14 +45,19 @@ def side_by_side(panels: int, title: str, width: float = 4.2) -> tuple[Figure, l
 
 
 def draw_front(
-    ax: Axes, residuals: Array, energies: Array, exact: bool = False, **style: Any
+    ax: Axes,
+    residuals: Array,
+    energies: Array,
+    exact: bool = False,
+    width: float = 0.8,
+    **style: Any,
 ) -> None:
     """Draw a front [m, J]: a line where its points are exact, else a staircase.
 
     Between two points of a search the stiller one is the best known motion.
     """
     steps = "default" if exact else "steps-post"
-    ax.plot(residuals * 1e3, energies, linewidth=0.8, drawstyle=steps, **style)
+    ax.plot(residuals * 1e3, energies, linewidth=width, drawstyle=steps, **style)
 
 
 def letter(axes: Sequence[Axes]) -> None:

@@ -1,34 +1,67 @@
-"""Fronts as a picture: energy against residual, hypervolume, spread over seeds."""
+"""Fronts as pictures: energy over residual, of one method seed by seed, or of several compared."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import cycle
+from textwrap import fill
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator
+from numpy.typing import NDArray
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energy_at, hypervolumes
-from quietarm.ocp import Front
+from quietarm.ocp import Front, task_difference
 from quietarm.studies.display.words import REST, millimetres, title_of
 from quietarm.studies.figures.axes import (
+    TITLE,
     axes_or_new,
     draw_front,
+    legend_of,
+    letter,
+    logarithmic,
     name_objectives,
+    new_figure,
     scale_residuals,
     side_by_side,
 )
-from quietarm.studies.figures.looks import BLUE, look
+from quietarm.studies.figures.looks import BLUE, Look, look
 from quietarm.studies.registry.methods import Kind, method_of
+
+if TYPE_CHECKING:
+    from quietarm.studies.compare.fronts import Comparison, Group
 
 _MOST_NAMED = 10
 """More fronts than this are drawn without a name."""
 _LEAST_SPAN = 0.01
 """The axis of energies spans at least this share of their median: seeds that agree lie close."""
+_LEAST, _ASIDE = 1e-6, 0.9
+"""A logarithmic axis begins at this residual [m], or at this multiple of the least of all."""
+_END = 5.0
+"""The end of small residuals reaches at least to this multiple of the least of all."""
+_TALLEST = 1.6
+"""Upper end of the panels, as a multiple of the best front's energy at its least residual."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class KnownPoint:
+    """A motion that a front is held against: its name, residual [m] if known, and energy [J]."""
+
+    label: str
+    residual: float | None
+    energy: float
+
+
+# The fronts of one method
 
 
 def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
-    """Draw energy against residual: a search's front as a staircase, an exact one as a line.
+    """Draw energy against residual: a search's front as a staircase, one by gradient as a line.
 
     Parameters
     ----------
@@ -42,23 +75,17 @@ def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, with a legend where there are a few fronts. Residuals below 0.001 mm, which count
         as rest, are drawn there.
-
-    Raises
-    ------
-    ValueError
-        When there is no front, or one is something else.
     """
     ax = axes_or_new(ax)
-    names = _names(fronts)
-    drawn = [np.maximum(front.residuals, REST) for front in fronts]  # what rests has no logarithm
-    for i, front in enumerate(fronts):
+    drawn = [np.maximum(front.residuals, REST) for front in fronts]  # rest has no logarithm
+    for i, (front, name) in enumerate(zip(fronts, _names(fronts), strict=True)):
         if front.points:
             style, words = ("-", "") if front.complete else ("--", ", interrupted")
             draw_front(
                 ax, drawn[i], front.energies,
                 exact=method_of(front.method).kind is Kind.GRADIENT,
                 color=look(i).colour, marker=look(i).mark, linestyle=style,
-                markersize=3, alpha=0.8, label=f"{names[i]}{words}",
+                markersize=3, alpha=0.8, label=f"{name}{words}",
             )  # fmt: skip
     scale_residuals(ax, [1e3 * residual for of in drawn for residual in of])
     ax.set_title("fronts" if len(fronts) > 1 else "front", fontsize=10)
@@ -71,11 +98,10 @@ def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
 def _names(fronts: Sequence[Front]) -> list[str]:
     """What to call every front: its method where there are several, its seed where that tells."""
     methods = [method_of(front.method).label for front in fronts]
-    names: list[str] = []
+    several, names = len(set(methods)) > 1, list[str]()
     for front, method in zip(fronts, methods, strict=True):
-        several, runs = len(set(methods)) > 1, methods.count(method) > 1
-        words = [method] * (several or not runs) + [f"seed {front.seed}"] * runs
-        names.append(", ".join(words))
+        runs = methods.count(method) > 1
+        names.append(", ".join([method] * (several or not runs) + [f"seed {front.seed}"] * runs))
     return names
 
 
@@ -97,20 +123,19 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        When there is no front, one is something else, or they are of several tasks.
+        When they are of several tasks.
     """
     _refuse_several_tasks(fronts)
     ax = axes_or_new(ax)
-    histories = [front.history for front in fronts if front.history]
     residual, energy = fronts[0].reference
     ax.set_xlabel("candidates evaluated")
     ax.set_ylabel(f"share of the box\nup to {millimetres(residual)} and {energy:.4g} J")
     ax.xaxis.set_major_locator(MaxNLocator(5, integer=True))
-    ax.set_title("hypervolume", fontsize=10)
+    histories = [front.history for front in fronts if front.history]
     if not histories:
         ax.text(0.5, 0.5, "no generation", transform=ax.transAxes, ha="center")
         return ax
-    length = min(len(history) for history in histories)
+    length = min(map(len, histories))
     evaluations = [generation.evaluations for generation in histories[0][:length]]
     table = np.array([[g.hypervolume for g in history[:length]] for history in histories])
     low, middle, high = np.quantile(table, [0.25, 0.5, 0.75], axis=0)
@@ -119,10 +144,10 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     spread = hypervolumes(fronts)
     words = f"hypervolume: {spread.median:.4f}"
     if len(histories) > 1:
-        if length == 1:
-            ax.vlines(evaluations, low, high, color=BLUE, alpha=0.3, linewidth=6, label="quartiles")
-        else:
-            ax.fill_between(evaluations, low, high, color=BLUE, alpha=0.3, label="quartiles")
+        width = 6 if length == 1 else 0
+        ax.fill_between(
+            evaluations, low, high, color=BLUE, alpha=0.3, linewidth=width, label="quartiles"
+        )
         ax.legend(fontsize=8, loc="lower right")
         words += f" ({spread.lower:.4f} to {spread.upper:.4f})"
     ax.set_title(words, fontsize=10)
@@ -130,7 +155,7 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
 
 
 def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
-    """Draw every seed's least energy at `SEARCH_RESIDUAL`, with median and quartiles.
+    """Draw every seed's least energy within 1 mm, with median and quartiles.
 
     Parameters
     ----------
@@ -143,38 +168,33 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
         The axes; a seed that never reaches that residual is a cross.
     """
     _refuse_several_tasks(fronts)
-    ax = axes_or_new(ax)
-    spread = energies_at(fronts)
+    ax, spread, level = axes_or_new(ax), energies_at(fronts), millimetres(SEARCH_RESIDUAL)
     for place, front in enumerate(fronts):
         energy, colour = energy_at(front), look(place).colour
         if np.isfinite(energy):
             ax.plot(place, energy, "o", color=colour, markersize=6)
         else:
             ax.plot(place, 0.02, "x", color=colour, transform=ax.get_xaxis_transform())
-    level = millimetres(SEARCH_RESIDUAL)
-    marks = [f"x: never within {level}"] * (spread.count < spread.seeds)
+    words = f"{spread.count} of {spread.seeds} seeds reach {level}"
     figures = ""
     if np.isfinite(spread.median):
         ax.axhline(spread.median, color=BLUE, linewidth=1.0)
-        marks += ["line: median"]
         figures = f": {spread.median:.4g} J"
         if np.isfinite(spread.upper):
             ax.axhspan(spread.lower, spread.upper, alpha=0.2, color=BLUE)
-            marks += ["band: quartiles"]
             figures += f" ({spread.lower:.4g} to {spread.upper:.4g})"
-    if not spread.count:
-        ax.set_yticks([])
-    reached = f"{spread.count} of {spread.seeds} seeds reach {level}"
-    ax.set_title(f"energy at {level}{figures}\n{reached}", fontsize=10)
-    ax.set_xlabel(f"seed ({', '.join(marks)})")
+    ax.set_title(f"energy at {level}{figures}\n{words}", fontsize=10)
+    ax.set_xlabel(f"seed (line: median, band: quartiles, x: never within {level})")
     ax.set_ylabel("energy F2 [J]")
-    if len(fronts) <= 20:
+    if len(fronts) <= 2 * _MOST_NAMED:
         ax.set_xticks(range(len(fronts)), [str(front.seed) for front in fronts])
     ax.margins(x=0.1, y=0.2)
     ax.ticklabel_format(axis="y", useOffset=False)
     low, high = ax.get_ylim()
     more = _LEAST_SPAN * (low + high) / 2 - (high - low)
-    if more > 0 and spread.count:
+    if not spread.count:
+        ax.set_yticks([])
+    elif more > 0:
         ax.set_ylim(low - more / 2, high + more / 2)
     return ax
 
@@ -194,7 +214,7 @@ def front_figure(fronts: Sequence[Front], title: str | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
         Energy against residual; median hypervolume with its quartiles against candidates; for
-        several seeds also the least energy of each at `SEARCH_RESIDUAL`, over its quartiles.
+        several seeds also the least energy of each within 1 mm, over its quartiles.
     """
     complete = [front for front in fronts if front.complete]
     several = len(complete) > 1
@@ -210,5 +230,197 @@ def front_figure(fronts: Sequence[Front], title: str | None = None) -> Figure:
 
 def _refuse_several_tasks(fronts: Sequence[Front]) -> None:
     for i, front in enumerate(fronts, 1):
-        if front.task != fronts[0].task:
-            raise ValueError(f"front {i} is of another task than front 1; give fronts of one move")
+        if difference := task_difference(front.task, fronts[0].task):
+            raise ValueError(
+                f"front {i} is of another task than front 1: its {difference}; give fronts of one "
+                "move"
+            )
+
+
+# Methods compared
+
+
+def comparison_figure(
+    comparison: Comparison, known: Sequence[KnownPoint] = (), title: str | None = None
+) -> Figure:
+    """Draw fronts over each other.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The fronts.
+    known : sequence of KnownPoint, optional
+        Motions to hold them against, such as the paper's.
+    title : str, optional
+        Title of the picture; the task by default.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels: whole fronts; small residuals, logarithmic; points above the best of all. Of
+        several seeds the median attainment surface, in a band from the best to the worst. The
+        legend stands beside the third.
+    """
+    figure = new_figure(10, 7.4)
+    axes: list[Axes] = list(figure.subplots(2, 2).flat)
+    draw_whole(comparison, known, axes[0])
+    draw_still(comparison, known, axes[1])
+    draw_gaps(comparison, axes[2])
+    letter(axes[:3])
+    axes[3].axis("off")
+    several = any(len(group.runs) > 1 for group in comparison.groups)
+    handles, labels = legend_of(axes)
+    axes[3].legend(
+        handles, [fill(label, 48) for label in labels], loc="center left", frameon=False,
+        fontsize=10, alignment="left",
+        title="Several seeds: the line is what half of them reach\n"
+        "(of two, the better one), the band best to worst" if several else None,
+    )  # fmt: skip
+    figure.suptitle(title_of(comparison.task) if title is None else title, fontsize=12)
+    return figure
+
+
+def draw_whole(
+    comparison: Comparison, known: Sequence[KnownPoint] = (), ax: Axes | None = None
+) -> Axes:
+    """Draw energy against residual, both linear.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The fronts, by `compare_fronts`.
+    known : sequence of KnownPoint, optional
+        Motions to hold them against.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; new axes by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; of several seeds there is the median attainment surface, in a band from the best
+        to the worst.
+    """
+    ax, right = axes_or_new(ax), 1.04 * _right(comparison)
+    _draw_compared(ax, comparison, known, right)
+    ax.set_xlim(0, right * 1e3)
+    ax.set_title("the whole fronts", **TITLE)
+    return ax
+
+
+def draw_still(
+    comparison: Comparison, known: Sequence[KnownPoint] = (), ax: Axes | None = None
+) -> Axes:
+    """Draw energy against small residuals, logarithmic.
+
+    Parameters, and what is returned, are those of `draw_whole`. The end reaches to the largest of
+    the comparison's levels, or further where no front reaches these.
+    """
+    ax, least = axes_or_new(ax), float(comparison.best_front[0, 0])
+    right = min(max(*comparison.levels, _END * least), _right(comparison))
+    _draw_compared(ax, comparison, known, right)
+    _logarithmic(ax, comparison, right)
+    ax.set_title("small residuals", **TITLE)
+    return ax
+
+
+def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
+    """Draw how far points are above the best of all filled fronts, residual logarithmic.
+
+    Points rather than staircases: the steps of a coarse front would make it look bad between its
+    points. Parameters, and what is returned, are those of `draw_whole`.
+    """
+    ax = axes_or_new(ax)
+    for group, own, wider in _drawn(comparison):
+        ax.plot(
+            np.maximum(group.median[:, 0], _left(comparison)) * 1e3,
+            100 * comparison.above_best(group.median), own.mark, color=own.colour,
+            markersize=3.2 + wider, markeredgewidth=0, label=group.label,
+        )  # fmt: skip
+    ax.set_yscale("symlog", linthresh=0.1, linscale=0.5)
+    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    ax.set_ylim(-0.008, None)
+    _logarithmic(ax, comparison, _right(comparison))
+    ax.set_ylabel("energy above the best [%]")
+    ax.set_title("each point above the best of all", **TITLE)
+    return ax
+
+
+def _drawn(comparison: Comparison) -> Iterator[tuple[Group, Look, float]]:
+    """Every group, its look, and how much wider it is drawn, to be seen below the next ones."""
+    last = len(comparison.groups) - 1
+    for place, group in enumerate(comparison.groups):
+        yield group, look(place), 0.35 * (last - place)
+
+
+def _draw_compared(
+    ax: Axes, comparison: Comparison, known: Sequence[KnownPoint], right: float
+) -> None:
+    """Draw fronts up to a residual [m], known points and the best free motion.
+
+    A search's front is the staircase of what it found; that of the gradient is a line, of which it
+    computed some points: motions between these lie on it.
+    """
+    for group, own, wider in _drawn(comparison):
+        style: dict[str, Any] = {"color": own.colour, "linestyle": own.dash, "label": group.label}
+        line = group.by_gradient and len(group.runs) == 1 and comparison.fill > 0
+        shown = _up_to(group.runs[0].between if line else group.median, right)
+        draw_front(ax, *shown.T, exact=line, width=1.2 + wider, **style)
+        if len(group.runs) > 1:
+            residuals, *ends = group.band
+            shown = residuals <= right
+            ax.fill_between(
+                residuals[shown] * 1e3, *(end[shown] for end in ends), step="post",
+                color=own.colour, alpha=0.2, linewidth=0,
+            )  # fmt: skip
+    for point, mark in zip(known, cycle("*Pv"), strict=False):
+        if point.residual is None:
+            ax.axhline(point.energy, color="black", lw=1, ls=":", label=point.label)
+        else:
+            ax.plot(
+                point.residual * 1e3, point.energy, mark, color="black", markersize=11,
+                markeredgecolor="white", label=point.label, zorder=5,
+            )  # fmt: skip
+    if comparison.floor is not None:
+        label = f"any joint motion at rest{' (nominal plant)' * bool(comparison.task.ranges)}"
+        ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
+    ax.set_ylim(*_energies_shown(comparison, known, right))
+    name_objectives(ax)
+
+
+def _up_to(points: Array, right: float) -> Array:
+    """Points up to a residual, and the last one's energy there."""
+    inside = points[points[:, 0] <= right]
+    return inside if not len(inside) else np.vstack([inside, [right, inside[-1, 1]]])
+
+
+def _energies_shown(
+    comparison: Comparison, known: Sequence[KnownPoint], right: float
+) -> tuple[float, float]:
+    """The least and the largest energy on the axis: the whole best front, and others near it."""
+    most = float(comparison.best_front[0, 1])
+    top = min(max(group.median[0, 1] for group in comparison.groups), _TALLEST * most)
+    marks = [point.energy for point in known]
+    marks += [] if comparison.floor is None else [comparison.floor]
+    reached = [_up_to(group.best, right) for group in comparison.groups]
+    ends = [points[-1, 1] for points in reached if len(points)]
+    low, high = min([*marks, *ends, most]), max([*marks, top, most])
+    margin = 0.06 * ((high - low) or high)
+    return low - margin, high + margin
+
+
+def _left(comparison: Comparison) -> float:
+    return max(_LEAST, _ASIDE * float(comparison.best_front[0, 0]))
+
+
+def _right(comparison: Comparison) -> float:
+    return max([*(group.best[-1, 0] for group in comparison.groups), *comparison.levels])
+
+
+def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
+    left = _left(comparison)
+    logarithmic(ax, right / left)
+    ax.set_xlim(left * 1e3, right * 1e3)
+    ax.set_xlabel("residual F1 [mm], logarithmic")
+    for level in comparison.levels:
+        if left <= level <= right:
+            ax.axvline(level * 1e3, color="0.75", linewidth=0.8, zorder=0)

@@ -1,20 +1,31 @@
-"""Residuals over errors of the plant as a picture, one curve for each plan."""
+"""Residuals under parameter errors: over one error, and each motion's energy over its residual."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from quietarm.ocp import Robustness
 from quietarm.ocp.checks import has_no
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
-from quietarm.studies.figures.axes import axes_or_new, legend_of, side_by_side
+from quietarm.studies.display.words import REST
+from quietarm.studies.figures.axes import (
+    axes_or_new,
+    legend_of,
+    logarithmic,
+    name_objectives,
+    side_by_side,
+)
 from quietarm.studies.figures.looks import look
+
+if TYPE_CHECKING:
+    from quietarm.studies.compare.judged import Judged
 
 
 def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None = None) -> Axes:
-    """Draw what plans leave over the errors of one thing.
+    """Draw residuals over the errors of one parameter.
 
     Parameters
     ----------
@@ -28,13 +39,13 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes: residual, in per cent of what the plain cycloid leaves on the assumed plant,
-        against the error [%]; where a curve first leaves the limit, it is marked.
+        The axes: residual, in per cent of the plain cycloid's on the nominal plant, against the
+        error [%]; where a curve first exceeds 5 %, it is marked.
 
     Raises
     ------
     ValueError
-        When there is no plan, one is something else, or has no sweep of that name.
+        When a plan has no sweep of that name.
     """
     ax = axes_or_new(ax)
     limit = 100 * TOLERATED
@@ -59,11 +70,48 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     return ax
 
 
-def robustness_figure(plans: Mapping[str, Robustness], title: str = "") -> Figure:
-    """The picture of `quietarm robustness`: `draw_robustness`, one panel for each parameter."""
-    names = next(iter(plans.values())).ranges
-    figure, axes = side_by_side(len(names), title, width=max(4.8, 7.2 / len(names)))
-    for name, ax in zip(names, axes, strict=True):
-        draw_robustness(plans, name, ax)
-    figure.legend(*legend_of(axes), loc="outside lower center", ncols=3, fontsize=8)
+def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
+    """Draw the energy of motions over their residual: open as planned, filled in the worst case.
+
+    Parameters
+    ----------
+    motions : sequence of Judged
+        Those that there are are drawn.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; new axes by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, residuals logarithmic.
+    """
+    ax = axes_or_new(ax)
+    for number, judged in enumerate(motions):
+        if judged.motion is None:
+            continue
+        how, energy = look(number), judged.motion.energy
+        worst = judged.motion.residual if judged.worst is None else judged.worst.residual
+        ends = [1e3 * max(residual, REST) for residual in (judged.motion.residual, worst)]
+        ax.plot(ends, [energy] * 2, color=how.colour, linewidth=1)
+        for end, fill in zip(ends, ("none", "full"), strict=True):
+            ax.plot(end, energy, how.mark, color=how.colour, markersize=5, fillstyle=fill)
+        ax.annotate(f" {judged.name}", (ends[1], energy), va="center", fontsize=8)
+    logarithmic(ax, 1 / REST)
+    ax.margins(x=0.18)
+    name_objectives(ax)
+    return ax
+
+
+def motions_figure(motions: Sequence[Judged], title: str) -> Figure:
+    """Draw motions over each other: `draw_motions`, and `draw_robustness` for each error."""
+    curves = {one.name: one.robustness for one in motions if one.robustness is not None}
+    names = list(next(iter(curves.values())).ranges) if curves else []
+    figure, axes = side_by_side(1 + len(names), title, width=6.0)
+    draw_motions(motions, axes[0])
+    if any(judged.worst for judged in motions):
+        axes[0].set_xlabel("residual F1 [mm] (open: nominal plant, filled: worst case)")
+    for name, ax in zip(names, axes[1:], strict=True):
+        draw_robustness(curves, name, ax)
+    if names:
+        figure.legend(*legend_of(axes[1:]), loc="outside lower center", ncols=4, fontsize=8)
     return figure

@@ -95,6 +95,13 @@ def table_in_markdown(table: DataFrame) -> str:
     return cells.to_markdown(index=False, floatfmt=".4g", missingval="-")
 
 
+def turned(table: DataFrame, names: str) -> str:
+    """A table in Markdown whose columns are lines: few rows of many figures, named by a column."""
+    cells = table.map(lambda cell: f"{cell:.4g}" if isinstance(cell, float) else cell)
+    cells = cells.astype(object).where(table.notna(), "-").astype(str).set_index(names)
+    return table_in_markdown(cells.T.rename_axis(names).reset_index())
+
+
 def percents(shares: Sequence[float]) -> str:
     """A share, or the range of several, in per cent."""
     words = [
@@ -115,7 +122,12 @@ def _environment() -> Environment:
         undefined=StrictUndefined,
     )  # fmt: skip
     found.filters.update(
-        table=table_in_markdown, mm=millimetres, percents=percents, listed=listed, counted=counted
+        table=table_in_markdown,
+        turned=turned,
+        mm=millimetres,
+        percents=percents,
+        listed=listed,
+        counted=counted,
     )
     return found
 

@@ -146,24 +146,21 @@ def test_no_example_is_left_untested():
 
 SEARCH = ["--population", "20", "--generations", "5"]
 SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of its own
-    "epsilon": ["--points", "5"],
+    "front": ["--points", "5"],
+    "search": SEARCH,
     "study": [*SEARCH, "--runs", "1", "--points", "4"],
     "contest": ["--runs", "1", "--evaluations", "150", "--methods", "nsga2,vepso"],
-    "floor": ["--starts", "1", "--tolerance", "0.05"],
     "versus": ["--terms", "4"],
 }
-LOUD = {"export", "plants"}
-"""Commands that have no --quiet."""
 
 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
     words = [word.replace(":90deg:", ":50deg:").replace(":1.4s:", ":1s:") for word in words]
-    quiet = ["--quiet"] * (words[0] not in LOUD)
-    fewer = SHORTER.get(words[0], [])
-    if words[0] == "front":
-        fewer = SHORTER.get(words[words.index("--method") + 1], SEARCH)
-    return [*words, *quiet, *fewer, *(["--runs", "2"] if "--workers" in words else [])]
+    fewer = [] if "--polish" in words else SHORTER.get(words[0], [])
+    if "free" in words:
+        fewer = ["--starts", "1"]
+    return [*words, "--quiet", *fewer, *(["--runs", "2"] if "--workers" in words else [])]
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What the tests of `studies` share: one reproduction of the paper, one plan."""
+"""What the tests of `studies` share: a plan, fronts, and ways to call the command."""
 
 import math
 import os
@@ -6,20 +6,15 @@ import shlex
 import signal
 import subprocess
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
 from lines import COARSELY
-from quietarm.metaheuristics import ensemble
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
-    CycloidGaussians,
-    CycloidNetwork,
     CycloidPolynomial,
     Front,
     FrontPoint,
-    InfeasibleTaskError,
     PointToPoint,
     evaluate_coefficients,
     non_dominated,
@@ -28,46 +23,6 @@ from quietarm.ocp import (
 from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
 from quietarm.studies.registry.methods import METHODS
-from quietarm.studies.reproduction import recompute
-
-
-@pytest.fixture(scope="session")
-def reproduction():
-    """The paper recomputed, once for all tests.
-
-    Searches, floors and the solves with other profiles are cut short: how well they find is tested
-    where they are. The earlier studies' profiles are solved where the paper names them (Tables 3
-    and 6), the first also on the third plant; on other moves they are the plain cycloid.
-    """
-    search = ensemble.search
-    short_as = {
-        "vepso": {"population": 20, "generations": 40},
-        "nsga2": {"population": 20, "generations": 3},
-    }
-    earlier = {"arm-on-flexible-link": CycloidGaussians}
-    floor, plan = recompute.energy_floor, recompute.plan_move
-
-    def short(task, method, **settings):
-        return search(task, method, **short_as[method], **settings)
-
-    def from_one_start(task, *given, **settings):
-        wanted = (task.target, task.duration) == (math.pi / 6, 0.8)
-        if task.uncertainty is not None and not wanted:
-            raise InfeasibleTaskError("left out in these tests")
-        profile = given[0]
-        studied = earlier.get(task.plant.name, CycloidNetwork)
-        if isinstance(profile, CycloidNetwork | CycloidGaussians) and type(profile) is not studied:
-            return evaluate_coefficients(task, profile.plain, profile=profile)
-        return plan(task, *given, **{**settings, "starts": 1})
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ensemble, "search", short)
-        patch.setattr(recompute, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.05))
-        patch.setattr(floor_search, "FIRST_INTERVALS", 24)
-        patch.setattr(recompute, "epsilon_front", partial(recompute.epsilon_front, points=3))
-        patch.setattr(recompute, "STARTS", dict.fromkeys(recompute.STARTS, 1))
-        patch.setattr(recompute, "plan_move", from_one_start)
-        return recompute.recompute_paper()
 
 
 @pytest.fixture(scope="module", autouse=True)

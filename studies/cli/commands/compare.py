@@ -1,75 +1,152 @@
-"""`quietarm compare`: compare fronts of one task."""
+"""`quietarm compare`: fronts of one task, or plans of one move with baselines and errors."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
-from quietarm.studies.cli.options import command, latex_option, quiet_option
+from quietarm.studies.cli.ending import finish
+from quietarm.studies.cli.options import command, quiet_option, refuse_typed
+from quietarm.studies.cli.quantities import once
 from quietarm.studies.cli.task import plant_file_option
-from quietarm.studies.cli.types import FOLDER, INPUT
+from quietarm.studies.cli.types import ERROR, FOLDER, INPUT, WHOLE, Parsed
 from quietarm.studies.display.progress import working
+from quietarm.studies.report import Report
 from rich.console import Console
+
+if TYPE_CHECKING:
+    from quietarm.ocp import Front, Plan
+    from quietarm.studies.compare.fronts import Comparison
+
+_OF_PLANS, _OF_FRONTS = ("baselines", "errors", "samples"), ("reference", "free")
+
+
+def _names(text: str) -> tuple[str, ...]:
+    from quietarm.ocp.checks import unknown
+    from quietarm.studies.compare.baselines import BASELINES
+
+    names = BASELINES if text == "all" else tuple(dict.fromkeys(text.split(",")))
+    for name in names:
+        if name not in BASELINES:
+            raise ValueError(unknown("baseline", name, ("all", *BASELINES)))
+    return names
 
 
 @command()
-@click.argument("fronts", nargs=-1, type=INPUT, metavar="FRONT FRONT ...")
-@click.option("--reference", type=INPUT, help="Measure IGD+ and epsilon against this front.")
-@click.option(
-    "--floor/--no-floor", default=True, show_default=True,
-    help="Find the least energy over all joint motions as well: some seconds.",
+@click.argument("files", nargs=-1, type=INPUT, metavar="FILE...")
+@click.option("--baselines", type=Parsed("names", _names), default=(),
+              help="Plans: add these for the same move, as zvd,ruckig,zvd-ruckig; or all.",
 )  # fmt: skip
-@click.option(
-    "--as-found", is_flag=True, help="Do not count motions between the points of a front."
-)
-@click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
-@latex_option
+@click.option("--error", "errors", type=ERROR, multiple=True, metavar="NAME=SHARE",
+              help="Plans: largest error of the frequency, the damping or a parameter, as "
+              "frequency=8%; may be repeated. [default: what the plans are made for]")  # fmt: skip
+@click.option("--samples", type=WHOLE, default=2000, show_default=True,
+              help="Plans: random plants for the percentiles.")  # fmt: skip
+@click.option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one.")
+@click.option("--free/--no-free", default=True, show_default=True,
+              help="Fronts: find the least energy over all joint motions as well; some seconds.",
+)  # fmt: skip
+@click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
 @plant_file_option(expose_value=False)
 @quiet_option
 def compare(
-    fronts: tuple[Path, ...],
+    files: tuple[Path, ...],
+    baselines: tuple[str, ...],
+    errors: tuple[tuple[str, float], ...],
+    samples: int,
     reference: Path | None,
-    floor: bool,
-    as_found: bool,
+    free: bool,
     output: Path | None,
-    latex: Path | None,
     quiet: bool,
 ) -> None:
-    """Compare fronts of one task, found by any methods.
+    """Compare fronts of one task, or plans of one move.
 
-    By hypervolume, IGD+, additive epsilon, coverage, the energies at residuals of 0.1, 1 and 5 mm,
-    candidates evaluated and time. The motions between the points of a front count as well, so that
-    it is not judged by its number of points. Fronts of one method from several seeds are grouped:
-    medians, quartiles and attainment surfaces.
+    Fronts, found by any methods, or a folder of a bench: energies within residuals, hypervolume,
+    IGD+, epsilon, candidates and time; several seeds of a method as median and quartiles.
+
+    Plans: energy, residual, the worst case within parameter errors, insensitivity, percentiles,
+    peaks, and the limits that they exceed, beside the cycloid, input shapers and ruckig. Ruckig
+    needs quietarm[ruckig] and an acceleration limit.
 
     \b
     Examples:
-      quietarm compare nsga2.json vepso.json
-      quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
+      quietarm compare nsga2.json vepso.json epsilon.json --output compared
+      quietarm compare plan.json robust.json --error frequency=8% --baselines zvd,ruckig
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.ocp import QuietarmError
-    from quietarm.studies.cli.ending import finish
-    from quietarm.studies.comparison.measures import FILL, compare_fronts
-    from quietarm.studies.document.files import document_files
-    from quietarm.studies.document.latex import latex_file
-    from quietarm.studies.reading.saved import load_front
-    from quietarm.studies.reports.comparison import comparison_document, with_floor
+    from quietarm.ocp import Front, Plan
+    from quietarm.studies.compare.opening import open_answers
 
-    errors, trouble = Console(stderr=True), None
-    with working("comparing", errors, quiet=quiet):
-        loaded = [load_front(path) for path in fronts]
-        named = None if reference is None else load_front(reference)
-        comparison = compare_fronts(
-            loaded, [str(front) for front in fronts], reference=named,
-            reference_name=str(reference),
-            fill=0 if as_found else FILL,
-        )  # fmt: skip
-    if floor:
-        try:
-            with working("finding the floor", errors, quiet=quiet):
-                comparison = with_floor(comparison, errors)
-        except KeyboardInterrupt:
-            trouble = QuietarmError("interrupted; the comparison is kept, without the floor")
-    document = comparison_document(comparison)
-    files = [*document_files(output, document), latex_file(latex, document)]
-    finish(files, document, trouble=trouble, quiet=quiet)
+    wait = partial(working, console=Console(stderr=True), quiet=quiet)
+    with wait("reading"):
+        answers = open_answers(files)
+    plans = {name: one for name, one in answers.items() if isinstance(one, Plan)}
+    fronts = {name: one for name, one in answers.items() if isinstance(one, Front)}
+    if plans:
+        refuse_typed(_OF_FRONTS, "is for fronts; leave it out")
+        report = _of_plans(plans, baselines, once(errors, "--error "), samples, wait)
+    else:
+        refuse_typed(_OF_PLANS, "is for plans; leave it out")
+        report = _of_fronts(fronts, reference, free, wait)
+    finish(report.files(output), report, quiet=quiet)
+
+
+def _of_plans(
+    plans: dict[str, Plan],
+    baselines: Sequence[str],
+    ranges: dict[str, float],
+    samples: int,
+    wait: Callable[[str], AbstractContextManager[None]],
+) -> Report:
+    from quietarm.studies.compare.plans import compare_plans, plans_report
+
+    with wait("judging"):
+        judged = compare_plans(plans, baselines, ranges, samples)
+    return plans_report(next(iter(plans.values())).task, judged)
+
+
+def _of_fronts(
+    fronts: dict[str, Front],
+    reference: Path | None,
+    free: bool,
+    wait: Callable[[str], AbstractContextManager[None]],
+) -> Report:
+    from quietarm.studies.compare.front_report import by_task, fronts_report
+    from quietarm.studies.compare.fronts import compare_fronts
+    from quietarm.studies.reading.saved import load_front
+    from quietarm.studies.reproduce.paper import paper_points
+
+    tasks = by_task(fronts)
+    if reference is not None and len(tasks) > 1:
+        raise ValueError(
+            "--reference is for fronts of one task; these are of several: leave it out"
+        )
+    named = None if reference is None else load_front(reference)
+    found = [
+        compare_fronts(
+            list(one.values()), list(one), reference=named, reference_name=str(reference)
+        )
+        for one in tasks
+    ]
+    if free:
+        with wait("finding free motions"):
+            found = list(map(_with_floor, found))
+    terms = [{run.front.profile.size for run in one.runs} for one in found]
+    return fronts_report(
+        found, [paper_points(one.task, sizes) for one, sizes in zip(found, terms, strict=True)]
+    )
+
+
+def _with_floor(comparison: Comparison) -> Comparison:
+    """With the least energy over all joint motions; without where none is found."""
+    from quietarm.ocp import QuietarmError, energy_floor
+
+    try:
+        return replace(comparison, floor=energy_floor(comparison.task).energy)
+    except QuietarmError as error:
+        Console(stderr=True).print(f"no free motion: {error}", highlight=False, soft_wrap=True)
+        return comparison

@@ -5,65 +5,37 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.options import (
-    command,
-    quiet_option,
-    warn_of_workers,
-    workers_at_hand_options,
-)
+from quietarm.studies.cli.options import command, quiet_option
 from quietarm.studies.cli.types import FOLDER, WHOLE
 from rich.console import Console
 
 
 @command()
+@click.option("--full", is_flag=True, help="Judge every claim as well, with several seeds.")
+@click.option("--seeds", type=WHOLE, help="Seeds of VEPSO and NSGA-II. [default: 1; --full: 9]")
+@click.option("--workers", type=WHOLE, help="Processes that share the work. [default: one a core]")
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
-@click.option(
-    "--seeds", type=WHOLE, default=1, show_default=True,
-    help="Seeds of VEPSO and NSGA-II; 9 give medians and quartiles, in some 6 times the time.",
-)  # fmt: skip
-@workers_at_hand_options
 @quiet_option
 def reproduce(
-    output: Path | None, seeds: int, workers: int | None, scheduler: str | None, quiet: bool
+    full: bool, seeds: int | None, workers: int | None, output: Path | None, quiet: bool
 ) -> None:
-    """Recompute the paper's Tables 2, 3, 5 and 6 and its claims; compare every system.
+    """Recompute the paper's Tables 2, 3, 5 and 6 and its figures; --full also judges its claims.
 
     \b
     Examples:
       quietarm reproduce --output results
-      quietarm reproduce --output results --workers 1
+      quietarm reproduce --full --output results
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.metaheuristics.sharing.pieces import InterruptedPiece
-    from quietarm.metaheuristics.sharing.workers import Workers, cores_at_hand
-    from quietarm.ocp import QuietarmError
+    import joblib
+    from quietarm.ocp.checks import whole
     from quietarm.studies.cli.ending import finish
     from quietarm.studies.display.progress import progress
-    from quietarm.studies.display.saving import inside
-    from quietarm.studies.document.blocks import Document, Lines
-    from quietarm.studies.document.files import document_files
-    from quietarm.studies.reproduction.recompute import pieces_of_paper, recompute_paper
-    from quietarm.studies.reproduction.report import reproduction_document
-    from quietarm.studies.reproduction.tables import unfinished_table
+    from quietarm.studies.reproduce.recompute import Effort, number_of_pieces, recompute_paper
+    from quietarm.studies.reproduce.report import reproduction_report
 
-    if workers is None:
-        workers = cores_at_hand() if scheduler is None else 1
-    where, errors = Workers(workers, scheduler), Console(stderr=True)
-    pieces = pieces_of_paper(seeds)
-    warn_of_workers(errors, workers, len(pieces))
-    try:
-        with progress(len(pieces), errors, quiet=quiet) as begin:
-            result = recompute_paper(begin, seeds, where)
-    except InterruptedPiece as stop:
-        if not stop.part.answers:
-            raise
-        table = unfinished_table(pieces, stop.part)
-        finish(
-            inside(output, {"unfinished.csv": table.save_csv}),
-            Document("", [Lines([table.csv().rstrip()])]),
-            trouble=QuietarmError(
-                f"{stop.part.stopped}: {stop.part.number} of {len(pieces)} pieces of work are done"
-            ),
-        )
-    else:
-        document = reproduction_document(result)
-        finish(document_files(output, document), document, quiet=quiet)
+    number = (9 if full else 1) if seeds is None else whole("seeds", seeds, 1)
+    effort = Effort(full=full, seeds=number)
+    processes = joblib.cpu_count() if workers is None else whole("workers", workers, 1)
+    with progress(number_of_pieces(effort), Console(stderr=True), quiet=quiet) as begin:
+        report = reproduction_report(recompute_paper(effort, processes, begin))
+    finish(report.files(output), report, quiet=quiet)

@@ -160,7 +160,7 @@ def many(plant: Any) -> Answer:
 
 def fastest() -> Answer:
     """The shortest duration within a limit of the torque."""
-    found = qa.fastest_move(link(torque_limit=0.2))
+    found = qa.fastest_move(link(torque_limit=0.2), qa.CycloidPolynomial(6))
     return {"duration": found.plan.task.duration}
 
 

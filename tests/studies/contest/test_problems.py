@@ -3,7 +3,7 @@
 import pytest
 from quietarm.metaheuristics import PROBLEMS
 from quietarm.studies.contest.store import Store, Yardstick, problems_of
-from quietarm.studies.paper import CONDITIONS
+from quietarm.studies.reproduce.paper import CONDITIONS
 from small_contest import LINE, NAME, documents, rows_of
 
 pytestmark = pytest.mark.usefixtures("no_pictures")

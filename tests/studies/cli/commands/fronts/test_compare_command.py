@@ -1,60 +1,90 @@
-"""`quietarm compare`: what it shows, what it writes, what it refuses."""
+"""`quietarm compare`: fronts, plans, folders; what it shows, writes and refuses."""
 
-import csv
+import json
 
+import pandas as pd
 import pytest
-import quietarm.studies.comparison.measures
 import quietarm.studies.reading.saved
-import quietarm.studies.reports.comparison
-
-# The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
-FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
 
 
 @pytest.fixture
 def files(good, poor, tmp_path, monkeypatch):
-    """Two files, in the folder of the test."""
+    """Two invented fronts, in the folder of the test; nothing can be evaluated between points."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.setattr(quietarm.studies.reading.saved, "check_figures", lambda front, name: None)
     good.save("good.json")
     poor.save("poor.json")
     return tmp_path
 
 
-# The command
+def test_fronts_fill_a_folder(call, files):
+    code, out, err = call("compare good.json poor.json --no-free --output compared")
+    assert (code, err) == (0, "")
+    names = {"report.md", "methods.csv", "runs.csv", "fronts.png"}
+    assert {path.name for path in (files / "compared").iterdir()} == names
+    runs = pd.read_csv(files / "compared" / "runs.csv").set_index("name")
+    assert runs.loc["good.json", "energy_J_at_5mm"] == 0.5
+    assert "epsilon constraint" in out
 
 
-def test_compare_fills_a_folder(call, files, good, poor):
-    code, out, _ = call("compare good.json poor.json --as-found --no-floor --output compared")
+def test_a_folder_is_compared_move_by_move(call, files, front_of, task):
+    from dataclasses import replace
+
+    (files / "bench" / "deep").mkdir(parents=True)
+    (files / "good.json").rename(files / "bench" / "good.json")
+    (files / "poor.json").rename(files / "bench" / "deep" / "poor.json")
+    front_of([(1, 0.5)], task=replace(task, duration=1.0)).save("bench/other.json")
+    code, out, _ = call("compare bench --no-free --output compared")
     assert code == 0
-    assert out.splitlines()[-4:] == [f"wrote compared/{name}" for name in FILES]
-    assert {path.name for path in (files / "compared").iterdir()} == set(FILES)
-    report = (files / "compared" / "report.md").read_text()
-    assert "![Fronts](fronts.png)" in report
-    rows = list(csv.reader((files / "compared" / "coverage.csv").read_text().splitlines()))
-    # all of `poor` is beaten by `good`, and none of `good` by `poor`
-    assert rows[1:] == [["by epsilon constraint", "", "100.0"], ["by NSGA-II", "0.0", ""]]
+    assert "0 to 30 deg in 0.8 s" in out
+    assert "0 to 30 deg in 1 s" in out
+    assert (files / "compared" / "fronts-2.png").exists()
+
+
+def test_plans_are_compared_with_baselines_under_errors(call, tmp_path, monkeypatch, plan, cycloid):
+    monkeypatch.chdir(tmp_path)
+    plan.save("ours.json")
+    line = "compare ours.json --baselines zv,cycloid --error frequency=8% --samples 50"
+    code, out, err = call(f"{line} --output out")
+    assert (code, err) == (0, "")
+    table = pd.read_csv("out/motions.csv").set_index("motion")
+    assert list(table.index) == ["ours", "zv", "cycloid"]
+    assert table.loc["ours", "energy [J]"] == pytest.approx(plan.energy, rel=1e-9)
+    there = cycloid.candidate.perturbed({"frequency": 0.08}).residual
+    assert table.loc["cycloid", "worst case [mm]"] >= 1e3 * there * (1 - 1e-9)
+    assert "+-8 % of frequency" in " ".join(out.split())
 
 
 @pytest.mark.parametrize(
-    ("content", "words"),
+    ("line", "words"),
     [
-        ("t_s,theta_rad\n0,0\n", "is not a front: it is not whole, valid JSON"),
-        (
-            '{"format": "quietarm-plan", "version": 1}',
-            "its format is 'quietarm-plan'; give a front file",
-        ),
-        (
-            '{"format": "quietarm-front", "version": 2}',
-            "this quietarm reads 3; find the front again",
-        ),
+        ("compare", "nothing is given to compare; give plans, fronts, or a folder of fronts"),
+        ("compare good.json plan.json", "compare fronts or plans, not both"),
+        ("compare good.json good.json", "good.json"),
+        ("compare good.json --baselines zvd", "--baselines is for plans; leave it out"),
+        ("compare plan.json --reference good.json", "--reference is for fronts; leave it out"),
+        ("compare plan.json --baselines zdv", "unknown baseline 'zdv'; did you mean"),
+        ("compare empty", "empty holds no fronts; give a folder of a bench, or files"),
+        ("compare good.json table.json", "table.json is not a front"),
     ],
 )
-def test_what_is_no_front_is_refused_in_a_line(call, files, content, words):
-    if content is not None:
-        (files / "bad.json").write_text(content)
-    code, out, err = call("compare good.json bad.json")
+def test_what_cannot_be_compared_is_refused_in_a_line(call, files, plan, line, words):
+    plan.save("plan.json")
+    (files / "empty").mkdir()
+    (files / "table.json").write_text("t_s,theta_rad\n0,0\n")
+    code, out, err = call(line)
     assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "bad.json" in err
     assert words in err
+
+
+@pytest.mark.parametrize("figure", ["residual", "peak_torque"])
+def test_a_plan_is_a_claim(call, tmp_path, monkeypatch, cycloid, figure):
+    monkeypatch.chdir(tmp_path)
+    cycloid.save("plan.json")
+    document = json.loads((tmp_path / "plan.json").read_text())
+    document["motion"][figure] *= 1.01
+    (tmp_path / "plan.json").write_text(json.dumps(document))
+    code, out, err = call("compare plan.json")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert f"plan.json states {figure.replace('_', ' ')}" in err

@@ -1,0 +1,93 @@
+"""What is used today in place of a plan: the cycloid, input shapers, ruckig, shaped ruckig."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from quietarm.ocp import Candidate, Plan, PointToPoint, evaluate_coefficients, shaped_cycloid
+from quietarm.ocp.checks import install, unknown
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.profiles.shaped_cycloid import SHAPERS, Impulses, convolved
+from quietarm.ocp.simulation.free_vibration import FreeVibration
+
+CYCLOID, RUCKIG = "cycloid", "ruckig"
+BASELINES = (CYCLOID, *SHAPERS, RUCKIG, *(f"{name}-{RUCKIG}" for name in SHAPERS))
+"""Their names; a shaper alone shapes the cycloid."""
+_SHORTEST = 1e-9
+"""Pieces of a motion that are shorter [s] are none."""
+_LEAST_SHARE = 0.02
+"""Share of the duration that a shaper has to leave for the motion that it shapes."""
+
+
+def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
+    """A baseline's motion of a task; ValueError where there is none."""
+    if name not in BASELINES:
+        raise ValueError(unknown("baseline", name, BASELINES))
+    task = task.certain
+    if name == CYCLOID:
+        return evaluate_coefficients(task, [])
+    if name in SHAPERS:
+        return evaluate_coefficients(task, [], profile=shaped_cycloid(task, name))
+    shaper = name.removesuffix(RUCKIG).removesuffix("-")
+    impulses = _impulses(task, shaper) if shaper else Impulses((1.0,), (0.0,))
+    left = task.duration - impulses.times[-1]
+    if left < _LEAST_SHARE * task.duration:
+        raise ValueError(f"the shaper alone takes {impulses.times[-1]:.3g} s")
+    free = shaped(ruckig_motion(replace(task, duration=left)), impulses)
+    return Candidate.of_free_motion(task, free)
+
+
+def _impulses(task: PointToPoint, shaper: str) -> Impulses:
+    modes = FreeVibration(task.plant, task.target).modes
+    return convolved([SHAPERS[shaper](*mode) for mode in modes])
+
+
+def ruckig_motion(task: PointToPoint) -> FreeMotion:
+    """The motion of constant jerk that ruckig finds within a task's limits, in its duration.
+
+    ValueError where ruckig is not installed, the task limits no acceleration, or time is too short.
+    """
+    try:
+        from ruckig import InputParameter, Ruckig, Trajectory
+    except ImportError:
+        raise ValueError(f"ruckig is not installed; {install('ruckig')}") from None
+    if task.acceleration_limit is None:
+        raise ValueError("ruckig needs an acceleration limit")
+    asked, found, free = InputParameter(1), Trajectory(1), (-np.inf, np.inf)
+    asked.current_position, asked.target_position = [task.start], [task.target]
+    bounds = {limit.name: (limit.lower, limit.upper) for limit in task.limits}
+    slowest, fastest = bounds.get("speed", free)
+    asked.min_velocity, asked.max_velocity = [slowest], [fastest]
+    least, most = bounds["acceleration"]
+    asked.min_acceleration, asked.max_acceleration = [least], [most]
+    asked.max_jerk = [min(np.abs(bounds.get("jerk", free)))]
+    asked.minimum_duration = task.duration
+    Ruckig(1).calculate(asked, found)
+    if found.duration > task.duration * (1 + 1e-6):
+        raise ValueError(
+            f"within the limits it takes {found.duration:.4g} s, more than the "
+            f"{task.duration:.4g} s that it has"
+        )
+    one = found.profiles[0][0]
+    lengths = np.array(one.t)
+    there = lengths > _SHORTEST
+    times = np.concatenate([[0.0], np.cumsum(lengths[there])])
+    return FreeMotion(times, np.array(one.a)[:-1][there], np.array(one.j)[there])
+
+
+def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
+    """A motion convolved with impulses: one of them again, in pieces."""
+    begins = np.add.outer(free.times, impulses.times).ravel()
+    times = np.unique(begins)
+    times = times[np.append(True, np.diff(times) > _SHORTEST)]
+    middle = (times[1:] + times[:-1]) / 2
+    acceleration, jerk = np.zeros(len(middle)), np.zeros(len(middle))
+    for share, begin in zip(*impulses, strict=True):
+        own = np.searchsorted(free.times, middle - begin, side="right") - 1
+        moving = (own >= 0) & (own < free.steps)
+        k = own[moving]
+        since = times[:-1][moving] - begin - free.times[k]
+        acceleration[moving] += share * (free.acceleration[k] + free.jerk[k] * since)
+        jerk[moving] += share * free.jerk[k]
+    return FreeMotion(times, acceleration, jerk)

@@ -1,0 +1,130 @@
+"""Compared fronts as a report: a row a method, every run, how to read them, a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from math import isfinite
+
+import pandas as pd
+from quietarm.metaheuristics.ensemble import Spread
+from quietarm.ocp import Front, task_difference
+from quietarm.studies import figures
+from quietarm.studies.compare.fronts import Comparison, Group
+from quietarm.studies.display.words import millimetres, title_of
+from quietarm.studies.figures.fronts import KnownPoint
+from quietarm.studies.report import Report
+
+_INDICATORS = {"hypervolume": ".4f", "igd_plus": ".2g", "epsilon": ".2g"}
+_HEADINGS = {"hypervolume": "hypervolume", "igd_plus": "IGD+", "epsilon": "epsilon"}
+
+
+def by_task(fronts: dict[str, Front]) -> list[dict[str, Front]]:
+    """Fronts of several tasks, those of each together."""
+    tasks: list[dict[str, Front]] = []
+    for name, front in fronts.items():
+        for known in tasks:
+            if not task_difference(front.task, next(iter(known.values())).task):
+                known[name] = front
+                break
+        else:
+            tasks.append({name: front})
+    return tasks
+
+
+def spread_words(spread: Spread, form: str) -> str:
+    """Median and quartiles of seeds, and how many have the figure; one that has not is infinite."""
+    if not spread.count:
+        return "none"
+    middle, low, high = (
+        format(value, form) if isfinite(value) else "none"
+        for value in (spread.median, spread.lower, spread.upper)
+    )
+    if spread.seeds == 1:
+        return middle
+    some = f", {spread.count} of {spread.seeds} seeds" if spread.count < spread.seeds else ""
+    return f"{middle} ({low} to {high}{some})"
+
+
+def methods_table(comparison: Comparison) -> pd.DataFrame:
+    """A row for each method: medians, with quartiles where there are several seeds."""
+    return pd.DataFrame([_row(comparison, group) for group in comparison.groups])
+
+
+def _row(comparison: Comparison, group: Group) -> dict[str, object]:
+    energies = {
+        f"F2 [J] within {millimetres(level)}": spread_words(group.spread("energies", i), ".4g")
+        for i, level in enumerate(comparison.levels)
+    }
+    # as found, points of the gradient would lose by steps that its line has not
+    hidden = group.by_gradient and not comparison.fill
+    measures = {
+        _HEADINGS[name]: None if hidden else spread_words(group.spread(name), form)
+        for name, form in _INDICATORS.items()
+    }
+    front = group.runs[0].front
+    return {
+        "method": group.label,
+        "seeds": len(group.runs),
+        **energies,
+        **measures,
+        "points": Spread.of([len(run.front.points) for run in group.runs]).median,
+        "bound": front.settings.get("bound"),
+        "candidates": group.spread("front.evaluations").median or None,
+        "iterations": group.spread("front.iterations").median or None,
+        "time [s]": group.spread("front.seconds").median,
+    }
+
+
+def runs_table(comparison: Comparison) -> pd.DataFrame:
+    """Every run with all of its figures."""
+    rows: list[dict[str, object]] = []
+    for group in comparison.groups:
+        for run in group.runs:
+            front = run.front
+            row: dict[str, object] = {
+                "move": title_of(front.task), "name": run.name, "label": group.label,
+                "method": front.method, "seed": front.seed, "bound": front.settings.get("bound"),
+                "coefficients": front.profile.size, "points": len(front.points),
+                "hypervolume": run.hypervolume, "hypervolume_found": run.hypervolume_found,
+                "igd_plus": run.igd_plus, "epsilon": run.epsilon,
+            }  # fmt: skip
+            for i, level in enumerate(comparison.levels):
+                at = f"at_{1e3 * level:g}mm"
+                row |= {f"energy_J_{at}": run.energies[i], f"gap_{at}": run.gaps[i],
+                        f"gap_between_{at}": run.gaps_between[i]}  # fmt: skip
+            for name in ("evaluations", "iterations", "seconds", "complete"):
+                row[name] = getattr(front, name)
+            rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def fronts_report(
+    comparisons: Sequence[Comparison], known: Sequence[Sequence[KnownPoint]]
+) -> Report:
+    """Compared fronts of one task or several, with known points of each for its picture."""
+    pictures = ["fronts.png"] if len(comparisons) == 1 else [
+        f"fronts-{i}.png" for i in range(1, len(comparisons) + 1)
+    ]  # fmt: skip
+    tables = [methods_table(one) for one in comparisons]
+    moves = zip(comparisons, tables, strict=True)
+    return Report(
+        "compare/fronts.md",
+        {
+            "parts": list(zip(comparisons, tables, pictures, strict=True)),
+            "title_of": title_of,
+            "fill": comparisons[0].fill,
+            "several": any(len(g.runs) > 1 for one in comparisons for g in one.groups),
+        },
+        {
+            "methods": pd.concat([
+                table.assign(move=title_of(one.task)) if len(tables) > 1 else table
+                for one, table in moves
+            ]),
+            "runs": pd.concat(map(runs_table, comparisons)),
+        },
+        {
+            name: partial(figures.comparison_figure, one, points)
+            for name, one, points in zip(pictures, comparisons, known, strict=True)
+        },
+    )  # fmt: skip

@@ -1,0 +1,283 @@
+"""Fronts of one task compared: how far each is from the best of all."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+
+import moocore
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.metaheuristics.budget.record import CORNER
+from quietarm.metaheuristics.ensemble import Spread
+from quietarm.ocp import Front, PointToPoint, task_difference
+from quietarm.ocp.checks import not_negative, positive, whole
+from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.saved import plain
+from quietarm.studies.compare.staircase import best_of, evenly_spaced, filled, objectives, within
+from quietarm.studies.registry.methods import Kind, method_of
+
+FILL, MOST_FILL = 1000, 100_000
+"""About how many points a filled front has, and at most."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """One front and its figures in a comparison.
+
+    Energies [J] are the least within each level. A front of few points would lose by its steps, so
+    the indicators are those of the front filled with motions `between` its points.
+    """
+
+    name: str
+    front: Front
+    between: Array
+    hypervolume: float
+    hypervolume_found: float
+    igd_plus: float
+    epsilon: float
+    energies: tuple[float, ...]
+    gaps: tuple[float, ...]
+    gaps_between: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """The runs of one method with one set of settings, one for each seed.
+
+    `best`, `median` and `worst` are attainment surfaces: what one, half, and all of them reach.
+    """
+
+    label: str
+    runs: tuple[Measured, ...]
+    best: Array
+    median: Array
+    worst: Array
+
+    @property
+    def by_gradient(self) -> bool:
+        """Whether the gradient found them: the points are then some of a line."""
+        return method_of(self.runs[0].front.method).kind is Kind.GRADIENT
+
+    @property
+    def band(self) -> tuple[Array, Array, Array]:
+        """Residuals at which the best or the worst of the runs steps, and their energies there."""
+        stairs = np.unique([*self.best[:, 0], *self.worst[:, 0]])
+        return stairs, within(self.best, stairs), within(self.worst, stairs)
+
+    def spread(self, figure: str, level: int | None = None) -> Spread:
+        """Quartiles over the runs of a figure of `Measured` by name, as `front.seconds`."""
+        values = [attrgetter(figure)(run) for run in self.runs]
+        return Spread.of([float(v if level is None else v[level]) for v in values])
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Fronts of one task, all measured in the same way.
+
+    Attributes
+    ----------
+    task : PointToPoint
+        The move.
+    groups : tuple of Group
+        Methods, in the order in which they were given.
+    reference : str
+        What IGD+ and epsilon are measured against.
+    corner : tuple of float
+        Residual [m] and energy [J] up to which hypervolumes are measured, as in a bench: a tenth
+        of its extent beyond the ends of the reference front. They are shares of the box from there
+        to the least residual and energy of that front.
+    extent : tuple of float
+        Residual [m] and energy [J] between the ends of the reference front: the units of IGD+ and
+        epsilon, so that both objectives have the same weight.
+    levels : tuple of float
+        Residuals [m] at which energies are compared.
+    best_front : ndarray, shape (n, 2), read-only
+        What no filled front dominates: residuals [m], rising, and energies [J].
+    best : tuple of float
+        Its least energy [J] within each level; NaN where it has none.
+    fill : int
+        About how many points a filled front has; 0 where fronts were left as they were found.
+    floor : float or None
+        Energy [J] of the best free motion at rest on arrival of the nominal plant, where known.
+    """
+
+    task: PointToPoint
+    groups: tuple[Group, ...]
+    reference: str
+    corner: tuple[float, float]
+    extent: tuple[float, float]
+    levels: tuple[float, ...]
+    best_front: Array
+    best: tuple[float, ...]
+    fill: int
+    floor: float | None = None
+
+    @property
+    def runs(self) -> tuple[Measured, ...]:
+        """The runs of all groups."""
+        return tuple(run for group in self.groups for run in group.runs)
+
+    def above_best(self, points: Array) -> Array:
+        """By what share the energies of points exceed the best front's within their residuals."""
+        return points[:, 1] / within(self.best_front, points[:, 0]) - 1
+
+
+def compare_fronts(
+    fronts: Sequence[Front],
+    names: Sequence[str] = (),
+    *,
+    reference: Front | None = None,
+    reference_name: str = "the reference front",
+    floor: float | None = None,
+    levels: Sequence[float] = LEVELS,
+    fill: int = FILL,
+) -> Comparison:
+    """Measure fronts of one task against each other.
+
+    The indicators are moocore's. IGD+ and epsilon are measured against the reference front, or the
+    points that none of any front dominates, thinned to even distances, so that the front of most
+    points does not decide.
+
+    Parameters
+    ----------
+    fronts : sequence of Front
+        One or more, of one task; those of one method with the same settings are runs of it.
+    names : sequence of str, optional
+        What each is called.
+    reference, reference_name : Front and str, optional
+        What to measure against.
+    floor : float, optional
+        Energy [J] of the best free motion, for pictures.
+    levels : sequence of float
+        Residuals [m] at which energies are compared.
+    fill : int
+        About how many points a filled front has; 0 leaves fronts as they were found.
+
+    Returns
+    -------
+    Comparison
+        Every front with its figures.
+
+    Raises
+    ------
+    ValueError
+        When there is no front, one has no point, is given twice or is of another task.
+    """
+    names = names or [f"front {i}" for i in range(1, len(fronts) + 1)]
+    if not fronts or len(names) != len(fronts):
+        raise ValueError(f"{len(fronts)} fronts have {len(names)} names; give each front a name")
+    fill = whole("fill", fill, 0, MOST_FILL, "each is a motion")
+    levels = [positive("level", level, "m") for level in levels]
+    floor = None if floor is None else not_negative("floor", floor, "J")
+    given = [*fronts, *([reference] if reference else [])]
+    _refuse(given, [*names, reference_name][: len(given)], len(fronts))
+    found, between = [objectives(front) for front in fronts], [filled(f, fill) for f in fronts]
+    best_front = best_of(between)
+    known = best_front if reference is None else filled(reference, fill)
+    ideal, extent = known.min(axis=0), np.ptp(known, axis=0)
+    extent = np.where(extent > 0, extent, np.max([front.reference for front in fronts], axis=0))
+    corner = ideal + CORNER * extent
+    stations = evenly_spaced(known / extent)
+    best = within(best_front, levels)
+
+    def share_of_box(points: Array) -> float:
+        return float(moocore.hypervolume((points - ideal) / (corner - ideal), ref=[1.0, 1.0]))
+
+    def measured(i: int) -> Measured:
+        scaled, energies = between[i] / extent, within(found[i], levels)
+        return Measured(
+            name=names[i],
+            front=fronts[i],
+            between=between[i],
+            hypervolume=share_of_box(between[i]),
+            hypervolume_found=share_of_box(found[i]),
+            igd_plus=float(moocore.igd_plus(scaled, ref=stations)),
+            epsilon=float(moocore.epsilon_additive(scaled, ref=stations)),
+            energies=tuple(energies.tolist()),
+            gaps=tuple((energies / best - 1).tolist()),
+            gaps_between=tuple((within(between[i], levels) / best - 1).tolist()),
+        )
+
+    groups = tuple(
+        Group(label, tuple(map(measured, members)), *_surfaces([found[i] for i in members]))
+        for label, members in grouped(fronts).items()
+    )
+    return Comparison(
+        task=fronts[0].task,
+        groups=groups,
+        reference="the best of all fronts" if reference is None else reference_name,
+        corner=(float(corner[0]), float(corner[1])),
+        extent=(float(extent[0]), float(extent[1])),
+        levels=tuple(levels),
+        best_front=_frozen(best_front),
+        best=tuple(best.tolist()),
+        fill=fill,
+        floor=floor,
+    )
+
+
+def _surfaces(clouds: Sequence[Array]) -> tuple[Array, Array, Array]:
+    points, sets = np.vstack(clouds), np.repeat(np.arange(len(clouds)), [len(c) for c in clouds])
+    table = moocore.eaf(points, sets, percentiles=[0, 50, 100])
+    best, median, worst = (_frozen(table[table[:, 2] == share, :2]) for share in (0, 50, 100))
+    return best, median, worst
+
+
+def _frozen(values: object) -> Array:
+    array = np.array(values, dtype=float)
+    array.setflags(write=False)
+    return array
+
+
+def _refuse(fronts: Sequence[Front], names: Sequence[str], apart: int) -> None:
+    """Refuse fronts without points or of several tasks; of the first ones, also what is twice."""
+    for i, (front, name) in enumerate(zip(fronts, names, strict=True)):
+        if not front.points:
+            raise ValueError(f"{name} has no finite point; leave it out, or search longer")
+        if difference := task_difference(front.task, fronts[0].task):
+            raise ValueError(
+                f"{name} is of another task than {names[0]}: its {difference}; compare fronts of "
+                "one task"
+            )
+        if i < apart and front in fronts[:i]:
+            first = names[list(fronts).index(front)]
+            twin = "given twice" if name == first else f"the same front as {first}"
+            raise ValueError(f"{name} is {twin}; give every front once")
+
+
+def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
+    """Which fronts are runs of one method with one set of settings, by what tells it apart."""
+    groups: dict[str, list[int]] = {}
+    for i, front in enumerate(fronts):
+        stated = {name: value for name, value in _settings(front).items() if value is not None}
+        key = json.dumps([front.method, stated], sort_keys=True)
+        groups.setdefault(key, []).append(i)
+    firsts = [fronts[members[0]] for members in groups.values()]
+    return {
+        _label(front, [other for other in firsts if other.method == front.method]): members
+        for front, members in zip(firsts, groups.values(), strict=True)
+    }
+
+
+def _settings(front: Front) -> dict[str, object]:
+    profile = plain(front.profile)
+    return {**front.settings, "profile": profile.pop("name"), **profile, "whole": front.complete}
+
+
+def _label(front: Front, alike: Sequence[Front]) -> str:
+    """The method, with the settings in which it differs from others of the same method."""
+    words, others = [method_of(front.method).label], [_settings(other) for other in alike]
+    for name, value in _settings(front).items():
+        if all(other.get(name) == value for other in others):
+            continue
+        if name == "whole":
+            words += [] if value else ["interrupted"]
+        else:
+            shown = str(value).removesuffix(".0")  # every digit: two groups never share a label
+            words.append(f"no {name}" if value is None else f"{name} {shown}")
+    return ", ".join(words)

@@ -1,0 +1,113 @@
+"""Motions of one move, each judged once by CVODES: on the nominal plant and on perturbed ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from quietarm.ocp import (
+    Candidate,
+    Floor,
+    Motion,
+    Plan,
+    PointToPoint,
+    Robustness,
+    Uncertainty,
+    Worst,
+    evaluate_robustness,
+    task_difference,
+)
+from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.robustness.perturbed import worst_case, worst_of
+from quietarm.ocp.task import QUANTITIES
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A motion judged by CVODES, or why there is none.
+
+    Attributes
+    ----------
+    name : str
+        What tables call it.
+    motion : Motion or None
+        Residual, energy and peaks on the nominal plant.
+    worst : Worst or None
+        The largest residual within the parameter errors, and the errors there.
+    exceeded : tuple of str
+        Limits that the motion exceeds by more than a thousandth, the tolerance of every plan.
+    robustness : Robustness or None
+        Of a motion with a profile: insensitivity to each error, and percentiles.
+    parameters, turns_back, seconds : int, float, float, or None
+        How many numbers were chosen, how far the joint goes back on its way [rad], and how long it
+        took to find [s].
+    why : str
+        Why there is no such motion.
+    """
+
+    name: str
+    motion: Motion | None = None
+    worst: Worst | None = None
+    exceeded: tuple[str, ...] = ()
+    robustness: Robustness | None = None
+    parameters: int | None = None
+    turns_back: float | None = None
+    seconds: float | None = None
+    why: str = ""
+
+
+def judge(
+    name: str,
+    moved: Plan | Floor | Candidate,
+    ranges: Mapping[str, float],
+    limits: PointToPoint,
+    samples: int = 0,
+) -> Judged:
+    """Judge a motion within ranges of parameter errors, and by the limits of a task.
+
+    With samples, the insensitivity and the percentiles of so many random plants as well.
+    """
+    candidate = moved if isinstance(moved, Candidate) else moved.candidate
+    nominal = candidate.perturbed({})
+    own = Judged(
+        name, nominal.motion, exceeded=tuple(nominal.motion.exceeded(limits.limits, OVERRUN))
+    )
+    if isinstance(moved, Plan):
+        task = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)
+        path = task, moved.profile, moved.coefficients
+        own = replace(
+            own,
+            worst=worst_of(*path),
+            robustness=evaluate_robustness(*path, ranges, samples=samples)
+            if ranges and samples else None,
+            parameters=moved.profile.size,
+            turns_back=moved.turns_back,
+        )  # fmt: skip
+    elif ranges:
+        own = replace(own, worst=worst_case(nominal, ranges))
+    return own if isinstance(moved, Candidate) else replace(own, seconds=moved.provenance.seconds)
+
+
+def refuse_other_moves(tasks: Mapping[str, PointToPoint]) -> None:
+    """ValueError unless tasks are one move; their limits and parameter errors may differ."""
+    (first, wanted), *others = ((name, _bare(task)) for name, task in tasks.items())
+    for name, task in others:
+        if difference := task_difference(task, wanted):
+            raise ValueError(
+                f"{name} is of another move than {first}: its {difference}; compare plans of one "
+                "move"
+            )
+
+
+def _bare(task: PointToPoint) -> PointToPoint:
+    without = dict.fromkeys(quantity.limit for quantity in QUANTITIES.values())
+    return replace(task.certain, **without)  # pyright: ignore[reportArgumentType]
+
+
+def merged_ranges(tasks: Iterable[PointToPoint]) -> dict[str, float]:
+    """The largest parameter error of each kind that the tasks are made for."""
+    ranges: dict[str, float] = {}
+    for task in tasks:
+        for name, size in task.ranges.items():
+            ranges[name] = max(size, ranges.get(name, 0.0))
+    return ranges

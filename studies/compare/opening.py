@@ -1,0 +1,55 @@
+"""Files and folders of answers to compare: plans, or fronts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from quietarm.ocp import FileFormatError, Front, Plan
+from quietarm.studies.reading.saved import load_front, load_plans
+
+_FRONT, _PLAN = (f"quietarm-{one.kind}" for one in (Front, Plan))
+
+
+def open_answers(paths: Sequence[Path]) -> dict[str, Plan] | dict[str, Front]:
+    """Plans or fronts by their names; of a folder the fronts in it, as those of a bench.
+
+    ValueError where there are none, or of both; every file's figures are checked.
+    """
+    if not paths:
+        raise ValueError("nothing is given to compare; give plans, fronts, or a folder of fronts")
+    found = {path: _format(path) for given in paths for path in _files(given)}
+    fronts = [path for path, kind in found.items() if kind == _FRONT]
+    plans = [path for path, kind in found.items() if kind == _PLAN]
+    if plans and fronts:
+        raise ValueError(
+            f"{fronts[0]} is a front and {plans[0]} a plan; compare fronts or plans, not both"
+        )
+    if plans:
+        return load_plans([path for path in paths if not path.is_dir()])
+    files = [path for path in paths if not path.is_dir()]
+    for path in files:
+        if files.count(path) > 1:
+            raise ValueError(f"{path} is given twice; give it once")
+    return {str(path): load_front(path) for path in found}
+
+
+def _files(path: Path) -> Iterator[Path]:
+    """A file itself; of a folder the fronts below it."""
+    if not path.is_dir():
+        yield path
+        return
+    fronts = [one for one in sorted(path.rglob("*.json")) if _format(one) == _FRONT]
+    if not fronts:
+        raise FileFormatError(f"{path} holds no fronts; give a folder of a bench, or files")
+    yield from fronts
+
+
+def _format(path: Path) -> str:
+    """The format that a file names; empty where it names none."""
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):  # said when it is loaded
+        return ""
+    return str(document.get("format", "")) if isinstance(document, dict) else ""

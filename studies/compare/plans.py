@@ -1,0 +1,135 @@
+"""Plans of one move beside baselines and under parameter errors: one table, one picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+
+import pandas as pd
+from quietarm.ocp import Plan, PointToPoint, QuietarmError
+from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
+from quietarm.studies import figures
+from quietarm.studies.compare.baselines import baseline
+from quietarm.studies.compare.judged import Judged, judge, merged_ranges, refuse_other_moves
+from quietarm.studies.display.words import title_of
+from quietarm.studies.report import Report
+
+SAMPLES = 2000
+_TURNED = 1e-4
+"""A joint that goes back by more [rad] is said to."""
+
+
+def compare_plans(
+    plans: Mapping[str, Plan],
+    baselines: Sequence[str] = (),
+    ranges: Mapping[str, float] | None = None,
+    samples: int = SAMPLES,
+    *,
+    task: PointToPoint | None = None,
+) -> list[Judged]:
+    """Judge plans of one move and baselines for it, in this order.
+
+    Parameters
+    ----------
+    plans : mapping of str to Plan
+        By what tables call them. Baselines are those of the first one's move and limits, and all
+        are held against its limits.
+    baselines : sequence of str
+        Names of `BASELINES`.
+    ranges : mapping of str to float, optional
+        Largest relative parameter errors by name; by default those that the plans are made for.
+    samples : int
+        Random plants for the percentiles.
+    task : PointToPoint, optional
+        Move and limits, in the place of the first plan's.
+
+    Returns
+    -------
+    list of Judged
+        A baseline that the move does not allow says why.
+
+    Raises
+    ------
+    ValueError
+        When the plans are of several moves, or a name or a number is none that there is.
+    """
+    tasks = {"the move": task} if task else {}
+    tasks |= {name: plan.task for name, plan in plans.items()}
+    refuse_other_moves(tasks)
+    task, ranges = next(iter(tasks.values())), ranges or merged_ranges(tasks.values())
+    judged = [judge(name, plan, ranges, task, samples) for name, plan in plans.items()]
+    for name in baselines:
+        try:
+            judged.append(judge(name, baseline(name, task), ranges, task, samples))
+        except (QuietarmError, ValueError) as error:
+            judged.append(Judged(name, why=str(error)))
+    return judged
+
+
+def motions_table(motions: Sequence[Judged]) -> pd.DataFrame:
+    """A row for each motion with all its figures; what is known of none is left out."""
+    rows = [{"motion": one.name, **dict(_cells(one))} for one in motions]
+    return pd.DataFrame(rows).dropna(axis=1, how="all")
+
+
+def _cells(one: Judged) -> Iterator[tuple[str, float | str | None]]:
+    motion = one.motion
+    yield "parameters", one.parameters
+    if motion is None:
+        return
+    yield "energy [J]", motion.energy
+    yield "residual [mm]", 1e3 * motion.residual
+    if one.worst is not None:
+        yield "worst case [mm]", 1e3 * one.worst.residual
+        errors = (f"{name} {100 * error:+.3g} %" for name, error in one.worst.errors.items())
+        yield "worst case at", ", ".join(errors)
+    if one.robustness is not None:
+        yield "95 % of samples [mm]", 1e3 * one.robustness.percentile("residual", 95)
+        for sweep in one.robustness.sweeps:
+            low, high = sweep.insensitivity or (None, None)
+            words = "none" if low is None else f"{100 * low:.2g} to {100 * high:.2g} %"
+            yield f"{sweep.name} within {100 * TOLERATED:g} %", words
+    yield "peak torque [N m]", motion.peak_torque
+    yield "peak acceleration [rad/s^2]", motion.peak_acceleration
+    yield "exceeds", ", ".join(one.exceeded) or None
+    yield "time [s]", one.seconds
+
+
+def shown(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with residuals in whole thousandths of a millimetre: below that they are rest."""
+    lengths = [column for column in table if str(column).endswith("[mm]")]
+    return table.round(dict.fromkeys(lengths, 3))
+
+
+def remarks(motions: Sequence[Judged]) -> list[str]:
+    """Why a motion is missing, and which joints turn back."""
+    reasons: dict[str, list[str]] = {}
+    for one in motions:
+        if one.why:
+            reasons.setdefault(one.why, []).append(one.name)
+    back = [f"{m.name} by {m.turns_back:.2g} rad" for m in motions if (m.turns_back or 0) > _TURNED]
+    return [
+        *(f"{', '.join(names)}: {why}" for why, names in reasons.items()),
+        *([f"The joint turns back on its way: {', '.join(back)}"] if back else []),
+    ]
+
+
+def plans_report(task: PointToPoint, motions: Sequence[Judged]) -> Report:
+    """Motions as a table, what to know of them, and a picture."""
+    table = motions_table(motions)
+    robust = next((one.robustness for one in motions if one.robustness), None)
+    ranges = next((one.worst.errors for one in motions if one.worst), {})
+    return Report(
+        "compare/plans.md",
+        {
+            "title": title_of(task),
+            "shown": shown(table),
+            "remarks": remarks(motions),
+            "errors": list(ranges),
+            "robust": robust,
+            "tolerated": f"{100 * TOLERATED:g} %",
+            "ruckig": any("ruckig" in one.name for one in motions),
+        },
+        {"motions": table},
+        {"motions.png": partial(figures.motions_figure, motions, title_of(task))},
+    )

@@ -1,0 +1,82 @@
+"""What the paper's searches find for a move, seed by seed, judged at the paper's residual."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from statistics import median
+
+import numpy as np
+from quietarm.metaheuristics.ensemble import Spread, energies_at, energy_at
+from quietarm.ocp import (
+    CycloidGaussians,
+    CycloidNetwork,
+    CycloidPolynomial,
+    CycloidSpline,
+    Front,
+    JointProfile,
+    Plan,
+    evaluate_coefficients,
+)
+from quietarm.studies.reproduce.paper import Case, residual_level
+
+SIX_TERMS = 6
+"""Terms of the polynomial: the paper's choice."""
+Input = int | str
+"""Input of the cycloid: a polynomial by its number of terms, or one of `OTHERS`."""
+OTHERS: dict[str, JointProfile] = {
+    "network": CycloidNetwork(), "Gaussians": CycloidGaussians(), "spline": CycloidSpline()
+}  # fmt: skip
+
+
+def profile_with(which: Input) -> JointProfile:
+    """The cycloid with this input."""
+    return OTHERS[which] if isinstance(which, str) else CycloidPolynomial(which)
+
+
+@dataclass(frozen=True)
+class Searched:
+    """Fronts of all seeds, judged within the residual [m] that the paper's coefficients leave.
+
+    Those are the coefficients of as many terms; for other inputs of its six.
+    """
+
+    case: Case
+    which: Input
+    fronts: tuple[Front, ...]
+
+    @cached_property
+    def level(self) -> float:
+        """That residual."""
+        terms = min(self.which, SIX_TERMS) if isinstance(self.which, int) else SIX_TERMS
+        return residual_level(self.case, terms)
+
+    @cached_property
+    def each(self) -> list[float]:
+        """Least energy [J] of every seed within the level; NaN where there is none."""
+        return [energy_at(front, self.level) for front in self.fronts]
+
+    @property
+    def energies(self) -> Spread:
+        """Their quartiles; a seed that does not come so near counts as infinite."""
+        return energies_at(self.fronts, self.level)
+
+    @property
+    def seconds(self) -> float:
+        """What a seed takes, at the median."""
+        return median(front.seconds for front in self.fronts)
+
+    @cached_property
+    def middle(self) -> Plan | None:
+        """The motion of the middle seed; None where that one did not come within the level.
+
+        Of an even number of seeds the dearer one of the two in the middle.
+        """
+        order = np.argsort(self.each, kind="stable")  # those that did not are last
+        place = order[len(order) // 2]
+        if np.isnan(self.each[place]):
+            return None
+        front = self.fronts[place]
+        found = front.cheapest(self.level)
+        plan = evaluate_coefficients(self.case.task, found.coefficients, profile=front.profile)
+        return replace(plan, provenance=replace(plan.provenance, seconds=front.seconds))

@@ -1,0 +1,121 @@
+"""Plans of one move beside shapers and ruckig, on the nominal plant and under errors."""
+
+import re
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+from quietarm.models import FlexibleBeam
+from quietarm.ocp import PointToPoint, Uncertainty, evaluate_coefficients, plan_move
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
+from quietarm.studies.compare import compare_plans
+from quietarm.studies.compare.baselines import ruckig_motion, shaped
+from quietarm.studies.compare.plans import plans_report
+
+BEAM = FlexibleBeam(omega=2 * pi * 3.2, zeta=0.01)
+MOVE = PointToPoint(BEAM, pi / 3, 0.7, torque_limit=1.5, acceleration_limit=80.0)
+ROBUST = replace(MOVE, uncertainty=Uncertainty({"frequency": 0.08}))
+BASELINES = ("cycloid", "zvd", "3hump-ei", "ruckig", "zvd-ruckig", "3hump-ei-ruckig")
+
+
+@pytest.fixture(scope="module")
+def judged():
+    plans = {"plan": plan_move(MOVE, starts=1), "robust": plan_move(ROBUST, starts=1)}
+    return compare_plans(plans, BASELINES, samples=200)
+
+
+@pytest.fixture(scope="module")
+def found(judged):
+    return {one.name: one for one in judged}
+
+
+def test_each_motion_has_its_worst_case_within_the_errors_of_the_plans(found):
+    assert list(found) == ["plan", "robust", *BASELINES]
+    for one in found.values():
+        assert (one.motion is None) == bool(one.why)
+        if one.motion:
+            assert one.worst.residual >= one.motion.residual * (1 - 1e-6)
+            assert abs(one.worst.errors["frequency"]) <= 0.08
+    assert found["robust"].worst.residual < found["plan"].worst.residual / 5
+    # its impulses take two periods of 0.3125 s, and the rest is too short for 60 degrees
+    assert re.match(r"within the limits it takes 0\.\d+ s", found["3hump-ei-ruckig"].why)
+
+
+def test_the_worst_case_is_that_of_a_fine_grid_by_cvodes(found):
+    plan = found["zvd"]
+    shaper = compare_plans({}, ["zvd"], {"frequency": 0.08}, 0, task=MOVE)[0]
+    candidate = evaluate_coefficients(MOVE, [], profile=_profile("zvd")).candidate
+    grid = [candidate.perturbed({"frequency": e}).residual for e in np.linspace(-0.08, 0.08, 33)]
+    assert shaper.worst.residual == plan.worst.residual
+    assert plan.worst.residual == pytest.approx(max(grid), rel=1e-3)
+
+
+def _profile(shaper):
+    from quietarm.ocp import shaped_cycloid
+
+    return shaped_cycloid(MOVE, shaper)
+
+
+def test_a_limit_is_exceeded_beyond_a_thousandth(found):
+    # the shaper leaves a tenth of a second for 60 degrees
+    assert found["3hump-ei"].exceeded == ("acceleration",)
+    assert found["3hump-ei"].motion.peak_acceleration > 80 * 1.001
+    assert found["ruckig"].exceeded == ()
+    assert found["ruckig"].motion.peak_acceleration == pytest.approx(80, rel=1e-6)
+
+
+def test_the_report_has_a_row_for_each_and_says_what_is_missing(judged):
+    report = plans_report(MOVE, judged)
+    table = report.tables["motions"].set_index("motion")
+    assert table.loc["zvd-ruckig", "worst case [mm]"] == pytest.approx(1.308, rel=1e-3)
+    assert "- 3hump-ei-ruckig: within the limits" in report.markdown()
+    figure = report.figures["motions.png"]()
+    assert [ax.get_xlabel() for ax in figure.axes][1:] == ["error of frequency [%]"]
+
+
+def test_plans_of_another_move_are_refused(plan, cycloid):
+    other = evaluate_coefficients(replace(plan.task, duration=0.9), [])
+    with pytest.raises(ValueError, match=r"other is of another move than ours: its duration is"):
+        compare_plans({"ours": plan, "other": other})
+    limited = evaluate_coefficients(replace(plan.task, torque_limit=0.5), [])
+    assert len(compare_plans({"ours": plan, "limited": limited})) == 2
+
+
+def test_ruckig_is_followed_exactly_and_keeps_its_limits():
+    task = replace(MOVE, speed_limit=2.5, jerk_limit=4000.0)
+    free = ruckig_motion(task)
+    angle, speed = free.boundaries(task.start)
+    assert free.times[-1] == pytest.approx(0.7)
+    assert angle[-1] == pytest.approx(pi / 3, abs=1e-9)
+    assert speed[-1] == pytest.approx(0, abs=1e-9)
+    assert np.abs(speed).max() <= 2.5 * (1 + 1e-9)
+    assert np.abs(free.jerk).max() <= 4000 * (1 + 1e-9)
+    with pytest.raises(ValueError, match="ruckig needs an acceleration limit"):
+        ruckig_motion(replace(task, acceleration_limit=None))
+
+
+def test_a_shaped_motion_is_the_sum_of_its_delayed_shares():
+    free = FreeMotion(np.array([0, 0.1, 0.25]), np.array([1.0, -2.0]), np.array([3.0, 0.5]))
+    impulses = SHAPERS["zvd"](20.0, 0.05)
+    both = shaped(free, impulses)
+    assert both.times[-1] == pytest.approx(0.25 + impulses.times[-1])
+
+    def angle_at(motion, time):
+        """Angle by integrating twice what is constant or linear in pieces."""
+        if time <= 0:
+            return 0.0
+        starts, speeds = motion.boundaries(0.0)
+        k = min(np.searchsorted(motion.times, time, side="right") - 1, motion.steps)
+        if k == motion.steps:
+            return starts[-1] + speeds[-1] * (time - motion.times[-1])
+        t = time - motion.times[k]
+        jerk = motion.jerk[k]
+        return starts[k] + t * (speeds[k] + t * (motion.acceleration[k] / 2 + t * jerk / 6))
+
+    for time in np.linspace(0, both.times[-1], 37):
+        parts = (
+            share * angle_at(free, time - begin) for share, begin in zip(*impulses, strict=True)
+        )
+        assert angle_at(both, time) == pytest.approx(sum(parts), abs=1e-12)
