@@ -70,7 +70,7 @@ _ON_THE_WALL = """<style>
 .reveal details pre { font-size: 15px; line-height: 18px; }
 .reveal img { display: block; margin: 0 auto; max-width: 100%; }
 .reveal .jp-Cell { padding: 0; }
-.reveal .jp-RenderedText { max-height: 430px; overflow-y: auto; }
+.reveal .jp-OutputArea-output pre { max-height: 430px; overflow-y: auto; display: block; }
 .reveal .jp-RenderedText pre { padding: 0; word-break: normal; overflow-wrap: anywhere; }
 .reveal :is(.jp-InputPrompt, .jp-OutputPrompt, .jp-Collapser) { display: none; }
 .reveal .celltag_hide-input .jp-Cell-inputWrapper { display: none; }
