@@ -5,10 +5,10 @@
 - speed: a chunk in the middle of grids of each plant, 10 to 90 deg in 0.6 to 1.4 s, six terms, with
   and without its check by cold starts; against `plan_move` with its defaults for every twelfth of
   these moves. Processor times, functions built before.
-- workers: 7,209 moves by one worker and by two, wall time without the start of the workers.
+- workers: 3,609 moves by one worker and by two, wall time.
 - memory: peak of a process that sweeps 100,000 cells with two terms, as it goes on.
-- killed: 2,061 moves by two workers, one of them and then the client killed with SIGKILL; the same
-  line again, and two parts at once, against an undisturbed run.
+- killed: 2,061 moves by two workers, one of them killed with SIGKILL, and after the same line the
+  client; the same line again, and two parts at once, against an undisturbed run.
 """
 
 from __future__ import annotations
@@ -27,32 +27,31 @@ from statistics import median
 
 import numpy as np
 import xarray as xr
-from quietarm.metaheuristics.sharing.pieces import Done, Say
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, SolveSettings, plan_move, plan_moves
-from quietarm.studies.sweep.asked import Sweep
+from quietarm.studies.sweep.cells import plan_chunk
+from quietarm.studies.sweep.definition import Definition
 from quietarm.studies.sweep.grid import Axis, Grid
-from quietarm.studies.sweep.work import planned
 
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
 
 
 def speed() -> None:
     """Processor time of a move, in a grid and by itself."""
-    say, repetitions = Say(lambda progress: None), 4  # of which the first builds functions
+    repetitions = 4  # of which the first builds functions
     for plant in (SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()):
         for steps in (16, 80):
             targets = np.radians(np.linspace(10, 90, steps + 1)).tolist()
             durations = np.linspace(0.6, 1.4, steps + 1).tolist()
             axes = Axis("target", tuple(targets), "rad"), Axis("duration", tuple(durations), "s")
             grid = Grid(PointToPoint(plant, 1.0, 1.0), axes)
-            sweep = Sweep(grid, CycloidPolynomial(), SolveSettings(starts=1))
+            sweep = Definition(grid, CycloidPolynomial(), SolveSettings(starts=1))
             middle = len(sweep.grid.chunks) // 2
             tasks = sweep.grid.tasks(sweep.grid.chunks[middle])
             in_grid, unchecked, alone = list[float](), list[float](), list[float]()
             for _ in range(repetitions):
                 marks = [time.process_time()]
-                planned(sweep, middle, Done(), say)
+                plan_chunk(sweep, middle)
                 marks.append(time.process_time())
                 plan_moves(tasks)
                 marks.append(time.process_time())
@@ -80,22 +79,14 @@ def line(folder: Path, name: str, durations: str, *more: str) -> list[str]:
 
 
 def workers(folder: Path) -> None:
-    """Wall times between the first and the last chunk."""
+    """Wall times of the whole command, functions built and workers started in it."""
     took = dict[int, float]()
     for number in (1, 2):
-        times = list[float]()
-        asked = line(folder, f"by{number}.zarr", "0.6:1.4:0.001", "--workers", str(number))
-        shown = subprocess.Popen(
-            asked, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
-        )
-        assert shown.stderr is not None
-        for said in shown.stderr:
-            if re.match(r"\[\d+/", said):
-                times.append(time.monotonic())
-        shown.wait()
-        took[number] = (times[-1] - times[number]) / (len(times) - 1 - number)
-    print(f"a chunk takes {took[1]:.2f} s by one worker, {took[2]:.2f} s by two: "
-          f"{took[1] / took[2]:.2f} times", flush=True)  # fmt: skip
+        began = time.monotonic()
+        asked = line(folder, f"by{number}.zarr", "0.6:1.4:0.002", "--workers", str(number))
+        subprocess.run(asked, check=True, capture_output=True)
+        took[number] = time.monotonic() - began
+    print(f"3,609 moves take {took[1]:.1f} s by one worker, {took[2]:.1f} s by two", flush=True)
 
 
 def memory(folder: Path) -> None:
@@ -127,9 +118,11 @@ def killed(folder: Path) -> None:
     two = asked("killed.zarr", "--workers", "2")
     process = subprocess.Popen(two, start_new_session=True)
     wait_for_chunks(folder / "killed.zarr", 1, process)
-    workers_of = subprocess.run(["pgrep", "-f", "-s", str(process.pid), "multiprocessing"],
+    workers_of = subprocess.run(["pgrep", "-f", "-s", str(process.pid), "loky"],
                                 capture_output=True, text=True).stdout.split()  # fmt: skip
-    os.kill(int(workers_of[-1]), signal.SIGKILL)
+    os.kill(int(workers_of[-1]), signal.SIGKILL)  # the command ends, and says so
+    print(f"status {process.wait()} after a worker was killed", flush=True)
+    process = subprocess.Popen(two, start_new_session=True)
     wait_for_chunks(folder / "killed.zarr", 3, process)
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()

@@ -10,8 +10,8 @@ from contextlib import suppress
 from bokeh.document import Document
 from bokeh.server.server import Server
 from quietarm.models import Plant
+from quietarm.studies.explore.move import Explored
 from quietarm.studies.explore.page import Page
-from quietarm.studies.explore.state import Explored
 
 
 def serve(

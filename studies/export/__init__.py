@@ -1,8 +1,8 @@
-"""Moves in the forms that controllers read: tables, C, ROS 2, MATLAB.
+"""Moves in the forms that controllers read, and films of them.
 
-May import `sweep` and `display`.
+May import `sweep`, `figures` and `display`.
 """
 
-from quietarm.studies.export.formats import FORMATS, export_plan
+import lazy_loader
 
-__all__ = ["FORMATS", "export_plan"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,100 +1,89 @@
-"""A move as C: angle, speed and acceleration of the joint at any time, without dependencies."""
+"""Moves as C without dependencies: a plan, or the table of a sweep with its interpolation."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from typing import Any
 
 import casadi as ca
+import numpy as np
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.display.templates import templates
 from quietarm.studies.display.words import move_of, moved
+from quietarm.studies.sweep.grid import OF_MOVES
+from quietarm.studies.sweep.interpolation import ORDERS
+from quietarm.studies.sweep.library import MoveLibrary
 
-_OPERATIONS = {
-    ca.OP_ADD: "{0} + {1}", ca.OP_SUB: "{0} - {1}", ca.OP_MUL: "{0} * {1}", ca.OP_DIV: "{0} / {1}",
-    ca.OP_NEG: "-{0}", ca.OP_SQ: "{0} * {0}", ca.OP_TWICE: "2.0 * {0}", ca.OP_INV: "1.0 / {0}",
-    ca.OP_SIN: "sin({0})", ca.OP_COS: "cos({0})", ca.OP_TAN: "tan({0})", ca.OP_TANH: "tanh({0})",
-    ca.OP_EXP: "exp({0})", ca.OP_LOG: "log({0})", ca.OP_SQRT: "sqrt({0})", ca.OP_ERF: "erf({0})",
-    ca.OP_POW: "pow({0}, {1})", ca.OP_CONSTPOW: "pow({0}, {1})", ca.OP_FABS: "fabs({0})",
-    ca.OP_FMIN: "fmin({0}, {1})", ca.OP_FMAX: "fmax({0}, {1})", ca.OP_ASSIGN: "{0}",
-    ca.OP_LT: "{0} < {1}", ca.OP_LE: "{0} <= {1}", ca.OP_EQ: "{0} == {1}", ca.OP_NE: "{0} != {1}",
-    ca.OP_NOT: "{0} == 0.0", ca.OP_AND: "{0} != 0.0 && {1} != 0.0",
-    ca.OP_OR: "{0} != 0.0 || {1} != 0.0", ca.OP_IF_ELSE_ZERO: "{0} != 0.0 ? {1} : 0.0",
-    ca.OP_SINH: "sinh({0})", ca.OP_COSH: "cosh({0})", ca.OP_ATAN: "atan({0})",
-}  # fmt: skip
-"""What casadi's operations are in C."""
-_RESULTS = ("*angle", "*speed", "*acceleration")
+_HELPER = re.compile(r"^double casadi_\w+\([^)]*\) \{.*?\}$", re.M | re.S)
+_STATEMENTS = re.compile(r"^static int casadi_f0\([^)]*\) \{\n(.*?)\n  return 0;", re.M | re.S)
+"""What CasADi's generator writes: small functions, and the body of the first function."""
 
 
-def c_files(plan: Plan, name: str) -> tuple[str, str]:
-    """Header and source whose function is called after a file's name."""
-    name_in_c(name)
-    given = [*plan.coefficients, *plan.task.move]
-    return rendered(
-        "move", name, *statements(plan.profile, ["t", *map(number, given)]),
-        move=f"{moved(plan.task)}, {move_of(plan.task)}".replace("*/", ""),
-        version=plan.provenance.versions.get("quietarm", ""),
-        figures=f"energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
-        values=plan.task.move,
-    )  # fmt: skip
-
-
-def name_in_c(name: str) -> None:
-    """Refuse a file's name after which no function can be called."""
+def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
+    """Header and source whose functions are called after a file's name."""
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ValueError(
             f"{name}.c would hold a function {name}_at, which is no name in C; give a file name "
             "of letters, digits and _ that begins with a letter"
         )
-
-
-def rendered(
-    template: str, name: str, variables: Sequence[str], lines: Sequence[str], **words: object
-) -> tuple[str, str]:
-    """Header and source of a template beside this file."""
+    words = _words_of_plan(moves) if isinstance(moves, Plan) else _words_of_library(moves)
+    words["title"] = words["title"].replace("*/", "")
+    words["helpers"], words["statements"] = _path_in_c(moves.profile)
     texts = templates(keep_trailing_newline=True)
-    texts.filters.update(c=number, row=_row)
-    words |= {"name": name, "guard": name.upper(), "variables": variables, "lines": lines}
+    texts.filters["row"] = _row
     header, source = (
-        texts.get_template(f"export/templates/{template}.{kind}").render(words) for kind in "hc"
-    )
+        texts.get_template(f"export/templates/move.{kind}")
+        .render(name=name, upper=name.upper(), size=moves.profile.size, **words)
+        for kind in "hc"
+    )  # fmt: skip
     return header, source
 
 
-def statements(profile: JointProfile, inputs: Sequence[str]) -> tuple[list[str], list[str]]:
-    """The variables, and a statement for each operation of the joint's path.
+def _words_of_plan(plan: Plan) -> dict[str, Any]:
+    return {
+        "title": f"{moved(plan.task)}, {move_of(plan.task)}",
+        "version": plan.provenance.versions.get("quietarm", ""),
+        "figures": f"Energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
+        "axes": (), "given": "", "move": [repr(value) for value in plan.task.move],
+        "coefficients": plan.coefficients,
+    }  # fmt: skip
 
-    Inputs are what C calls the share of the duration, each coefficient, start, target and duration.
-    """
+
+def _words_of_library(library: MoveLibrary) -> dict[str, Any]:
+    axes, between = library.grid.axes, library.interpolation
+    names = [axis.name for axis in axes]
+    of_move = dict(zip(OF_MOVES, map(repr, library.grid.task.move), strict=True))
+    parameters = [f"double {name}, " for name in names if name in OF_MOVES]
+    return {
+        "title": f"moves of {moved(library.grid.task)}",
+        "version": library.store.note("versions").get("quietarm", ""),
+        "figures": library.between().words.capitalize(),
+        "axes": between.axes, "lengths": between.lengths, "most": max(ORDERS),
+        "units": [f"{axis.name} [{axis.unit}]" for axis in axes],
+        "places": ", ".join(f"double at_{name}" for name in names),
+        "place_names": ", ".join(f"at_{name}" for name in names),
+        "given": f"const double coefficients[{library.profile.size}], {''.join(parameters)}",
+        "move": [name if name in names else value for name, value in of_move.items()],
+        "orders": between.orders.reshape(-1, between.orders.shape[-1]),
+        "cells": np.nan_to_num(between.cells).reshape(-1, library.profile.size),
+    }  # fmt: skip
+
+
+def _path_in_c(profile: JointProfile) -> tuple[list[str], str]:
+    """Functions that are called, and the statements of the joint's path, by CasADi's generator."""
     fraction, a, move = ca.SX.sym("t"), ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
-    start, target, duration = ca.vertsplit(move)
-    joint = profile.motion(ca.vertsplit(a), fraction, start, target, duration, jerk=False)
-    results = ca.vertcat(joint.angle, joint.speed, joint.acceleration)
-    given = ca.vertcat(fraction, a, move)
-    path = ca.Function("path", [given], [ca.densify(results)], {"cse": True})
-    lines, variables = list[str](), dict[str, None]()
-    for k in range(path.n_instructions()):
-        operation, to = path.instruction_id(k), path.instruction_output(k)
-        operands = [f"v{i}" for i in path.instruction_input(k)]
-        if operation == ca.OP_OUTPUT:
-            lines.append(f"{_RESULTS[to[1]]} = {operands[0]};")
-            continue
-        variables[f"v{to[0]}"] = None
-        if operation == ca.OP_INPUT:
-            value = inputs[path.instruction_input(k)[1]]
-        elif operation == ca.OP_CONST:
-            value = number(path.instruction_constant(k))
-        else:
-            value = _OPERATIONS[operation].format(*operands)
-        lines.append(f"v{to[0]} = {value};")
-    return list(variables), lines
-
-
-def number(value: float) -> str:
-    """A constant of C with every digit."""
-    return repr(float(value))
+    joint = profile.motion(ca.vertsplit(a), fraction, *ca.vertsplit(move), jerk=False)
+    results = ca.densify(ca.vertcat(joint.angle, joint.speed, joint.acceleration))
+    generator = ca.CodeGenerator("path", {"with_export": False})
+    generator.add(ca.Function("path", [fraction, a, move], [results], {"cse": True}))
+    text = generator.dump().replace("casadi_real", "double")
+    found = _STATEMENTS.search(text)
+    assert found is not None
+    return _HELPER.findall(text), found[1]
 
 
 def _row(values: Iterable[float]) -> str:
-    return ", ".join(map(number, values))
+    """Constants of C with every digit."""
+    return ", ".join(repr(float(value)) for value in values)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Mapping
 from math import degrees
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp import Plan, Trajectory
-from quietarm.ocp.checks import install, unknown
+from quietarm.ocp import Plan
+from quietarm.ocp.checks import unknown
 from quietarm.ocp.planning.plan import ticks_of_move
 from quietarm.studies.display.templates import templates
 
@@ -36,28 +37,28 @@ def columns_of(
 
     ValueError where one or its unit is unknown, or one comes twice.
     """
-    found: dict[str, tuple[str, float]] = {}
+    columns: dict[str, tuple[str, float]] = {}
     for one in text.split(","):
         name, _, unit = (part.strip() for part in one.partition(":"))
         if name not in known:
             raise ValueError(unknown(what, name, known))
-        if name in found:
+        if name in columns:
             raise ValueError(f"{what} {name} is given twice; give it once")
         unit = unit or next(iter(known[name]))
         if unit not in known[name]:
             raise ValueError(unknown(f"unit of {name}", unit, known[name]))
-        found[name] = unit, known[name][unit]
-    return found
-
-
-def sampled(plan: Plan, rate: float) -> Trajectory:
-    """The move at a rate [Hz]; the last row is the first tick at or after arrival."""
-    return plan.sampled(np.arange(ticks_of_move(plan.task.duration, rate) + 1) / rate)
+        columns[name] = unit, known[name][unit]
+    return columns
 
 
 def table(plan: Plan, columns: Mapping[str, tuple[str, float]], rate: float) -> dict[str, Array]:
-    """Columns by their headings, as `angle_deg`; each tip has one of its own."""
-    motion = sampled(plan, rate)
+    """Columns by their headings, as `angle_deg`, at a rate [Hz].
+
+    The last row is the first tick at or after arrival. Each tip has a column of its own, and of a
+    robust plan in each scenario, which its heading names.
+    """
+    times = _ticks(plan, rate)
+    motion = plan.sampled(times)
     values: dict[str, Array] = {
         "time": motion.time, "angle": motion.joint[:, 0], "speed": motion.joint[:, 1],
         "acceleration": motion.joint[:, 2], "jerk": motion.jerk, "torque": motion.torque,
@@ -65,15 +66,22 @@ def table(plan: Plan, columns: Mapping[str, tuple[str, float]], rate: float) -> 
     }  # fmt: skip
     found: dict[str, Array] = {}
     for name, (unit, factor) in columns.items():
-        heading = unit.replace("/", "_").replace("^", "")
+        ending = unit.replace("/", "_").replace("^", "")
         if name != "tip":
-            found[f"{name}_{heading}"] = factor * values[name]
+            found[f"{name}_{ending}"] = factor * values[name]
             continue
-        tips = motion.tips.T
-        for i, tip in enumerate(tips, 1):
-            number = "" if len(tips) == 1 else f"_{i}"
-            found[f"tip{number}_{heading}"] = factor * tip
+        for candidate, errors in zip(plan.candidate.scenarios, plan.task.scenarios, strict=True):
+            named = zip(plan.task.error_names, errors, strict=True)
+            scenario = [f" {name} {100 * error:+.4g} %" for name, error in named if error]
+            tips = candidate.sample(times).tips.T
+            for i, tip in enumerate(tips, 1):
+                number = "" if len(tips) == 1 else f"_{i}"
+                found[f"tip{number}_{ending}{''.join(scenario)}"] = factor * tip
     return found
+
+
+def _ticks(plan: Plan, rate: float) -> Array:
+    return np.arange(ticks_of_move(plan.task.duration, rate) + 1) / rate
 
 
 def csv_text(columns: Mapping[str, Array]) -> str:
@@ -86,18 +94,20 @@ def csv_text(columns: Mapping[str, Array]) -> str:
 
 def mat_bytes(columns: Mapping[str, Array], facts: Mapping[str, Any]) -> bytes:
     """A MATLAB v5 file: a column vector for each column, and some facts."""
-    try:
-        from scipy.io import savemat
-    except ImportError:
-        raise ValueError(f"MATLAB files need scipy; give csv, or {install('mat')}") from None
-    file = io.BytesIO()
-    savemat(file, {**facts, **columns}, oned_as="column")
+    from scipy.io import savemat  # slow to load
+
+    file, signs = io.BytesIO(), {"-": "minus ", "+": "plus ", " %": ""}
+    vectors = {
+        re.sub(r"\W+", "_", re.sub("[-+]| %", lambda sign: signs[sign[0]], name)): column
+        for name, column in columns.items()
+    }
+    savemat(file, {**facts, **vectors}, oned_as="column")
     return file.getvalue()
 
 
 def ros_text(plan: Plan, joint: str, rate: float) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, for one joint."""
-    motion = sampled(plan, rate)
+    motion = plan.sampled(_ticks(plan, rate))
     points = [
         (divmod(round(time * 1e9), 1_000_000_000), map(_decimal, moving))
         for time, moving in zip(motion.time, motion.joint, strict=True)

@@ -10,7 +10,7 @@ from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 from quietarm.studies.figures.axes import logarithmic, name_objectives, new_figure
 from quietarm.studies.figures.looks import look
-from quietarm.studies.sweep.asked import STATES, STATUS
+from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.grid import Axis
 from quietarm.studies.sweep.store import Store
 
@@ -31,10 +31,10 @@ def grid_figure(store: Store) -> Figure:
 
     A row of panels for each of the first values of the axes before; along one axis alone, lines.
     """
-    axes = store.sweep.grid.axes
+    axes = store.definition.grid.axes
     if len(axes) == 1:
         return _over_one(store, axes[0])
-    places = [*np.ndindex(*store.sweep.grid.shape[:-2])][:_MOST_SLICES]
+    places = [*np.ndindex(*store.definition.grid.shape[:-2])][:_MOST_SLICES]
     slices, variables = [(place, _words(axes, place)) for place in places], _variables(store)
     count = len(variables) + 1
     figure = new_figure(0.6 + 3.6 * count, 0.6 + 3.1 * len(slices))
@@ -61,7 +61,7 @@ def grid_figure(store: Store) -> Figure:
 
 def fronts_figure(store: Store) -> Figure:
     """Fronts over the last axis, a panel for each of the first values of those before."""
-    axes = store.sweep.grid.axes
+    axes = store.definition.grid.axes
     residual, energy = store.read("front_residual"), store.read("front_energy")
     places = [*np.ndindex(*residual.shape[:-2])][:_MOST_SLICES]
     figure = new_figure(1.0 + 4.0 * len(places), 3.8)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -25,13 +26,17 @@ from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
 
 _SHOWN, _ABOVE = 0.99, 1.15
 """A panel with jolts ends at this multiple of the 99 % quantile."""
+_LETTERS = 48
+"""Of a title, for each column of panels."""
 _IN_SIGHT = 0.4
 """A limit is drawn where a motion comes to this share of it; else it would flatten the motion."""
 
 
 _GIVE_MOTIONS = "give one motion or more, all of one duration"
-QUANTITIES_DRAWN = ("angle", "speed", "acceleration", "jerk", "deflection", "torque")
-"""What can be drawn, the joint's angle, and the quantities that a task may limit."""
+QUANTITIES_DRAWN = ("angle", "speed", "acceleration", "jerk", "deflection", "torque", "power")
+"""What can be drawn: the joint's angle, the quantities that a task may limit, and the power."""
+_WHERE_LIMITED = ("jerk", "power")
+"""These are no panels of a motion, but where a task limits them."""
 PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
@@ -70,7 +75,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
         The motions, all of one duration; a plan alone is drawn over the plain cycloid of its
         task.
     quantity : str
-        A name in `QUANTITIES_DRAWN`: angle, speed, acceleration, jerk, deflection or torque.
+        A name in `QUANTITIES_DRAWN`: angle, speed, acceleration, jerk, deflection, torque or power.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
 
@@ -88,26 +93,51 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     if quantity not in QUANTITIES_DRAWN:
         known = ", ".join(QUANTITIES_DRAWN)
         raise ValueError(f"no quantity is called {quantity!r}; give one of {known}")
-    lines, ax = _of_one_duration(motions), axes_or_new(ax)
-    drawn = QUANTITIES.get(quantity)  # the joint's angle is none of them
-    name, unit = (drawn.label, drawn.unit) if drawn else ("joint angle", "rad")
-    scale, unit = (1e3, "mm") if unit == "m" else (1.0, unit)
-    values: list[NDArray[np.float64]] = []
+    return draw_lines(_of_one_duration(motions), quantity, axes_or_new(ax))
+
+
+def draw_lines(lines: Sequence[Line], quantity: str, ax: Axes) -> Axes:
+    """`draw_quantity` of motions that may have several durations."""
+    words, values = [heading(quantity)], list[NDArray[np.float64]]()
     for line in lines:
-        at = line.plan.trajectory
-        columns = drawn.of(at.motion, list(at.tips.T), at.torque) if drawn else [at.joint[:, 0]]
-        values.append(scale * np.column_stack(columns))
+        values.append(np.column_stack(curves(line.plan, quantity)))
         for i, column in enumerate(values[-1].T):
-            ax.plot(at.time, column, color=line.colour, **_looks(line, i))
-    ax.axvline(lines[0].plan.task.duration, color="0.6", linewidth=0.8, linestyle="--")
+            time = line.plan.trajectory.time
+            ax.plot(time, column, color=line.colour, **_looks(line, i))
+    for duration in {line.plan.task.duration for line in lines}:
+        ax.axvline(duration, color="0.6", linewidth=0.8, linestyle="--")
     limits = [line.plan.task.limits.get(quantity) for line in lines]
-    words = [f"{name} [{raised(unit)}]"]
+    scale = _shown(quantity)[2]
     words += _draw_limits(ax, [scale * limit for limit in limits if limit is not None], values)
     words += _leave_out_jolts(ax, lines, values)
     ax.set_title(", ".join(words), **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
     ax.margins(x=0)
     return ax
+
+
+def curves(motion: Plan | Floor, quantity: str) -> list[NDArray[np.float64]]:
+    """A quantity of a motion at the times of its trajectory, a curve each, in the shown unit."""
+    at = motion.trajectory
+    if quantity in QUANTITIES:
+        columns = QUANTITIES[quantity].of(at.motion, list(at.tips.T), at.torque)
+    else:
+        columns = [at.joint[:, 0] if quantity == "angle" else at.power]
+    return [_shown(quantity)[2] * np.asarray(column) for column in columns]
+
+
+def heading(quantity: str) -> str:
+    """A quantity with the unit that is shown: tip displacement [mm]."""
+    label, unit, _ = _shown(quantity)
+    return f"{label} [{raised(unit)}]"
+
+
+def _shown(quantity: str) -> tuple[str, str, float]:
+    """Label, unit that is shown, and the factor to it."""
+    if quantity in QUANTITIES:
+        label, unit = QUANTITIES[quantity].label, QUANTITIES[quantity].unit
+        return (label, "mm", 1e3) if unit == "m" else (label, unit, 1.0)
+    return ("joint angle", "rad", 1.0) if quantity == "angle" else ("power", "W", 1.0)
 
 
 def motion_figure(
@@ -122,7 +152,7 @@ def motion_figure(
     title : str, optional
         Title of the picture; by default the plant, the move and its limits.
     quantities : sequence of str, optional
-        Names in `QUANTITIES_DRAWN`; by default all, but the jerk only where a task limits it.
+        Names in `QUANTITIES_DRAWN`; by default all but the power, and the jerk where it is limited.
         `PAPER_PANELS` are those of the paper.
 
     Returns
@@ -137,8 +167,10 @@ def motion_figure(
     """
     lines = _of_one_duration(motions)
     if quantities is None:
-        jerk = any("jerk" in line.plan.task.limits for line in lines)
-        quantities = [name for name in QUANTITIES_DRAWN if jerk or name != "jerk"]
+        limited = {name for line in lines for name in line.plan.task.limits}
+        quantities = [
+            name for name in QUANTITIES_DRAWN if name in limited or name not in _WHERE_LIMITED
+        ]
     if not quantities:
         raise ValueError("no quantity is given to draw; name some, as ['torque']")
     count = len(quantities)
@@ -162,7 +194,7 @@ def motion_figure(
         legend_below(figure, axes, min(3, len(lines)), 9)
     title = title_of(lines[0].plan.task) if title is None else title
     if title:
-        figure.suptitle(title, fontsize=12)
+        figure.suptitle(fill(title, _LETTERS * columns), fontsize=12)
     return figure
 
 

@@ -9,17 +9,16 @@ from quietarm.ocp import SolveStatus
 from quietarm.studies.display.words import REST, moved
 from quietarm.studies.document.blocks import Document, Facts
 from quietarm.studies.document.table import Cell, Column, Table
-from quietarm.studies.sweep.asked import JUMP, STATES
-from quietarm.studies.sweep.library import Between
+from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
 
 _MOST_LINES = 30
 """Cells along one axis that are listed."""
 
 
-def sweep_document(store: Store, between: Between | None = None) -> Document:
+def sweep_document(store: Store) -> Document:
     """Axes, then how many cells ended how."""
-    grid, status, energy = store.sweep.grid, store.status, store.read("energy")
+    grid, status, energy = store.definition.grid, store.read(STATUS), store.read("energy")
     rows = [("plant", moved(grid.task))]
     rows += [
         (
@@ -44,22 +43,22 @@ def sweep_document(store: Store, between: Between | None = None) -> Document:
              f"in {checked.sum()} cells"),
         ]  # fmt: skip
         rows += [("jumps", f"after {jumps} cells, to another motion")] * bool(jumps)
-    if between is not None:
-        rows.append(("between", between.words.partition(": ")[2]))
     return Document("", [Facts(rows), *_along_one_axis(store)])
 
 
 def _along_one_axis(store: Store) -> list[Table]:
     """The trade-off along the only axis, a line a cell; nothing where there are more or many."""
-    axis, *others = store.sweep.grid.axes
+    axis, *others = store.definition.grid.axes
     if others or len(axis.values) > _MOST_LINES:
         return []
     heads = f"{axis.name} [{axis.unit}]", "energy [J]", "residual [mm]", "how it ended"
-    energy, residual = (store.read(name).tolist() for name in ("energy", "residual"))
+    status, energy, residual = (
+        store.read(name).tolist() for name in (STATUS, "energy", "residual")
+    )
     rows: list[list[Cell]] = []
     for k, value in enumerate(axis.values):
         known = isfinite(energy[k])
         left: Cell = "rest" if residual[k] < REST else 1e3 * residual[k]
-        state = STATES[int(store.status[k])]
+        state = STATES[status[k]]
         rows.append([f"{value:.6g}", *((energy[k], left) if known else (None, None)), state])
     return [Table("cells", [Column(head) for head in heads], rows).turned()]

@@ -1,2 +1,3 @@
 from .library import MoveLibrary as MoveLibrary
-from .made import sweep as sweep
+from .library import plan_from as plan_from
+from .run import sweep as sweep

@@ -7,120 +7,122 @@ or lie beyond a jump, by that through four, then by a straight line between two.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property, reduce
+from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from scipy.interpolate import BarycentricInterpolator
 
 Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 ORDERS = (6, 4, 2)
 """Cells along an axis through which a polynomial goes, the most first."""
-_AT_ONCE = 2000
+_JUMP = 4.0
+"""Coefficients that change so many times faster than on either side are of another motion."""
+_LITTLE = 0.05
+"""Unless they change by less than this share of their size: so well is a flat minimum known."""
+_SAME = 1e-12
+"""A place this near to a cell [share, and units of the axis] is the cell."""
+
+
+def find_jumps(axes: Sequence[Array], cells: Array) -> NDArray[np.int32]:
+    """Marks of the cells after which coefficients jump: bit k where they do along axis k."""
+    marks = np.zeros(cells.shape[:-1], np.int32)
+    sizes = np.linalg.norm(cells, axis=-1)
+    little = _LITTLE * np.median(sizes[np.isfinite(sizes)]) if np.isfinite(sizes).any() else 0.0
+    for k, axis in enumerate(axes):
+        steps = np.moveaxis(np.linalg.norm(np.diff(cells, axis=k), axis=-1), k, -1)
+        slopes = steps / np.abs(np.diff(axis))
+        beside = np.full_like(slopes, np.nan)  # of fewer than three none stands out
+        beside[..., 1:] = slopes[..., :-1]
+        beside[..., :-1] = np.fmax(beside[..., :-1], slopes[..., 1:])
+        jump = (slopes > _JUMP * beside) & (steps > little)  # NaN is no jump
+        np.moveaxis(marks, k, -1)[..., :-1] |= jump.astype(np.int32) << k
+    return marks
 
 
 class Interpolation:
-    """Coefficients between cells, shape (*lengths, size), which are NaN where there is no plan.
+    """Coefficients between cells.
 
-    The values of an axis rise or fall; the marks are those of `quietarm.studies.sweep.branches`.
+    Parameters
+    ----------
+    axes : sequence of ndarray
+        Values that rise or fall; `axes` has them rising.
+    cells : ndarray, shape (*lengths, size)
+        Coefficients, NaN where there is no plan; `cells` has them in the order of the axes.
+
+    Attributes
+    ----------
+    orders : ndarray of uint8, shape lengths - 1
+        Cells along an axis that the polynomial of each box goes through; 0 where none does. A box
+        is between two neighbouring values of every axis.
     """
 
-    def __init__(self, axes: Sequence[Array], cells: Array, marks: NDArray[np.int32]) -> None:
-        self.axes, self.cells, self._marks = axes, cells, marks
-        self.lengths = np.array(marks.shape)
-
-    @cached_property
-    def orders(self) -> NDArray[np.uint8]:
-        """Cells along an axis that the polynomial of each box goes through; 0 where none does.
-
-        A box is between two neighbouring values of every axis; its shape is lengths - 1.
-        """
-        orders = np.zeros(self.lengths - 1, np.uint8)
+    def __init__(self, axes: Sequence[Array], cells: Array) -> None:
+        falling = tuple(k for k, axis in enumerate(axes) if axis[-1] < axis[0])
+        self.axes, self.cells = [np.sort(axis) for axis in axes], np.flip(cells, falling)
+        self.lengths = [len(axis) for axis in axes]
+        self.orders = np.zeros([length - 1 for length in self.lengths], np.uint8)
+        marks = find_jumps(self.axes, self.cells)
         for order in ORDERS:
-            whole = self._whole(np.minimum(order, self.lengths))
-            boxes = np.meshgrid(*map(np.arange, orders.shape), indexing="ij", sparse=True)
+            usable = self._find_usable(order, marks)
+            boxes = np.meshgrid(*map(np.arange, self.orders.shape), indexing="ij", sparse=True)
             first = tuple(self._first(box, order, k) for k, box in enumerate(boxes))
-            orders[(orders == 0) & whole[first]] = order
-        return orders
+            self.orders[(self.orders == 0) & usable[first]] = order
 
-    def _whole(self, sizes: Index) -> NDArray[np.bool_]:
+    def _find_usable(self, order: int, marks: NDArray[np.int32]) -> NDArray[np.bool_]:
         """Whether windows of cells have plans and no jumps, by the place of their first cell."""
-        good = np.asarray(np.isfinite(self.cells).all(axis=-1))
+        sizes = [min(order, length) for length in self.lengths]
         inner = tuple(range(len(sizes), 2 * len(sizes)))
-        whole = np.asarray(sliding_window_view(good, sizes).all(axis=inner))
+        planned = np.isfinite(self.cells).all(axis=-1)
+        usable = np.asarray(sliding_window_view(planned, sizes).all(axis=inner))
         for axis in range(len(sizes)):
-            edges = np.delete((self._marks >> axis) & 1, -1, axis) == 0
+            smooth = np.delete((marks >> axis) & 1, -1, axis) == 0
             window = [size - (k == axis) for k, size in enumerate(sizes)]
-            whole &= sliding_window_view(edges, window).all(axis=inner)
-        return whole
+            usable &= sliding_window_view(smooth, window).all(axis=inner)
+        return usable
 
-    def _first(self, box: Index, order: int, axis: int) -> Index:
+    def _first(self, box: Any, order: int, axis: int) -> Any:
         """The first of the cells along an axis through which the polynomial of a box goes."""
-        length = int(self.lengths[axis])
-        size = min(order, length)
-        return np.clip(box - (size // 2 - 1), 0, length - size)
+        size = min(order, self.lengths[axis])
+        return np.clip(box - (size // 2 - 1), 0, self.lengths[axis] - size)
 
     def __call__(self, places: Array) -> Array:
-        """Coefficients at places, shape (places, size); NaN where there is no polynomial.
+        """Coefficients at places within the axes, shape (places, size).
 
-        A place has a value for each axis, within them.
+        A place has a value for each axis. NaN where it has no polynomial, unless it is a cell.
         """
         found = np.full((len(places), self.cells.shape[-1]), np.nan)
-        boxes = [self._box(axis, places[:, k]) for k, axis in enumerate(self.axes)]
-        orders = self.orders[tuple(boxes)]
-        for order in ORDERS:
-            rows = np.flatnonzero(orders == order)
-            for some in np.split(rows, range(_AT_ONCE, len(rows), _AT_ONCE)):
-                found[some] = self._through(order, places[some], [box[some] for box in boxes])
-        at_cells = self._cells_at(places, boxes)
-        missing = ~np.isfinite(found[:, 0])
-        found[missing] = at_cells[missing]
-        return found
-
-    def _box(self, axis: Array, values: Array) -> Index:
-        rising = axis if axis[-1] > axis[0] else -axis
-        signed = values if axis[-1] > axis[0] else -values
-        return np.clip(np.searchsorted(rising, signed, side="right") - 1, 0, len(axis) - 2)
-
-    def _through(self, order: int, places: Array, boxes: list[Index]) -> Array:
-        firsts = [self._first(box, order, k) for k, box in enumerate(boxes)]
-        sizes = np.minimum(order, self.lengths)
-        index = tuple(
-            (first[:, None] + np.arange(size)).reshape(-1, *self._spread(size, k))
-            for k, (first, size) in enumerate(zip(firsts, sizes, strict=True))
-        )
-        found: Array = self.cells[index]
-        for k in reversed(range(len(sizes))):
-            nodes = self.axes[k][firsts[k][:, None] + np.arange(sizes[k])]
-            weights = _lagrange(nodes, places[:, k])
-            found = np.einsum("n...sc,ns->n...c", found, weights)
-        return found
-
-    def _spread(self, size: int, axis: int) -> list[int]:
-        shape = [1] * len(self.lengths)
-        shape[axis] = size
-        return shape
-
-    def _cells_at(self, places: Array, boxes: list[Index]) -> Array:
-        """The cells themselves where places are theirs, else NaN."""
-        found = np.full((len(places), self.cells.shape[-1]), np.nan)
-        near = [box + (np.abs(axis[box + 1] - at) < np.abs(axis[box] - at))
-                for axis, box, at in zip(self.axes, boxes, places.T, strict=True)]  # fmt: skip
-        same = reduce(np.logical_and, [
-            np.isclose(axis[k], at, rtol=1e-12, atol=1e-12)
-            for axis, k, at in zip(self.axes, near, places.T, strict=True)
+        corners = np.stack([
+            np.clip(np.searchsorted(axis, values, side="right") - 1, 0, len(axis) - 2)
+            for axis, values in zip(self.axes, places.T, strict=True)
         ])  # fmt: skip
-        found[same] = self.cells[tuple(near)][same]
+        boxes = np.ravel_multi_index(tuple(corners), self.orders.shape)
+        order = np.argsort(boxes, kind="stable")
+        for rows in np.split(order, np.flatnonzero(np.diff(boxes[order])) + 1):
+            if len(rows):
+                found[rows] = self._through(tuple(corners[:, rows[0]]), places[rows])
+        for row in np.flatnonzero(np.isnan(found[:, 0])):
+            found[row] = self._cell_at(places[row])
         return found
 
+    def _through(self, box: tuple[int, ...], places: Array) -> Array:
+        """Values of the polynomial of a box; NaN where it has none."""
+        order = int(self.orders[box])
+        if order == 0:
+            return np.full((len(places), self.cells.shape[-1]), np.nan)
+        firsts = [self._first(place, order, k) for k, place in enumerate(box)]
+        window = tuple(slice(first, first + order) for first in firsts)
+        values = np.broadcast_to(self.cells[window], (len(places), *self.cells[window].shape))
+        for axis, cut, at in zip(self.axes, window, places.T, strict=True):
+            nodes = axis[cut]
+            weights = BarycentricInterpolator(nodes, np.eye(len(nodes)))(at)
+            values = np.einsum("pn...,pn->p...", values, weights)
+        return values
 
-def _lagrange(nodes: Array, at: Array) -> Array:
-    """Weights of values at nodes for the polynomial through them; a row a place."""
-    size = nodes.shape[1]
-    weights = np.ones_like(nodes)
-    for i in range(size):
-        for j in range(size):
-            if i != j:
-                weights[:, i] *= (at - nodes[:, j]) / (nodes[:, i] - nodes[:, j])
-    return weights
+    def _cell_at(self, place: Array) -> Array:
+        """The cell whose place this is; NaN where it is none's."""
+        near = [int(np.abs(axis - at).argmin()) for axis, at in zip(self.axes, place, strict=True)]
+        values = [axis[k] for axis, k in zip(self.axes, near, strict=True)]
+        same = np.allclose(values, place, rtol=_SAME, atol=_SAME)
+        return self.cells[tuple(near)] if same else np.nan

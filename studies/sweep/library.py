@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
+from math import ceil
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import (
+    InfeasibleTaskError,
     Plan,
     PointToPoint,
-    QuietarmError,
     evaluate_coefficients,
-    plan_move,
-    plan_moves,
 )
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.studies.sweep.asked import COEFFICIENTS, JUMP
+from quietarm.studies.sweep.cells import plan_energies
+from quietarm.studies.sweep.definition import COEFFICIENTS
 from quietarm.studies.sweep.grid import Grid
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.store import Store
@@ -27,14 +25,18 @@ from quietarm.studies.sweep.store import Store
 Array = NDArray[np.float64]
 _SAMPLES = 100
 """Random moves between the cells, by which a library says how good it is."""
+_STARTS = 2
+_SPARE = 1.5
+"""A margin is advised that is this much larger than the worst excess of these."""
+_ALONE = "plan this move by itself: leave --from out"
 
 
 @dataclass(frozen=True)
 class Between:
     """What moves between the cells leave [m] and cost: the worst of some random ones, by CVODES.
 
-    Cost is the share of the energy above that of a plan of the same move; `of_limits` is peak over
-    limit, of the limit that is kept worst, 0 without limits.
+    `excess` is the share of the energy above that of a plan of the same move; `of_limits` is peak
+    over limit, of the limit that is kept worst, 0 without limits.
     """
 
     residual: float
@@ -43,20 +45,26 @@ class Between:
     samples: int
 
     @property
+    def keeps_limits(self) -> bool:
+        """Whether all of them keep their limits."""
+        return self.of_limits <= 1 + OVERRUN
+
+    @property
     def words(self) -> str:
         """All of it in a line."""
-        beyond = self.of_limits - 1
-        kept = f"limits broken by {beyond:.1%}" if beyond > OVERRUN else "limits kept"
+        broken = f"limits broken by up to {self.of_limits - 1:.1%}"
         return ", ".join([
-            f"between the cells: {1e3 * self.residual:.3g} mm left",
+            f"between the cells: residual {1e3 * self.residual:.3g} mm",
             f"{self.excess:.2%} more energy than plans of their own",
-            *([kept] if self.of_limits else []),
+            *(["limits kept" if self.keeps_limits else broken] if self.of_limits else []),
             f"each the largest of {self.samples} random moves",
         ])  # fmt: skip
 
-
-class BeyondError(ValueError):
-    """A move that a library has no coefficients for."""
+    @property
+    def remedy(self) -> str:
+        """How moves between the cells come to keep their limits."""
+        share = ceil(100 * _SPARE * (self.of_limits - 1))
+        return f"sweep again with --limit-margin {share}% or on a finer grid"
 
 
 class MoveLibrary:
@@ -77,7 +85,8 @@ class MoveLibrary:
 
     def __init__(self, path: str | Path) -> None:
         self.store = Store(Path(path))
-        self.grid, self.profile = self.store.sweep.grid, self.store.sweep.profile
+        definition = self.store.definition
+        self.grid, self.profile = definition.grid, definition.profile
         if self.store.missing():
             raise ValueError(f"{path} has cells that are not computed; give its line again")
 
@@ -85,8 +94,7 @@ class MoveLibrary:
     def interpolation(self) -> Interpolation:
         """Between the cells of one branch."""
         axes = [np.array(axis.values) for axis in self.grid.axes]
-        marks = self.store.read(JUMP).astype(np.int32)
-        return Interpolation(axes, self.store.read(COEFFICIENTS), marks)
+        return Interpolation(axes, self.store.read(COEFFICIENTS))
 
     def coefficients(self, **at: ArrayLike) -> Array:
         """Coefficients of moves.
@@ -113,9 +121,9 @@ class MoveLibrary:
             low, high = min(axis.values), max(axis.values)
             if not ((low <= values) & (values <= high)).all():
                 worst = values.ravel()[np.argmax(np.abs(values - (low + high) / 2))]
-                raise BeyondError(
+                raise ValueError(
                     f"{axis.name} is {worst:g} {axis.unit}, and the grid has {low:g} to {high:g}; "
-                    "sweep a wider one, or add --solve"
+                    f"sweep a wider one, or {_ALONE}"
                 )
         places = np.stack(
             np.broadcast_arrays(*(np.asarray(at[axis.name], float) for axis in self.grid.axes)),
@@ -123,9 +131,9 @@ class MoveLibrary:
         )
         found = self.interpolation(places.reshape(-1, places.shape[-1]))
         if not np.isfinite(found).all():
-            raise BeyondError(
+            raise ValueError(
                 "the move is next to a cell without a plan, or where the least energy jumps from "
-                "one motion to another; add --solve, or sweep a finer grid"
+                f"one motion to another; sweep a finer grid, or {_ALONE}"
             )
         return found.reshape(*places.shape[:-1], -1)
 
@@ -141,28 +149,19 @@ class MoveLibrary:
         one = Grid(self.grid.task, tuple(axes))
         return one.tasks(one.chunks[0])[0]
 
-    def plan(self, *, solve: bool = False, **at: float) -> Plan:
-        """The move that is looked up, with its figures by CVODES.
+    def plan(self, **at: float) -> Plan:
+        """The move between the cells, with its figures by CVODES; it may break a limit.
 
-        One that the library has no coefficients for is planned by `plan_move` where `solve` says
-        so, else refused; so is one that breaks a limit, else it is returned as it is.
+        ValueError where the library has no coefficients for it.
         """
-        task, settings = self.task(**at), self.store.sweep.settings
-        try:
-            coefficients = self.coefficients(**at)
-        except BeyondError:
-            if not solve:
-                raise
-        else:
-            found = evaluate_coefficients(task, coefficients, profile=self.profile, method="lookup")
-            if not (solve and found.motion.exceeded(task.limits, OVERRUN)):
-                return found
-        limit = settings.residual_limit or (None if task.ranges else 0.0)
-        return plan_move(task, self.profile, residual_limit=limit, bound=settings.bound)
+        coefficients = self.coefficients(**at)
+        return evaluate_coefficients(
+            self.task(**at), coefficients, profile=self.profile, method="interpolated"
+        )
 
     def between(self, samples: int = _SAMPLES) -> Between:
         """What random moves between the cells leave and cost; kept in the dataset."""
-        known = self.store.noted("between the cells")
+        known = self.store.note("between the cells")
         if known.get("samples") == samples:
             return Between(**known)
         random, tasks, plans = np.random.default_rng(0), list[PointToPoint](), list[Plan]()
@@ -172,37 +171,48 @@ class MoveLibrary:
             at = {one.name: float(random.uniform(min(one.values), max(one.values)))
                   for one in self.grid.axes}  # fmt: skip
             try:
-                plans.append(self.plan(solve=False, **at))
+                plans.append(self.plan(**at))
             except ValueError:
                 continue
             tasks.append(self.task(**at))
         if not tasks:
             raise ValueError(
-                f"{self.store.path} has no move between its cells that can be looked up"
+                f"{self.store.path} has no move between its cells that has coefficients"
             )
-        least = self._least(tasks)
+        least = plan_energies(self.store.definition, tasks, _STARTS)
         energies = np.array([plan.energy for plan in plans])
         worst = max(plan.residual for plan in plans)
         peaks = [
             max(one.motion.exceeded(one.task.limits, -1).values(), default=0.0) for one in plans
         ]
         found = Between(worst, float(np.nanmax(energies / least - 1)), max(peaks), len(tasks))
-        self.store.note("between the cells", vars(found))
+        self.store.keep("between the cells", asdict(found))
         return found
 
-    def _least(self, tasks: Sequence[PointToPoint]) -> Array:
-        """Energies of the plans of moves, NaN where one has none; those of one plant at once."""
-        settings, least = self.store.sweep.settings, np.full(len(tasks), np.nan)
-        limit, bound = settings.residual_limit, settings.bound
-        if tasks[0].ranges:
-            for k, task in enumerate(tasks):
-                with suppress(QuietarmError):
-                    plan = plan_move(task, self.profile, residual_limit=limit or None, bound=bound)
-                    least[k] = plan.energy
-            return least
-        for plant in {task.plant for task in tasks}:
-            places = [k for k, task in enumerate(tasks) if task.plant == plant]
-            some = [tasks[k] for k in places]
-            moves = plan_moves(some, self.profile, residual_limit=limit, bound=bound, starts=2)
-            least[places] = moves.energy
-        return least
+
+def plan_from(path: str | Path, **at: float) -> tuple[Plan, Between, InfeasibleTaskError | None]:
+    """A move from the dataset of a sweep, without solving anything.
+
+    Parameters
+    ----------
+    path : str or Path
+        The dataset of `quietarm sweep`.
+    **at : float
+        A value of every axis by its name [SI units].
+
+    Returns
+    -------
+    Plan, Between, InfeasibleTaskError or None
+        The move, what moves of this dataset leave and cost, and an error where this one breaks a
+        limit.
+
+    Raises
+    ------
+    FileFormatError, ValueError
+        As of `MoveLibrary` and its `coefficients`.
+    """
+    library = MoveLibrary(path)
+    plan, between = library.plan(**at), library.between()
+    broken = " and ".join(plan.motion.exceeded(plan.task.limits, OVERRUN))
+    words = f"between the cells the move breaks its limit of {broken}; {between.remedy}"
+    return plan, between, InfeasibleTaskError(words) if broken else None

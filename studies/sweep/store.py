@@ -1,4 +1,4 @@
-"""The dataset of a sweep, laid out first and then written chunk by chunk, as Zarr for xarray."""
+"""The dataset of a sweep: laid out first, then written region by region, as Zarr by xarray."""
 
 from __future__ import annotations
 
@@ -15,131 +15,124 @@ from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import install
 from quietarm.ocp.record import versions
-from quietarm.studies.sweep.asked import COEFFICIENTS, JUMP, STATES, STATUS, Sweep
-from quietarm.studies.sweep.branches import jumps
+from quietarm.studies.sweep.definition import COEFFICIENTS, JUMP, STATES, STATUS, Definition
+from quietarm.studies.sweep.interpolation import find_jumps
 
 if TYPE_CHECKING:
-    import zarr
+    import xarray
 
 Array = NDArray[np.float64]
 NEEDS = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
+_FORMAT = "quietarm-sweep"
 
 
 class Store:
-    """The Zarr store of a sweep; FileFormatError where a folder is none."""
+    """The dataset of a sweep; FileFormatError where a folder is none."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self._group = path, _opened(path)
-        with _told(path):
-            self.sweep = Sweep.from_json(self._read("sweep"))
-            names = (*self.sweep.variables, STATUS, JUMP)
-            self._arrays: dict[str, Any] = {name: self._group[name] for name in names}
+        self.path = path
+        self.dataset = _open(path)
+        with damage_told(path):
+            self.definition = Definition.from_json(self.note("sweep"))
+            self._dims = [axis.name for axis in self.definition.grid.axes]
 
     @classmethod
-    def of(cls, path: Path, sweep: Sweep) -> Store:
+    def of(cls, path: Path, definition: Definition) -> Store:
         """The store of a sweep, made where there is none; FileFormatError if it is of another."""
         if not path.exists():
-            lay_out(path, sweep, sweep)
+            _lay_out(path, definition)
         store = cls(path)
-        _check_same(path, store._read("asked"), _as_json(sweep))
+        _check_same(path, store.note("sweep"), json.loads(json.dumps(definition.to_json())))
         return store
 
-    def _read(self, name: str) -> Any:
-        return json.loads(str(self._group.attrs.get(name, "null")))
-
-    @property
-    def status(self) -> NDArray[np.int8]:
-        """The numbers of `STATES` of all cells."""
-        with _told(self.path / STATUS):
-            return np.asarray(self._arrays[STATUS][...])
+    def read(self, name: str) -> NDArray[Any]:
+        """All of a variable; FileFormatError where a file of it is broken."""
+        with damage_told(self.path / name):
+            return self.dataset[name].to_numpy()
 
     def missing(self, part: tuple[int, int] = (1, 1)) -> list[int]:
         """The chunks of a part, i of n, that are not computed."""
-        (number, of), status = part, self.status
+        (number, of), status = part, self.read(STATUS)
         return [
-            k for k, chunk in enumerate(self.sweep.grid.chunks)
+            k for k, chunk in enumerate(self.definition.grid.chunks)
             if k % of == number - 1 and (status[chunk] == 0).any()
         ]  # fmt: skip
 
-    def keep(self, number: int, found: Mapping[str, Array]) -> None:
+    def write(self, number: int, columns: Mapping[str, Array]) -> None:
         """Write a chunk; its status last, so that a killed run computes it again."""
-        chunk = self.sweep.grid.chunks[number]
-        shape = tuple(cut.stop - cut.start for cut in chunk)
+        chunk = self.definition.grid.chunks[number]
+        shape = [cut.stop - cut.start for cut in chunk]
+        beside = {name: one.beside for name, one in self.definition.variables.items()}
+        region = {
+            name: ([*self._dims, *dict(beside.get(name, ()))],
+                   values.reshape(*shape, *values.shape[1:]))
+            for name, values in columns.items()
+        }  # fmt: skip
+        status = {STATUS: region.pop(STATUS)}
+        for variables in (region, status):
+            self._write(variables, region=dict(zip(self._dims, chunk, strict=True)))
+
+    def mark_jumps(self) -> None:
+        """Mark where the least energy jumps from one motion to another, once all is computed."""
+        axes = [np.array(axis.values) for axis in self.definition.grid.axes]
+        self._write({JUMP: (self._dims, find_jumps(axes, self.read(COEFFICIENTS)))})
+
+    def _write(self, variables: Mapping[str, Any], **place: Any) -> None:
+        import xarray as xr
+
         try:
-            for name in (*self.sweep.variables, STATUS):
-                values = found[name]
-                self._arrays[name][chunk] = values.reshape(*shape, *values.shape[1:])
+            xr.Dataset(variables).to_zarr(self.path, mode="r+", consolidated=False, **place)
         except OSError as error:  # nothing is damaged: the chunk counts as not computed
             raise QuietarmError(
                 f"{self.path}: {error.strerror or error}; make room, and give the same line again"
             ) from None
 
-    def mark_jumps(self) -> None:
-        """Mark where the least energy jumps from one motion to another, once all is computed."""
-        self._arrays[JUMP][...] = jumps(self.read(COEFFICIENTS))
+    def note(self, name: str) -> Any:
+        """What an attribute holds; empty where there is none."""
+        return json.loads(self.dataset.attrs.get(name, "{}"))
 
-    def read(self, name: str) -> Array:
-        """All of a variable; FileFormatError where a file of it is broken."""
-        with _told(self.path / name):
-            return np.asarray(self._arrays[name][...])
-
-    @property
-    def versions(self) -> dict[str, str]:
-        """Of what laid the dataset out."""
-        return self._read("versions")
-
-    def note(self, name: str, entries: Mapping[str, Any]) -> None:
+    def keep(self, name: str, entries: Mapping[str, Any]) -> None:
         """Keep a few numbers about the dataset as an attribute."""
-        self._group.attrs[name] = json.dumps(entries)
+        import zarr
 
-    def noted(self, name: str) -> dict[str, Any]:
-        """What `note` kept; empty where it kept nothing."""
-        return self._read(name) or {}
+        text = json.dumps(entries)
+        zarr.open_group(self.path, mode="r+").attrs[name] = text
+        self.dataset.attrs[name] = text
 
 
-def lay_out(path: Path, asked: Sweep, sweep: Sweep) -> None:
-    """Make a store whole or not at all, also where two begin at once.
+def _lay_out(path: Path, definition: Definition) -> None:
+    """Make a dataset whole or not at all, also where two begin at once."""
+    xr = _xarray()
+    grid = definition.grid
+    variables, encoding = dict[str, Any](), dict[str, Any]()
 
-    Its grid is that of `sweep`; what is asked may have a coarser one, to be refined.
-    """
-    zarr = _zarr()
+    def add(name: str, beside: Any, empty: Any, **attributes: Any) -> None:
+        names, sizes = dict(beside), [size for _, size in beside]
+        values = np.broadcast_to(empty, [*grid.shape, *sizes])  # takes no memory
+        variables[name] = [axis.name for axis in grid.axes] + [*names], values, attributes
+        encoding[name] = {"chunks": (*grid.chunk, *sizes), "_FillValue": None, "fill_value": empty}
+
+    for name, one in definition.variables.items():
+        add(name, one.beside, np.float64("nan"), units=one.unit)
+    words = " ".join(state.replace(" ", "_") for state in STATES)
+    add(STATUS, (), np.int8(0), units="1", flag_values=[*range(len(STATES))], flag_meanings=words)
+    edges = " ".join(f"to_the_next_{axis.name}" for axis in grid.axes)
+    masks = [1 << k for k in range(len(grid.axes))]
+    add(JUMP, (), np.int32(0), units="1", flag_masks=masks, flag_meanings=edges)
+    axes = {axis.name: (axis.name, np.array(axis.values), {"units": axis.unit})
+            for axis in grid.axes}  # fmt: skip
+    texts = {"sweep": definition.to_json(), "versions": versions()}
+    attributes = {"format": _FORMAT, **{name: json.dumps(one) for name, one in texts.items()}}
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".sweep-") as folder:
         place = Path(folder) / "store"
-        texts = {"asked": asked.to_json(), "sweep": sweep.to_json(), "versions": versions()}
-        attributes = {name: json.dumps(one) for name, one in texts.items()}
-        group = zarr.create_group(place, attributes={"format": "quietarm-sweep", **attributes})
-        grid = sweep.grid
-        dims = [axis.name for axis in grid.axes]
-
-        def make(name: str, beside: Any, kind: str, empty: float, **own: Any) -> None:
-            names, sizes = [name for name, _ in beside], [size for _, size in beside]
-            group.create_array(
-                name, shape=(*grid.shape, *sizes), chunks=(*grid.chunk, *sizes), dtype=kind,
-                fill_value=empty, attributes=own, dimension_names=[*dims, *names],
-            )  # fmt: skip
-
-        for axis in grid.axes:
-            group.create_array(
-                axis.name, data=np.array(axis.values), dimension_names=[axis.name],
-                attributes={"units": axis.unit},
-            )  # fmt: skip
-        for name, one in sweep.variables.items():
-            make(name, one.beside, "float64", np.nan, units=one.unit)
-        words = " ".join(state.replace(" ", "_") for state in STATES)
-        make(STATUS, (), "int8", 0, units="1", flag_values=[*range(len(STATES))],
-             flag_meanings=words)  # fmt: skip
-        make(JUMP, (), "int32", 0, units="1", flag_masks=[1 << k for k in range(len(dims))],
-             flag_meanings=" ".join(f"to_the_next_{name}" for name in dims))  # fmt: skip
+        empty = xr.Dataset(variables, axes, attributes)
+        empty.to_zarr(place, encoding=encoding, consolidated=False, zarr_format=3)
         with suppress(OSError):  # another process was first
             os.rename(place, path)
 
 
-def _as_json(sweep: Sweep) -> dict[str, Any]:
-    return json.loads(json.dumps(sweep.to_json()))
-
-
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
+def damage_told(path: Path) -> Iterator[None]:
     """Tell whatever zarr makes of a damaged dataset in a line."""
     try:
         yield
@@ -149,23 +142,24 @@ def _told(path: Path) -> Iterator[None]:
         ) from None
 
 
-def _zarr() -> Any:
+def _xarray() -> Any:
     try:
-        import zarr
+        import xarray
+        import zarr  # noqa: F401
     except ImportError:
         raise ValueError(NEEDS) from None
-    return zarr
+    return xarray
 
 
-def _opened(path: Path) -> zarr.Group:
-    """The Zarr group of a sweep; FileFormatError where it is none."""
-    zarr = _zarr()
+def _open(path: Path) -> xarray.Dataset:
+    """The dataset, whose values are read when they are asked for; FileFormatError if it is none."""
+    xr = _xarray()
     if not path.exists():
         raise FileFormatError(f"{path}: there is no such dataset; sweep it, or give another name")
     with suppress(Exception):  # whatever zarr makes of another file or folder
-        group = zarr.open_group(path, mode="r+")
-        if group.attrs.get("format") == "quietarm-sweep":
-            return group
+        dataset = xr.open_dataset(path, engine="zarr", consolidated=False, cache=False)
+        if dataset.attrs.get("format") == _FORMAT:
+            return dataset
     raise FileFormatError(f"{path} is no dataset of a sweep; give another name")
 
 

@@ -39,7 +39,7 @@ def explore(
       quietarm explore dual-link
       quietarm explore plan.json --no-browser
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.studies.explore.opening import is_file, menu, of_file, of_plant
+    from quietarm.studies.explore.opening import is_file, menu, open_file, open_plant
 
     try:
         from quietarm.studies.explore.server import serve
@@ -49,8 +49,8 @@ def explore(
     if what is not None and is_file(what):
         if parameters:
             raise ValueError(f"--set is for a PLANT, and {what} has its own; leave it out")
-        explored = of_file(Path(what))
+        explored = open_file(Path(what))
     else:
         kind = parse_plant(what or _USUAL) if what or plant_file is None else None
-        explored = of_plant(chosen_plant(kind, plant_file, parameters))
+        explored = open_plant(chosen_plant(kind, plant_file, parameters))
     serve(explored, menu(explored.task.plant, known_plants()), click.echo, not no_browser)

@@ -1,4 +1,4 @@
-"""`quietarm export`: a plan in the form that a controller reads."""
+"""`quietarm export`: moves for a controller, and as films."""
 
 from __future__ import annotations
 
@@ -7,42 +7,58 @@ from typing import Any
 
 import click
 from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.options import typed
+from quietarm.studies.cli.options import quiet_option, typed
 from quietarm.studies.cli.task import plant_file_option
-from quietarm.studies.cli.types import INPUT, OUTPUT, Named
+from quietarm.studies.cli.types import INPUT, SHARE, STATE, WHOLE, Named
+from quietarm.studies.display.progress import count
 from quietarm.studies.document.blocks import Document, Lines
 from quietarm.studies.export.formats import (
     COLUMNS,
     FORMATS,
+    FRAMES,
     JOINT,
     RATE,
     export_moves,
     export_plan,
     format_of,
 )
+from quietarm.studies.figures.motion import Line
 from quietarm.studies.reading.saved import load_plans
+from rich.console import Console
 
 
 @click.command()
-@click.argument("plan", type=INPUT)
-@click.option("--output", type=OUTPUT, required=True, help="The file; move.c has move.h beside it.")
+@click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
+@click.option("--output", type=STATE, required=True, help="The file; move.c has move.h beside it.")
 @click.option("--format", "form", type=Named("format", FORMATS),
               help="The form. [default: by the file's ending]")  # fmt: skip
 @click.option("--columns", default=COLUMNS, show_default=True,
               help="Of csv and mat, with units: time:ms,angle:deg,speed,acceleration,jerk,tip:mm,"
               "torque,power.")  # fmt: skip
-@click.option("--rate", type=float, default=RATE, show_default=True,
-              help="Rows or points in a second [Hz].")  # fmt: skip
+@click.option("--rate", type=float,
+              help=f"Rows, points or frames in a second [Hz]. [default: {RATE:g}, {FRAMES:g} of a "
+              "film]")  # fmt: skip
 @click.option("--joint", default=JOINT, show_default=True, help="The joint's name, for ROS.")
+@click.option("--speed", type=SHARE, default="100%", show_default=True,
+              help="Of a film's clock; 25% is slow motion.")  # fmt: skip
+@click.option("--deflection-scale", type=float,
+              help="Draw deflections so many times larger than they are. [default: the largest "
+              "becomes up to a fifth of the structure]")  # fmt: skip
+@click.option("--width", type=WHOLE, default=800, show_default=True, help="Of a film, in pixels.")
 @plant_file_option(expose_value=False)
-def export(plan: Path, output: Path, form: str | None, **wishes: Any) -> None:
-    """Write a saved PLAN for a controller: csv, C, a ROS 2 JointTrajectory, or MATLAB.
-
-    The PLAN may be the dataset of quietarm sweep, whose moves are written as C with the
-    interpolation between them.
+@quiet_option
+def export(
+    plans: tuple[Path, ...], output: Path, form: str | None, quiet: bool, **settings: Any
+) -> None:
+    """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB) or as a film (gif, mp4, html).
 
     The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
-    but math.h.
+    but math.h. The PLAN may be the dataset of quietarm sweep, whose moves are written as C with the
+    interpolation between them.
+
+    A film shows several PLANs side by side on one clock, one alone beside the plain cycloid of its
+    move. Links bend as their modes do; the picture says how far that is exaggerated. An mp4 needs
+    the program ffmpeg.
 
     \b
     Examples:
@@ -50,15 +66,38 @@ def export(plan: Path, output: Path, form: str | None, **wishes: Any) -> None:
       quietarm export plan.json --output move.csv --columns time:ms,angle:deg,torque --rate 500
       quietarm export plan.json --output move.yaml --joint shoulder_pan_joint --rate 100
       quietarm export moves.zarr --output moves.c
+      quietarm export plan.json zvd.json --output move.gif --speed 25%
     """  # noqa: D301  # \b is click's: do not rewrap
-    form = form or format_of(output)
-    for name in wishes:
-        if typed(name) and name not in FORMATS[form].takes:
-            takers = " and ".join(one for one, each in FORMATS.items() if name in each.takes)
-            raise ValueError(f"--{name} is for {takers}, not for {form}; leave it out")
-    if plan.is_dir():
-        written = export_moves(plan, output, form)
+    form = format_of(output, form)
+    known = FORMATS[form]
+    for name in settings:
+        if typed(name) and name not in known.takes:
+            takers = [one for one, each in FORMATS.items() if name in each.takes]
+            option = name.replace("_", "-")
+            raise ValueError(f"--{option} is for {', '.join(takers)}, not for {form}; leave it out")
+    settings = {name: settings[name] for name in known.takes if settings[name] is not None}
+    if not known.is_film and len(plans) > 1:
+        raise ValueError(f"{form} is of one plan, and {len(plans)} are given; give one")
+    if len(plans) == 1 and plans[0].is_dir():
+        if form != "c":
+            raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
+        written, size = export_moves(plans[0], output), []
+    elif known.is_film:
+        written, size = [output], [_write_film(plans, output, form, quiet, settings)]
     else:
-        (saved,) = load_plans([plan]).values()
-        written = export_plan(saved, output, form, **wishes)
-    finish([], Document("", [Lines([f"wrote {path}" for path in written])]))
+        (plan,) = load_plans(plans).values()
+        written, size = export_plan(plan, output, form, **settings), []
+    finish([], Document("", [Lines([*size, *(f"wrote {path}" for path in written)])]))
+
+
+def _write_film(
+    plans: tuple[Path, ...], output: Path, form: str, quiet: bool, settings: dict[str, Any]
+) -> str:
+    """Write a film of plans; how long and how large it is."""
+    from quietarm.studies.export.film import animate
+
+    lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
+    film = animate(lines if len(lines) > 1 else lines[0].plan, **settings)
+    with count(film.frames, "frames", Console(stderr=True), quiet=quiet) as report:
+        film.save(output, form, report)
+    return f"{film.frames} frames, {film.seconds:.1f} s, {output.stat().st_size / 1e3:.0f} kB"

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import click
-from quietarm.ocp import InfeasibleTaskError, Plan
-from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp import Plan
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import quiet_option
@@ -28,17 +27,11 @@ from rich.console import Console
 @click.option("--duration", type=TIME, help="Travelling time.")
 @click.option("--set", "parameters", type=SETTING, multiple=True,
               help="A parameter of the plant that is an axis, as tip_mass=150g.")  # fmt: skip
-@click.option(
-    "--solve",
-    is_flag=True,
-    help="Plan the move where the dataset does not have it within its limits.",
-)
 @quiet_option
 @plan_file_options
 def lookup(
     moves: Path,
     parameters: tuple[tuple[str, str], ...],
-    solve: bool,
     quiet: bool,
     files_of: Callable[[Plan], list[File]],
     **asked: float | None,
@@ -53,18 +46,12 @@ def lookup(
     Examples:
       quietarm lookup moves.zarr --target 37deg --duration 930ms --output plan.json
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.studies.sweep.library import MoveLibrary
+    from quietarm.studies.sweep.library import plan_from
+    from quietarm.studies.sweep.store import Store
 
     with working("looking between the cells", Console(stderr=True), quiet=quiet):
-        library = MoveLibrary(moves)
-        at = values_of_plant(library.grid.task.plant, parameters)
+        plant = Store(moves).definition.grid.task.plant
+        at = values_of_plant(plant, parameters)
         at |= {name: value for name, value in asked.items() if value is not None}
-        found = library.plan(solve=solve, **at)
-        between = None if found.status.solved else library.between()
-    notes = ["planned: the dataset does not have it"] if between is None else [between.words]
-    broken = " and ".join(found.motion.exceeded(found.task.limits, OVERRUN))
-    trouble = InfeasibleTaskError(
-        f"between the cells the move breaks its limit of {broken}; add --solve for a plan that "
-        "keeps it"
-    )
-    finish(files_of(found), plan_document(found, notes), trouble=trouble if broken else None)
+        found, between, trouble = plan_from(moves, **at)
+    finish(files_of(found), plan_document(found, [between.words]), trouble=trouble)

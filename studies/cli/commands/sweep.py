@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +17,8 @@ from quietarm.studies.cli.options import (
     workers_options,
 )
 from quietarm.studies.cli.task import task_grid_options
-from quietarm.studies.cli.types import DATASET, LENGTH, PICTURE, RESIDUAL, WHOLE
-from quietarm.studies.display.progress import progress
+from quietarm.studies.cli.types import DATASET, PICTURE, RESIDUAL, SHARE, WHOLE
+from quietarm.studies.display.progress import count
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.sweep.grid import Grid
@@ -27,20 +26,15 @@ from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from quietarm.studies.sweep.store import Store
 
 _MANY = 1_000_000
 _HOURS_OF_MANY = 1.4
 _MOST_POINTS = 1000
 
 
-def _check_size(grid: Grid, yes: bool) -> None:
-    if grid.cells > _MANY and not yes:
-        hours = _HOURS_OF_MANY * grid.cells / _MANY
-        raise ValueError(
-            f"the grid has {grid.cells} cells, some {hours:.0f} hours on a core; give wider steps, "
-            "or --yes"
-        )
+def _refuse_refine(context: click.Context, option: click.Parameter, value: str | None) -> None:
+    if value is not None:
+        raise ValueError("--refine is gone; sweep a finer grid, or leave a --limit-margin")
 
 
 @click.command()
@@ -51,11 +45,12 @@ def _check_size(grid: Grid, yes: bool) -> None:
 @click.option("--residual-limit", type=RESIDUAL, default="0", show_default=True,
               help="Largest tip displacement after arrival; 0 is at rest, and with --robust 5 % of "
               "how far the plain cycloid bends the tip.")  # fmt: skip
+@click.option("--limit-margin", "margin", type=SHARE, default="0%", show_default=True,
+              help="Share of each limit that plans leave unused, so that moves between the cells "
+              "keep it.")  # fmt: skip
 @click.option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
               help="Find a front of so many points for every move as well.")  # fmt: skip
-@click.option("--refine", type=LENGTH,
-              help="Halve axes until a hundred random moves between the cells leave no more than "
-              "this, and break limits by no more than 1 %.")  # fmt: skip
+@click.option("--refine", hidden=True, expose_value=False, callback=_refuse_refine)
 @click.option("--starts", type=WHOLE, default=1, show_default=True, help="Starts of each cell.")
 @part_option("chunk")
 @click.option("--yes", is_flag=True, help="Do more than a million cells.")
@@ -70,8 +65,8 @@ def sweep(
     grid: Grid,
     profile: str,
     terms: int | None,
+    margin: float,
     front: int | None,
-    refine: float | None,
     part: tuple[int, int],
     yes: bool,
     output: Path,
@@ -93,38 +88,35 @@ def sweep(
       quietarm sweep flexible-beam --set tip_mass=0,100g,200g --target 60deg \\
           --duration 600ms:1s:20ms --torque-limit 1.5 --output payload.zarr --figure payload.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.metaheuristics.sharing.workers import Workers
     from quietarm.studies.reports.sweep import sweep_document
-    from quietarm.studies.sweep.asked import Sweep
-    from quietarm.studies.sweep.refine import swept
-    from quietarm.studies.sweep.work import run_sweep
+    from quietarm.studies.sweep.definition import Definition
+    from quietarm.studies.sweep.run import run_sweep
+    from quietarm.studies.sweep.store import Store
 
-    _check_size(grid, yes)
-    if refine is not None and part != (1, 1):
-        raise ValueError("--refine is for a whole grid; leave --part out, or refine afterwards")
+    if grid.cells > _MANY and not yes:
+        hours = _HOURS_OF_MANY * grid.cells / _MANY
+        raise ValueError(
+            f"the grid has {grid.cells} cells, some {hours:.0f} hours on a core; give wider steps, "
+            "or --yes"
+        )
     motions, errors = profile_of(profile, grid.task, terms), Console(stderr=True)
-    asked = Sweep(grid, motions, SolveSettings(**settings), front or 0, refine)
-    troubles = list[Exception]()
-
-    def run(store: Store) -> bool:
-        missing = len(store.missing(part))
-        warn_of_workers(errors, workers, missing)
-        with progress(missing, errors, quiet=quiet) as begin:
-            done = run_sweep(store, part, Workers(workers, scheduler), begin)
-        if done.stopped:
-            troubles.append(QuietarmError(
-                f"{done.stopped}: {len(done.answers)} of {missing} chunks are done; give the same "
-                "line again to go on"
-            ))  # fmt: skip
-        return not done.stopped
-
-    store, between = swept(output, asked, run, partial(_check_size, yes=yes))
+    definition = Definition(grid, motions, SolveSettings(**settings), front or 0, margin)
+    store = Store.of(output, definition)
+    missing, trouble = len(store.missing(part)), None
+    warn_of_workers(errors, workers, missing)
+    try:
+        with count(missing, "chunks", errors, quiet=quiet) as report:
+            run_sweep(store, part, workers=workers, scheduler=scheduler, report=report)
+    except KeyboardInterrupt:
+        done = missing - len(store.missing(part))
+        trouble = QuietarmError(
+            f"interrupted: {done} of {missing} chunks are done; give the same line again to go on"
+        )
 
     def picture() -> Figure:
         from quietarm.studies.figures.grid import fronts_figure, grid_figure
 
         return fronts_figure(store) if front else grid_figure(store)
 
-    document = sweep_document(store, between)
-    trouble = troubles[0] if troubles else None
+    document = sweep_document(store)
     finish([(figure, drawing(picture))], document, trouble=trouble, quiet=quiet)

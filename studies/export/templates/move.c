@@ -1,10 +1,113 @@
-/* {{ name }}: {{ move }}. By quietarm {{ version }}. */
+/* {{ name }}: {{ title }}. By quietarm {{ version }}. */
 #include "{{ name }}.h"
 
 #include <math.h>
 
-void {{ name }}_at(double time, double *angle, double *speed, double *acceleration)
+{% for helper in helpers %}
+static {{ helper }}
+
+{% endfor %}
+/* The path over the share of the duration arg[0], of coefficients arg[1] and of start, target and
+   duration arg[2]: res[0] is angle, speed and acceleration. */
+static void path(const double **arg, double **res)
 {
-{% set start, target, duration = guard ~ "_START", guard ~ "_TARGET", guard ~ "_DURATION" %}
-{% include "export/templates/path.c" %}
+{{ statements }}
+}
+{% if axes %}
+
+#define AXES {{ axes | length }}
+#define MOST {{ most }}
+
+{% for values in axes %}
+static const double values_{{ loop.index }}[] = { {{- values | row -}} };
+{% endfor %}
+static const double *const values[AXES] = { {%- for _ in axes %}{{ ", " if loop.index > 1 }}values_{{ loop.index }}{% endfor %} };
+static const int lengths[AXES] = { {{- lengths | join(", ") -}} };
+
+/* Cells along an axis that the polynomial of each box goes through; 0 where there is none. */
+static const unsigned char orders[] = {
+{% for box in orders %}
+    {{ box | join(", ") }},
+{% endfor %}
+};
+static const double cells[][{{ size }}] = {
+{% for cell in cells %}
+    { {{- cell | row -}} },
+{% endfor %}
+};
+
+int {{ name }}_plan({{ places }}, double coefficients[{{ size }}])
+{
+    const double at[AXES] = { {{- place_names -}} };
+    int first[AXES], width[AXES], node[AXES], box = 0, order, i, j, k, cell;
+    double weights[AXES][MOST], weight;
+
+    for (k = 0; k < AXES; k++) {
+        if (!(at[k] >= values[k][0] && at[k] <= values[k][lengths[k] - 1]))
+            return 1;
+        for (j = 0; j < lengths[k] - 2 && at[k] >= values[k][j + 1]; j++)
+            ;
+        first[k] = j;
+        box = box * (lengths[k] - 1) + j;
+    }
+    order = orders[box];
+    if (order == 0)
+        return 2;
+    for (k = 0; k < AXES; k++) {
+        width[k] = order < lengths[k] ? order : lengths[k];
+        first[k] -= width[k] / 2 - 1;
+        if (first[k] > lengths[k] - width[k])
+            first[k] = lengths[k] - width[k];
+        if (first[k] < 0)
+            first[k] = 0;
+        for (i = 0; i < width[k]; i++) {
+            const double *nodes = values[k] + first[k];
+            weights[k][i] = 1.0;
+            for (j = 0; j < width[k]; j++)
+                if (j != i)
+                    weights[k][i] *= (at[k] - nodes[j]) / (nodes[i] - nodes[j]);
+        }
+        node[k] = 0;
+    }
+    for (i = 0; i < {{ size }}; i++)
+        coefficients[i] = 0.0;
+    for (;;) {
+        weight = 1.0;
+        cell = 0;
+        for (k = 0; k < AXES; k++) {
+            weight *= weights[k][node[k]];
+            cell = cell * lengths[k] + first[k] + node[k];
+        }
+        for (i = 0; i < {{ size }}; i++)
+            coefficients[i] += weight * cells[cell][i];
+        for (k = AXES - 1; k >= 0 && ++node[k] == width[k]; k--)
+            node[k] = 0;
+        if (k < 0)
+            return 0;
+    }
+}
+{% else %}
+
+static const double coefficients[] = { {{- coefficients | row or "0.0" -}} };
+{% endif %}
+
+void {{ name }}_at({{ given }}double time,
+    double *angle, double *speed, double *acceleration)
+{
+    const double move[] = { {{- move | join(", ") -}} };
+    double fraction, joint[3];
+    const double *arg[] = { &fraction, coefficients, move };
+    double *res[] = { joint };
+
+    fraction = time / move[2];
+    if (fraction <= 0.0 || fraction >= 1.0) {
+        *angle = fraction <= 0.0 ? move[0] : move[1];
+        *speed = 0.0;
+        *acceleration = 0.0;
+        return;
+    }
+    path(arg, res);
+    *angle = joint[0];
+    *speed = joint[1];
+    *acceleration = joint[2];
 }

@@ -99,6 +99,25 @@ def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
     page.get_by_label("plant").select_option("dual-link")
     api.expect(figures(page)).to_contain_text("dual-link, 0 to 30 deg")
     assert page.evaluate("document.documentElement.scrollWidth") == 390
+    slider, curve = page.locator(".shape .noUi-handle").nth(5), page.locator(".deflection")
+    slider.hover()  # which scrolls to it
+    beside = curve.bounding_box(), slider.bounding_box()
+    assert 0 <= beside[0]["y"] < beside[0]["y"] + beside[0]["height"] <= beside[1]["y"] <= 844
+
+
+def test_profile_and_terms_are_chosen_and_a_curve_is_kept(page):
+    button(page, "Keep curve").click()
+    api.expect(button(page, "Drop curve")).to_be_visible()
+    page.get_by_label("profile").select_option("spline")
+    api.expect(figures(page)).to_contain_text("cycloid-spline of 6 control points")
+    page.get_by_label("terms").fill("8")
+    page.get_by_label("terms").press("Enter")
+    api.expect(page.get_by_label("a8")).to_be_visible()
+    button(page, "Plan").click()
+    api.expect(figures(page)).to_contain_text("found a local optimum")
+    drawn = "Bokeh.documents[0].get_model_by_name('deflection').renderers[0].data_source.data"
+    # the plain cycloid, that it is kept as, and the plan: below the limits and arrival
+    assert page.evaluate(f"{drawn}.dash.slice(0, 3)") == ["solid", "dashed", "solid"]
 
 
 def test_a_click_on_the_front_shows_its_motion_and_it_is_downloaded(page):

@@ -4,6 +4,7 @@ import csv
 import ctypes
 import shutil
 import subprocess
+from dataclasses import replace
 from math import degrees, pi
 
 import numpy as np
@@ -16,10 +17,11 @@ from quietarm.ocp import (
     CycloidPolynomial,
     CycloidSpline,
     PointToPoint,
+    Uncertainty,
     evaluate_coefficients,
     shaped_cycloid,
 )
-from quietarm.studies.export import export_plan
+from quietarm.studies.export.formats import export_plan
 from scipy.io import loadmat
 
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
@@ -123,3 +125,17 @@ def test_the_command_writes_source_and_header(call, plan, tmp_path, monkeypatch)
     assert "void move_at(double time" in (tmp_path / "move.h").read_text()
     code, _, err = call("export plan.json --output move.csv --columns tme")
     assert (code, "did you mean 'time'" in err) == (2, True)
+
+
+def test_the_tips_of_a_robust_plan_are_named_by_their_scenarios(tmp_path):
+    task = replace(LINK, uncertainty=Uncertainty({"frequency": 0.05}, ((-0.05,), (0.05,))))
+    plan = plan_along(CycloidPolynomial(6), task)
+    export_plan(plan, tmp_path / "move.csv", columns="time,tip:mm", rate=100)
+    rows = list(csv.DictReader((tmp_path / "move.csv").read_text().splitlines()))
+    names = ["time_s", "tip_mm", "tip_mm frequency -5 %", "tip_mm frequency +5 %"]
+    assert list(rows[0]) == names
+    softer = plan.candidate.perturbed({"frequency": -0.05}).sample(np.arange(81) / 100)
+    found = [float(row[names[2]]) for row in rows]
+    assert found == pytest.approx(1e3 * softer.tips[:, 0], abs=1e-9)
+    export_plan(plan, tmp_path / "move.mat", columns="tip:mm", rate=50)
+    assert "tip_mm_frequency_minus_5" in loadmat(tmp_path / "move.mat")

@@ -13,7 +13,6 @@ import pytest
 import xarray as xr
 from quietarm.models import FlexibleBeam, SingleLinkManipulator
 from quietarm.ocp import PointToPoint, plan_move
-from quietarm.studies.sweep.library import MoveLibrary
 
 import quietarm as qa
 
@@ -114,16 +113,12 @@ def test_two_parts_and_a_killed_run_end_as_one_that_ran_through(call, folder):
     assert same(dataset("killed.zarr"), whole)
 
 
-def test_a_grid_is_refined_until_its_moves_are_still_enough(call, folder):
-    line = "sweep single-link --target 30deg --duration 800ms:1s:100ms --quiet --refine 0.1mm"
-    code, _, err = call(f"{line} --output fine.zarr")
-    assert (code, err) == (0, "")
-    library = MoveLibrary("fine.zarr")
-    assert library.between().residual <= 1e-4
-    assert library.grid.cells > 3
-    assert not list(folder.glob("fine.zarr.*"))
-    assert call(f"{line} --output fine.zarr")[0] == 0  # nothing is left to do
-    assert MoveLibrary("fine.zarr").grid.cells == library.grid.cells
+def test_workers_here_and_of_a_cluster_make_the_same_dataset(call, folder):
+    line = MOVES.replace("10ms", "20ms") + " --robust frequency=1%"
+    assert call(f"{line} --workers 1 --output one.zarr")[0] == 0
+    one = dataset("one.zarr")
+    assert call(f"{line} --workers 2 --output two.zarr")[0] == 0
+    assert same(dataset("two.zarr"), one)
 
 
 def test_the_dataset_of_another_sweep_is_left_alone(call, folder):

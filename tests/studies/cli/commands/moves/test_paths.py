@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lines import MOVE, run
 from quietarm.ocp import Plan
-from quietarm.studies.export import export_plan
+from quietarm.studies.export.formats import export_plan
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,8 @@ import math
 import pytest
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
+    CycloidPolynomial,
+    CycloidSpline,
     InfeasibleTaskError,
     PointToPoint,
     epsilon_front,
@@ -12,7 +14,7 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.studies.cli import main
-from quietarm.studies.explore.opening import of_file, of_plant
+from quietarm.studies.explore.opening import open_file, open_plant
 from quietarm.studies.sweep.library import MoveLibrary
 
 LINK = SingleLinkManipulator()
@@ -21,7 +23,7 @@ TASK = PointToPoint(LINK, math.pi / 6, 0.8)
 
 @pytest.fixture(scope="module")
 def begun():
-    return of_plant(LINK)
+    return open_plant(LINK)
 
 
 def test_it_begins_with_the_plain_cycloid_of_the_papers_first_move(begun):
@@ -32,11 +34,11 @@ def test_it_begins_with_the_plain_cycloid_of_the_papers_first_move(begun):
 
 
 def test_what_is_set_is_what_is_evaluated(begun):
-    now = begun.changed({"target": 45.0, "duration": 0.9, "a2": -0.2, "deflection_limit": 60.0})
+    now = begun.change({"target": 45.0, "duration": 0.9, "a2": -0.2, "deflection_limit": 60.0})
     task = PointToPoint(LINK, math.pi / 4, 0.9, deflection_limit=0.06)
     assert now.task == task
     assert now.plan.motion == evaluate_coefficients(task, [0, -0.2, 0, 0, 0, 0]).motion
-    assert now.changed({"deflection_limit": None}).task.limits == {}
+    assert now.change({"deflection_limit": None}).task.limits == {}
 
 
 @pytest.mark.parametrize(
@@ -44,39 +46,49 @@ def test_what_is_set_is_what_is_evaluated(begun):
     [("target", 999.0, 360.0), ("duration", 0.0, 0.1), ("torque_limit", -5.0, 1e-3)],
 )
 def test_values_outside_their_range_are_held(begun, name, given, held):
-    assert begun.changed({name: given}).shown[name] == pytest.approx(held)
+    assert begun.change({name: given}).shown[name] == pytest.approx(held)
 
 
 def test_a_move_that_is_none_is_refused_with_its_remedy(begun):
     with pytest.raises(ValueError, match="there is no move"):
-        begun.changed({"target": 0.0})
+        begun.change({"target": 0.0})
     with pytest.raises(InfeasibleTaskError, match="feasible with the rest kept: torque limit"):
-        begun.changed({"torque_limit": 0.01}).solved()
+        begun.change({"torque_limit": 0.01}).solve()
 
 
 def test_a_point_of_the_front_is_picked_and_another_move_has_none(begun):
     told = []
-    now = begun.changed({"bound": 0.2}).with_front(lambda *counts: told.append(counts))
+    now = begun.change({"bound": 0.2}).find_front(lambda *counts: told.append(counts))
     assert told[-1] == (20, 20)
     point = now.front.points[7]
-    picked = now.picked(7)
+    picked = now.pick(7)
     assert picked.plan.coefficients == point.coefficients
     assert picked.plan.energy == pytest.approx(point.energy, rel=1e-9)
-    assert (picked.of_front, picked.plain().of_front) == (True, False)
-    assert picked.plain().plan.coefficients == (0.0,) * 6
-    assert picked.changed({"a1": 0.1}).front is now.front
-    assert picked.changed({"duration": 0.9}).front is None
-    assert picked.changed({"bound": None}).front is None
+    assert (picked.of_front, picked.begin_again().of_front) == (True, False)
+    assert picked.begin_again().plan.coefficients == (0.0,) * 6
+    assert picked.change({"a1": 0.1}).front is now.front
+    assert picked.change({"duration": 0.9}).front is None
+    assert picked.change({"bound": None}).front is None
+
+
+def test_another_profile_begins_from_its_plain_motion_and_terms_are_refused_by_name(begun):
+    now = begun.keep().choose_profile("spline", 8)
+    assert (now.profile, len(now.coefficients), now.kept) == ("spline", 8, begun.plan)
+    assert now.plan.coefficients == tuple(CycloidSpline(8).plain)
+    assert begun.choose_terms(4).plan.profile == CycloidPolynomial(4)
+    assert begun.keep().keep().kept is None
+    with pytest.raises(ValueError, match="give a whole number from 4 up"):
+        now.choose_terms(2)
 
 
 def test_a_plan_and_a_front_are_opened_with_what_they_were_asked_for(tmp_path):
     plan = plan_move(TASK, residual_limit=1e-3, bound=0.3)
     plan.save(tmp_path / "plan.json")
-    opened = of_file(tmp_path / "plan.json")
+    opened = open_file(tmp_path / "plan.json")
     assert (opened.plan, opened.residual_limit, opened.bound) == (plan, 1e-3, 0.3)
     front = epsilon_front(TASK, bound=0.2, points=4)
     front.save(tmp_path / "front.json")
-    opened = of_file(tmp_path / "front.json")
+    opened = open_file(tmp_path / "front.json")
     assert (opened.front, opened.bound) == (front, 0.2)
     assert opened.plan.coefficients == front.points[0].coefficients
 
@@ -87,11 +99,11 @@ def test_moves_of_a_sweep_are_looked_up_within_its_grid(tmp_path):
     with pytest.raises(SystemExit) as ended:
         main([*f"sweep single-link {axes} --duration 0.9 --quiet --output".split(), str(place)])
     assert ended.value.code == 0
-    opened = of_file(place)
+    opened = open_file(place)
     assert (opened.shown["target"], opened.shown["omega"]) == (40.0, 11.0)
-    now = opened.changed({"target": 33.0, "omega": 99.0, "torque_limit": 5.0})
+    now = opened.change({"target": 33.0, "omega": 99.0, "torque_limit": 5.0})
     assert now.shown["omega"] == 12.0
     assert now.task.limits == {"torque": 5.0}
     found = MoveLibrary(place).plan(target=math.radians(33.0), omega=12.0)
     assert now.plan.coefficients == pytest.approx(found.coefficients, abs=1e-12)
-    assert now.changed({"a1": 0.0}).plan.coefficients[0] == 0.0  # by hand
+    assert now.change({"a1": 0.0}).plan.coefficients[0] == 0.0  # by hand

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import Plan, PointToPoint, plan_move
+from quietarm.ocp import FileFormatError, PointToPoint, plan_move
 from quietarm.studies.cli import main
-from quietarm.studies.sweep.branches import jumps
 from quietarm.studies.sweep.interpolation import Interpolation
-from quietarm.studies.sweep.library import MoveLibrary
+from quietarm.studies.sweep.library import MoveLibrary, plan_from
 
 MAIN = """
 #include <stdio.h>
@@ -72,49 +71,41 @@ def test_between_cells_it_is_the_polynomial_through_the_nearest_six():
     x, y = np.meshgrid(*axes, indexing="ij")
 
     def quintic(x, y):
-        return np.stack([x**5 - 2 * x * y**3, 1 + y**5], axis=-1)
+        return np.stack([(x + 1) ** 5 - x * y**3, (y + 2) ** 5], axis=-1)
 
-    cells, marks = quintic(x, y), np.zeros(x.shape, np.int32)
     places = np.random.default_rng(0).uniform((0, 0), (1, 2.2), (50, 2))
-    found = Interpolation(axes, cells, marks)(places)
-    assert found == pytest.approx(quintic(*places.T), abs=1e-12)  # exact up to degree five
+    found = Interpolation(axes, quintic(x, y))(places)
+    assert found == pytest.approx(quintic(*places.T), rel=1e-12)  # exact up to degree five
 
 
 def test_no_polynomial_goes_through_a_cell_without_a_plan_or_across_a_jump():
     axes, cells = [np.arange(9.0)], np.arange(9.0)[:, None]
     cells[5:] += 100.0  # another motion
     cells[8] = np.nan
-    marks = jumps(cells)
-    assert marks.tolist() == [0, 0, 0, 0, 1, 0, 0, 0, 0]
-    between = Interpolation(axes, cells, marks)
+    between = Interpolation(axes, cells)
     assert between.orders.tolist() == [4, 4, 4, 2, 0, 2, 2, 0]
     found = between(np.array([[1.5], [4.0], [4.5], [7.0], [7.5]]))[:, 0]
     assert found == pytest.approx([1.5, 4.0, np.nan, 107.0, np.nan], nan_ok=True)
 
 
-def test_what_is_not_in_the_dataset_is_planned_where_that_is_asked_for(call):
-    code, out, err = call("lookup moves.zarr --target 70deg --duration 0.9 --quiet --solve")
-    assert (code, err) == (0, "")
-    assert "planned: the dataset does not have it" in out
-
-
-def test_a_move_that_breaks_a_limit_says_so_and_is_planned_where_that_is_asked_for(call, tmp_path):
-    place = tmp_path / "limited.zarr"
+def test_a_margin_makes_moves_between_the_cells_keep_their_limits(call, tmp_path):
     axes = "--target 60deg:90deg:10deg --duration 600ms:800ms:100ms"
-    limits = "--acceleration-limit 80 --quiet"
-    assert call(f"sweep single-link {axes} {limits} --output {place}")[0] == 0
-    line = f"lookup {place} --target 85deg --duration 650ms --quiet"
-    code, out, err = call(f"{line} --output {tmp_path / 'p.json'}")
-    assert (code, err.count("\n")) == (1, 1)
-    assert "breaks its limit of acceleration; add --solve" in err
-    plan, stated = Plan.load(tmp_path / "p.json"), MoveLibrary(place).between()
-    assert 80 * 1.01 < plan.motion.peak_acceleration <= 80 * stated.of_limits
-    assert f"limits broken by {stated.of_limits - 1:.1%}" in " ".join(out.split())
+    line, at = f"sweep single-link {axes} --acceleration-limit 80 --quiet", (1.48, 0.65)
+    place, target, duration = tmp_path / "limited.zarr", *at
+    assert call(f"{line} --output {place}")[0] == 0
+    plan, between, trouble = plan_from(place, target=target, duration=duration)
+    assert 80 * 1.01 < plan.motion.peak_acceleration <= 80 * between.of_limits
+    assert "breaks its limit of acceleration; sweep again with --limit-margin" in str(trouble)
+    code, _, err = call(f"export {place} --output {tmp_path / 'moves.c'}")
+    assert (code, (tmp_path / "moves.c").exists()) == (1, False)
+    assert between.remedy in err
+    margin = between.remedy.split()[4]
+    place = tmp_path / "kept.zarr"
+    assert call(f"{line} --limit-margin {margin} --output {place}")[0] == 0
+    plan, between, trouble = plan_from(place, target=target, duration=duration)
+    assert (trouble, between.keeps_limits) == (None, True)
+    assert plan.task.acceleration_limit == 80
     assert call(f"export {place} --output {tmp_path / 'moves.c'}")[0] == 0
-    assert stated.words in (tmp_path / "moves.h").read_text()
-    code, _, err = call(f"{line} --solve --output {tmp_path / 'p.json'}")
-    assert (code, err) == (0, "")
-    assert Plan.load(tmp_path / "p.json").motion.peak_acceleration <= 80 * 1.001
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no compiler of C")
@@ -134,26 +125,21 @@ def test_a_controller_gets_the_same_coefficients_and_path(call, tmp_path):
     assert [float(one) for one in printed[8:]] == pytest.approx(expected)
 
 
-@pytest.mark.parametrize(
-    "broken",
-    ["coefficients/c/0/0/0", "zarr.json"],
-)
-def test_a_damaged_dataset_is_told_in_one_line(call, tmp_path, broken):
+@pytest.mark.parametrize("broken", ["coefficients/c/0/0/0", "zarr.json"])
+def test_a_damaged_dataset_is_told_in_one_line(tmp_path, broken):
     place = tmp_path / "moves.zarr"
     shutil.copytree("moves.zarr", place)
-    if (place / broken).is_dir():
-        shutil.rmtree(place / broken)
-    else:
-        (place / broken).write_bytes(b"{}")
-    code, out, err = call(f"lookup {place} --target 30deg --duration 0.9 --quiet")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "remove the dataset and sweep it again" in err or "is no dataset of a sweep" in err
+    (place / broken).write_bytes(b"{}")
+    with pytest.raises(FileFormatError) as refused:
+        plan_from(place, target=0.5, duration=0.9)
+    said = str(refused.value)
+    assert "remove the dataset and sweep it again" in said or "is no dataset of a sweep" in said
 
 
-def test_the_command_writes_the_move(call):
-    code, out, err = call(
-        "lookup moves.zarr --target 37deg --duration 930ms --quiet --output p.json --csv p.csv"
-    )
-    assert (code, err) == (0, "")
-    assert "more energy than plans of their own, each the largest of 100" in " ".join(out.split())
-    assert Plan.load("p.json").task.target == pytest.approx(math.radians(37))
+@pytest.mark.parametrize(
+    ("target", "why"), [(1.3, "the grid has 0.349066 to 1.0472"), (None, "each axis")]
+)
+def test_what_is_not_in_the_dataset_is_refused_with_a_remedy(target, why):
+    at = {} if target is None else {"target": target}
+    with pytest.raises(ValueError, match=why):
+        MoveLibrary("moves.zarr").coefficients(duration=0.9, **at)

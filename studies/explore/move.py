@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import ceil, degrees
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from numpy.typing import ArrayLike
 from quietarm.models import Plant
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -25,27 +24,25 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.front.curve import Report, no_report
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.export import export_plan
+from quietarm.studies.export.formats import export_plan
+from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary
 
-OF_A_FRONT = 20
-"""Points of a front: enough for a line, within a second."""
+FRONT_POINTS = 20
+"""Enough for a line, within a second."""
 FREQUENCY = 0.2
 """Largest error of the frequency that is looked at."""
-_ANGLE, _SHORTEST, _LONGEST = 360.0, 0.1, 5.0
-"""Ranges of the sliders [deg, s, s]."""
-_LEAST, _MOST = 1e-3, 1e4
-"""Range of a limit, in the unit that is shown."""
+_ANGLE, _SHORTEST, _LONGEST, _LEAST, _MOST = 360.0, 0.1, 5.0, 1e-3, 1e4
+"""Ranges of sliders [deg, s, s], and of limits in the unit that is shown."""
 _SHOWN = {"rad": ("deg", degrees(1.0)), "m": ("mm", 1e3)}
 """Units that are shown in the place of SI's, and the factors to them."""
 FILES = ("plan.json", "move.csv", "move.c", "move.h")
 """What can be downloaded."""
 
 
-@dataclass(frozen=True)
-class Dial:
-    """A number that is set by hand: what it is and its range, in the unit that is shown."""
+class Dial(NamedTuple):
+    """A number that is set by hand, and its range in the unit that is shown."""
 
     label: str
     least: float
@@ -55,33 +52,34 @@ class Dial:
     optional: bool = False
     """Whether it may be empty, as a limit."""
 
-    @classmethod
-    def of(cls, words: str, unit: str, least: float, most: float, optional: bool = False) -> Dial:
-        """A dial in the unit that is shown for this one of SI; the range is in the shown unit."""
-        shown, factor = _SHOWN.get(unit, (unit, 1.0))
-        label = words if unit == "-" else f"{words} [{shown}]"
-        return cls(label, least, most, factor, optional)
-
-    def held(self, shown: float | None) -> float | None:
+    def clip(self, shown: float | None) -> float | None:
         """The nearest value in the range, in SI; None stays None where that may be."""
         if shown is None:
             return None if self.optional else self.least / self.factor
         return min(max(shown, self.least), self.most) / self.factor
 
 
+def _dial(name: str, unit: str, least: float, most: float, optional: bool = False) -> Dial:
+    """A dial in the unit that is shown for this one of SI; the range is in the shown unit."""
+    shown, factor = _SHOWN.get(unit, (unit, 1.0))
+    return Dial(name if unit == "-" else f"{name} [{shown}]", least, most, factor, optional)
+
+
 @dataclass(frozen=True, eq=False)
 class Explored:
-    """A move that is changed by hand; every change gives a new one."""
+    """A move that is changed by hand; every change gives a new one.
+
+    The plan is the motion in hand, with the figures of CVODES; limit and bound are what the
+    gradient is asked for. With a library coefficients are interpolated when the move is changed,
+    else they stay. A front is that of this move, a kept plan is drawn beside the one in hand.
+    """
 
     plan: Plan
-    """The move and the motion in hand, with the figures of CVODES."""
     residual_limit: float | None = None
     bound: float | None = None
-    """What the gradient is asked for, as by `plan_move`."""
     library: MoveLibrary | None = None
-    """Where coefficients come from when the move is changed; else they stay as they are."""
     front: Front | None = None
-    """The front of this move, where it was asked for."""
+    kept: Plan | None = None
     reach: float = 1.0
     """Range of the coefficients by hand, on either side of 0."""
 
@@ -99,31 +97,33 @@ class Explored:
         """The coefficients by the names of their dials."""
         return {f"a{i}": value for i, value in enumerate(self.plan.coefficients, start=1)}
 
+    @property
+    def profile(self) -> str:
+        """The name of the profile's family; its label where it has none."""
+        kinds = {kind: name for name, kind in FAMILIES.items()}
+        return kinds.get(type(self.plan.profile), self.plan.profile.label)
+
     @cached_property
     def dials(self) -> dict[str, Dial]:
         """What can be set, by name."""
-        task, axes = self.task, self.library.grid.axes if self.library else ()
-        longest = max(_LONGEST, task.duration)
-        dials = {
-            "start": Dial.of("start", "rad", -_ANGLE, _ANGLE),
-            "target": Dial.of("target", "rad", -_ANGLE, _ANGLE),
-            "duration": Dial.of("duration", "s", min(_SHORTEST, task.duration), longest),
-        }
-        for axis in axes:
+        shortest, longest = min(_SHORTEST, self.task.duration), max(_LONGEST, self.task.duration)
+        dials = {name: _dial(name, "rad", -_ANGLE, _ANGLE) for name in ("start", "target")}
+        dials["duration"] = _dial("duration", "s", shortest, longest)
+        for axis in self.library.grid.axes if self.library else ():
             _, factor = _SHOWN.get(axis.unit, ("", 1.0))
             ends = factor * min(axis.values), factor * max(axis.values)
-            dials[axis.name] = Dial.of(axis.name, axis.unit, *ends)
+            dials[axis.name] = _dial(axis.name, axis.unit, *ends)
         for name, quantity in QUANTITIES.items():
-            dials[quantity.limit] = Dial.of(name, quantity.unit, _LEAST, _MOST, optional=True)
-        dials["residual_limit"] = Dial.of("residual", "m", 0.0, _MOST, optional=True)
-        dials["bound"] = Dial.of("largest |a_n|", "-", _LEAST, _MOST, optional=True)
+            dials[quantity.limit] = _dial(name, quantity.unit, _LEAST, _MOST, optional=True)
+        dials["residual_limit"] = _dial("residual", "m", 0.0, _MOST, optional=True)
+        dials["bound"] = _dial("largest |a_n|", "-", _LEAST, _MOST, optional=True)
         return dials | {name: Dial(name, -self.reach, self.reach) for name in self.coefficients}
 
     @cached_property
     def _values(self) -> dict[str, Any]:
         """Values of the dials in SI, None where one is empty."""
-        mine = {"residual_limit": self.residual_limit, "bound": self.bound, **self.coefficients}
-        known = {**self.task.plant.parameters, **vars(self.task), **mine}
+        own = {"residual_limit": self.residual_limit, "bound": self.bound, **self.coefficients}
+        known = {**self.task.plant.parameters, **vars(self.task), **own}
         return {name: known[name] for name in self.dials}
 
     @property
@@ -134,65 +134,74 @@ class Explored:
             for name, value in self._values.items()
         }
 
-    def changed(self, shown: Mapping[str, float | None]) -> Explored:
-        """The same with some dials set, each held within its range.
+    def change(self, shown: Mapping[str, float | None]) -> Explored:
+        """The same with some dials set, each within its range.
 
-        It raises ValueError where there is no such move, or the library has none.
+        ValueError where there is no such move, or the library has none.
         """
-        held = {name: self.dials[name].held(value) for name, value in shown.items()}
-        values: dict[str, Any] = {**self._values, **held}
-        coefficients: ArrayLike = [values[name] for name in self.coefficients]
+        clipped = {name: self.dials[name].clip(value) for name, value in shown.items()}
+        values: dict[str, Any] = {**self._values, **clipped}
+        coefficients: Any = [values[name] for name in self.coefficients]
         limits = {quantity.limit: values[quantity.limit] for quantity in QUANTITIES.values()}
         task = replace(self.task, **{name: values[name] for name in OF_MOVES}, **limits)
-        method = "given coefficients"
-        if self.library and not held.keys().isdisjoint(self._axes):
-            at = {name: values[name] for name in self._axes}
-            coefficients, method = self.library.coefficients(**at), "lookup"
+        axes = self.library.grid.axes if self.library else ()
+        at = {axis.name: values[axis.name] for axis in axes}
+        if self.library and not clipped.keys().isdisjoint(at):
+            coefficients = self.library.coefficients(**at)
             task = replace(self.library.task(**at), **limits)
-        plan = evaluate_coefficients(task, coefficients, profile=self.plan.profile, method=method)
         same = task == self.task and values["bound"] == self.bound
         return replace(
-            self, plan=plan, residual_limit=values["residual_limit"], bound=values["bound"],
-            front=self.front if same else None,
+            self._evaluate(task, coefficients), front=self.front if same else None,
+            residual_limit=values["residual_limit"], bound=values["bound"],
         )  # fmt: skip
 
-    @property
-    def _axes(self) -> list[str]:
-        return [axis.name for axis in self.library.grid.axes] if self.library else []
+    def _evaluate(self, task: PointToPoint, coefficients: Any, **record: Any) -> Explored:
+        plan = evaluate_coefficients(task, coefficients, profile=self.plan.profile, **record)
+        return replace(self, plan=plan)
 
-    def plain(self) -> Explored:
+    def begin_again(self) -> Explored:
         """The same move with the coefficients from which the gradient starts first."""
-        return self.changed(dict(zip(self.coefficients, self.plan.profile.plain, strict=True)))
+        return self._evaluate(self.task, self.plan.profile.plain)
 
-    def of_plant(self, plant: Plant) -> Explored:
+    def choose_plant(self, plant: Plant) -> Explored:
         """The same move and motion of another plant, which begins at rest."""
         task = replace(self.task, plant=plant, initial=None, final=None)
-        plan = evaluate_coefficients(task, self.plan.coefficients, profile=self.plan.profile)
-        return replace(self, plan=plan, library=None, front=None)
+        changed = self._evaluate(task, self.plan.coefficients)
+        return replace(changed, library=None, front=None)
 
-    def solved(self) -> Explored:
+    def choose_profile(self, name: str, terms: int | None = None) -> Explored:
+        """The same move by another profile, of its usual size by default."""
+        profile = profile_of(name, self.task, terms)
+        plan = evaluate_coefficients(self.task, profile.plain, profile=profile)
+        return replace(self, plan=plan, front=None, reach=1.0)
+
+    def choose_terms(self, terms: int | None) -> Explored:
+        """The same with so many terms."""
+        return self.choose_profile(self.profile, terms)
+
+    def solve(self) -> Explored:
         """The same with the gradient's motion; it raises what `plan_move` does."""
         plan = plan_move(
             self.task, self.plan.profile, residual_limit=self.residual_limit, bound=self.bound
         )
         return replace(self, plan=plan)
 
-    def with_front(self, report: Report = no_report) -> Explored:
+    def find_front(self, report: Report = no_report) -> Explored:
         """The same with the front of this move; it raises what `epsilon_front` does."""
         front = epsilon_front(
-            self.task, self.plan.profile, bound=self.bound, points=OF_A_FRONT, report=report
+            self.task, self.plan.profile, bound=self.bound, points=FRONT_POINTS, report=report
         )
         return replace(self, front=front)
 
-    def picked(self, number: int) -> Explored:
+    def pick(self, number: int) -> Explored:
         """The same with the motion of a point of the front, by its number from 0."""
         assert self.front is not None
-        found = self.front.points[number].coefficients
-        plan = evaluate_coefficients(
-            self.task, found, profile=self.front.profile, method=self.front.method,
-            settings=self.front.settings,
-        )  # fmt: skip
-        return replace(self, plan=plan)
+        coefficients, method = self.front.points[number].coefficients, self.front.method
+        return self._evaluate(self.task, coefficients, method=method, settings=self.front.settings)
+
+    def keep(self) -> Explored:
+        """The same with this motion kept to be compared; no more where it is kept already."""
+        return replace(self, kept=None if self.kept is self.plan else self.plan)
 
     @property
     def of_front(self) -> bool:
@@ -206,7 +215,7 @@ class Explored:
 
     @cached_property
     def robustness(self) -> Robustness:
-        """What the motion leaves where the frequency is another one."""
+        """The residual of the motion over the error of the frequency."""
         plan, ranges = self.plan, {"frequency": FREQUENCY}
         return evaluate_robustness(self.task, plan.profile, plan.coefficients, ranges, samples=1)
 

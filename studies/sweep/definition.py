@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from quietarm.ocp import PointToPoint, SolveSettings, SolveStatus
+from quietarm.ocp.checks import positive
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness.perturbed import OF_MODES
 from quietarm.ocp.saved import plain, typed
@@ -16,9 +17,10 @@ from quietarm.studies.sweep.grid import Axis, Grid
 STATUS, COEFFICIENTS, JUMP = "status", "coefficients", "jump"
 STATES = ("not computed", *(status.value for status in SolveStatus))
 """What `status` says, by its number."""
-_SECONDS_OF_WORK = 256
-"""Cells of a chunk; of a robust plan or a front each is as much work as many plans."""
-_OF_ROBUST = _OF_FRONT = 32
+_CELLS_OF_A_CHUNK = 256
+"""A second or two of work; a robust plan or a front is as much work as many plans."""
+_WORK_OF_ROBUST = _WORK_OF_FRONT = 32
+_MOST_MARGIN = 0.5
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Variable:
 
 
 @dataclass(frozen=True)
-class Sweep:
+class Definition:
     """What is asked of a sweep.
 
     Parameters
@@ -43,24 +45,43 @@ class Sweep:
         Of every plan.
     front : int
         Points of a front for every move; 0 for none.
-    refine : float or None
-        Residual [m] between the cells down to which axes are halved.
+    margin : float
+        Share of each limit that plans leave unused, for the moves between the cells.
+
+    Raises
+    ------
+    ValueError
+        When the margin is out of range, or there is no limit to leave it to.
     """
 
     grid: Grid
     profile: JointProfile
     settings: SolveSettings
     front: int = 0
-    refine: float | None = None
+    margin: float = 0.0
 
     def __post_init__(self) -> None:
-        dear = (_OF_ROBUST if self.grid.task.ranges else 1) * (_OF_FRONT if self.front else 1)
-        at_once = max(1, _SECONDS_OF_WORK // dear)
+        if self.margin:
+            positive("limit margin", self.margin, most=_MOST_MARGIN)
+            if not self.grid.task.limits:
+                raise ValueError("the limit margin is of limits, and none is given; give one")
+        work = (_WORK_OF_ROBUST if self.grid.task.ranges else 1) * (
+            _WORK_OF_FRONT if self.front else 1
+        )
+        at_once = max(1, _CELLS_OF_A_CHUNK // work)
         object.__setattr__(self, "grid", replace(self.grid, at_once=at_once))
+
+    def tasks(self, number: int) -> list[PointToPoint]:
+        """The moves of a chunk as they are planned: their limits less the margin."""
+        limits = {
+            QUANTITIES[name].limit: (1 - self.margin) * limit
+            for name, limit in self.grid.task.limits.items()
+        }
+        return [replace(task, **limits) for task in self.grid.tasks(self.grid.chunks[number])]
 
     @property
     def variables(self) -> dict[str, Variable]:
-        """The numbers of every cell by name; `status` is apart."""
+        """The numbers of every cell by name; `status` and `jump` are apart."""
         units = {"energy": "J", "residual": "m"}
         units |= {f"peak_{name}": quantity.unit for name, quantity in QUANTITIES.items()}
         units[f"price_{RESIDUAL}"] = "J/m"
@@ -69,30 +90,31 @@ class Sweep:
         units |= {f"energy_by_{name}": "J" for name in OF_MODES}
         units |= {f"residual_by_{name}": "m" for name in OF_MODES}
         units |= {"iterations": "1", "cold_excess": "1"}
-        found = {name: Variable(unit) for name, unit in units.items()}
+        variables = {name: Variable(unit) for name, unit in units.items()}
         of_profile = ("coefficient", self.profile.size)
-        found[COEFFICIENTS] = Variable("1", (of_profile,))
+        variables[COEFFICIENTS] = Variable("1", (of_profile,))
         if self.front:
             point = ("point", self.front)
-            found["front_residual"], found["front_energy"] = (Variable(u, (point,)) for u in "mJ")
-            found["front_coefficients"] = Variable("1", (point, of_profile))
-        return found
+            variables["front_residual"] = Variable("m", (point,))
+            variables["front_energy"] = Variable("J", (point,))
+            variables["front_coefficients"] = Variable("1", (point, of_profile))
+        return variables
 
     def to_json(self) -> dict[str, Any]:
         """What makes two sweeps the same, in numbers and text."""
         axes = {axis.name: [axis.unit, *axis.values] for axis in self.grid.axes}
         return {
             "axes": axes, "task": plain(self.grid.task), "profile": plain(self.profile),
-            "settings": {**plain(self.settings), "front": self.front, "refine": self.refine},
+            "settings": {**plain(self.settings), "front": self.front, "margin": self.margin},
         }  # fmt: skip
 
     @classmethod
-    def from_json(cls, asked: dict[str, Any]) -> Sweep:
-        """The sweep of what `to_json` gave."""
-        axes = (Axis(name, tuple(values), unit) for name, (unit, *values) in asked["axes"].items())
-        settings = dict(asked["settings"])
-        front, refine = settings.pop("front"), settings.pop("refine")
+    def from_json(cls, saved: dict[str, Any]) -> Definition:
+        """The definition of what `to_json` gave."""
+        axes = (Axis(name, tuple(values), unit) for name, (unit, *values) in saved["axes"].items())
+        settings = dict(saved["settings"])
+        front, margin = settings.pop("front"), settings.pop("margin")
         return cls(
-            Grid(typed(asked["task"], PointToPoint), tuple(axes)),
-            typed(asked["profile"], JointProfile), typed(settings, SolveSettings), front, refine,
+            Grid(typed(saved["task"], PointToPoint), tuple(axes)),
+            typed(saved["profile"], JointProfile), typed(settings, SolveSettings), front, margin,
         )  # fmt: skip

@@ -1,0 +1,270 @@
+"""Films of motions: structures side by side above, curves with a cursor below, by matplotlib."""
+
+from __future__ import annotations
+
+import base64
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import wrap
+from typing import Any
+
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from PIL import Image
+from quietarm.ocp.checks import positive, whole
+from quietarm.ocp.files import write_whole
+from quietarm.studies.display.pictures import as_written
+from quietarm.studies.display.words import move_of, moved, residual_words, title_of
+from quietarm.studies.export.formats import FORMATS, FRAMES, format_of
+from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
+from quietarm.studies.figures.motion import Motions, draw_lines, lines_of
+from quietarm.studies.figures.structure import Structure, structures_of
+
+_MOST_MOTIONS, _MOST_FRAMES = 6, 500
+"""More could not be seen side by side, or would take minutes."""
+_LEAST_A_SECOND, _MOST_A_SECOND = 1, 50
+_LEAST_WIDTH, _MOST_WIDTH = 200, 2000
+_ROUNDING = 1e-6
+"""Of a frame: one that is this close to the end belongs to it."""
+_COLUMNS = {1: 1, 2: 2, 4: 2}
+"""Panels in a row, by how many there are; else 3."""
+_PANEL, _HIGH, _CURVES_HIGH, _LINE, _LETTERS = 4.0, 2.6, 2.0, 0.2, 11.5
+"""Width and height of a panel, heights of curves and of a line [inch]; letters an inch."""
+_THIN, _DISC = 0.8, 1e-5
+"""Of the widths of parts; a part as small as this [m] is a disc."""
+_COLOURS = 128
+_MEGABYTES = 200.0
+"""Most of a page, far above what `_MOST_FRAMES` take."""
+_CURVES = ("angle", "deflection", "power")
+
+Update = Callable[[int], object]
+"""Brings an artist to a frame."""
+
+
+@dataclass(frozen=True, eq=False)
+class Film:
+    """Motions on one clock; a notebook shows them where this is a cell's last line."""
+
+    structures: Sequence[Structure]
+    end: float
+    speed: float
+    rate: float
+    width: int
+
+    @property
+    def frames(self) -> int:
+        """How many pictures it has."""
+        return len(self.structures[0].times)
+
+    @property
+    def seconds(self) -> float:
+        """How long it takes [s]."""
+        return self.frames / self.rate
+
+    def save(
+        self,
+        path: str | Path,
+        format: str | None = None,  # noqa: A002  # as other libraries call it
+        report: Callable[[int, int], object] = lambda done, total: None,
+    ) -> None:
+        """Write a film as gif, mp4 (by the program ffmpeg) or html, whole or not at all.
+
+        ValueError where the name ends in something else, or there is no ffmpeg.
+        """
+        name = format_of(Path(path), format)
+        if not FORMATS[name].is_film:
+            raise ValueError(f"{path} is no film; end its name in .gif, .mp4 or .html")
+        write_whole(path, self._content(name, report))
+
+    def _content(self, name: str, report: Callable[[int, int], object]) -> bytes:
+        if name == "mp4" and not FFMpegWriter.isAvailable():
+            raise ValueError(
+                "an mp4 needs the program ffmpeg, which is not found here; install it, or make a "
+                "gif or html"
+            )
+        figure, updates = _draw(self)
+        with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
+            place = Path(folder) / f"film.{name}"
+            writer = _writer(name, self.rate)
+            with writer.saving(figure, str(place), figure.dpi):
+                for k in range(self.frames):
+                    for update in updates:
+                        update(k)
+                    writer.grab_frame()
+                    report(k + 1, self.frames)
+            return place.read_bytes()
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a gif, so that it needs no server."""
+        content = base64.b64encode(self._content("gif", lambda done, total: None)).decode()
+        return f'<img alt="structures in motion" src="data:image/gif;base64,{content}"/>'
+
+
+def animate(
+    motions: Motions,
+    *,
+    deflection_scale: float | None = None,
+    speed: float = 1.0,
+    rate: float = FRAMES,
+    width: int = 800,
+) -> Film:
+    """Draw structures in motion, side by side and on one clock.
+
+    Every link is bent as its mode bends it, and its plant says how (`Plant.structure`); dashed is
+    where it would be without bending. After arrival the path of the tips is drawn. Below are the
+    joint angle, the tips' displacements and the power, with a cursor. The clock goes on until the
+    last residual window ends.
+
+    Parameters
+    ----------
+    motions : sequence of Line, Plan or Floor
+        The motions, of any plants and durations, 6 at most; a plan alone is drawn beside the plain
+        cycloid of its task.
+    deflection_scale : float, optional
+        How many times larger than they are deflections are drawn, which the picture says; by
+        default so that the largest is up to a fifth of the structure, but never less than 1.
+    speed : float
+        Seconds of the motion in a second of the film: 0.25 is slow motion.
+    rate : float
+        Frames in a second, 50 at most. A gif counts hundredths of a second: 50, 25 and 20 are
+        exact, 30 is rounded.
+    width : int
+        Width of the picture [pixels], 200 to 2000.
+
+    Returns
+    -------
+    Film
+        To be shown in a notebook, or saved.
+
+    Raises
+    ------
+    ValueError
+        When there is no motion or too many, or a number is out of range.
+    """
+    lines = lines_of(motions)
+    if len(lines) > _MOST_MOTIONS:
+        raise ValueError(
+            f"{len(lines)} motions are given, where {_MOST_MOTIONS} are the most that can be seen "
+            "side by side; give fewer"
+        )
+    width = whole("width", width, _LEAST_WIDTH, _MOST_WIDTH, "more pixels make a huge file")
+    if deflection_scale is not None:
+        positive("deflection scale", deflection_scale)
+    end = max(line.plan.task.duration + line.plan.task.residual_window for line in lines)
+    times = _frame_times(end, speed, rate)
+    return Film(structures_of(lines, times, end, deflection_scale), end, speed, rate, width)
+
+
+def _frame_times(end: float, speed: float, rate: float) -> NDArray[np.float64]:
+    """When the frames are; ValueError where they are too many, or too few in a second."""
+    positive("speed", speed)
+    if not _LEAST_A_SECOND <= rate <= _MOST_A_SECOND:
+        raise ValueError(
+            f"the rate of frames is {rate:g} Hz; give {_LEAST_A_SECOND} to {_MOST_A_SECOND}: "
+            "browsers show no more of a gif, and slow motion is a lower speed"
+        )
+    frames = end * rate / speed
+    if frames > _MOST_FRAMES:
+        raise ValueError(
+            f"{end:g} s at {rate:g} frames per second and speed {speed:g} make {frames:.0f} "
+            f"frames, where {_MOST_FRAMES} are the most that can be drawn and shown in reasonable "
+            "time; give a lower rate or a higher speed"
+        )
+    return np.arange(float(int(frames + _ROUNDING) + 1)) * speed / rate
+
+
+def _writer(name: str, rate: float) -> AbstractMovieWriter:
+    if name == "html":
+        return HTMLWriter(fps=rate, embed_frames=True, embed_limit=_MEGABYTES)
+    return FFMpegWriter(fps=rate) if name == "mp4" else _GifWriter(fps=rate)
+
+
+class _GifWriter(PillowWriter):
+    """Frames share the colours of the last one, undithered: a tenth of the size."""
+
+    _frames: list[Image.Image]
+
+    def finish(self) -> None:
+        """Write the file."""
+        last, none = self._frames[-1], Image.Dither.NONE
+        palette = last.quantize(_COLOURS, dither=none)
+        self._frames = [one.quantize(palette=palette, dither=none) for one in self._frames]
+        super().finish()
+
+
+def _draw(film: Film) -> tuple[Figure, list[Update]]:
+    """The figure, laid out, and what brings it to a frame."""
+    structures, times = film.structures, film.structures[0].times
+    columns = _COLUMNS.get(len(structures), 3)
+    rows, inches = -(-len(structures) // columns), _PANEL * max(columns, 2)
+    same = len({one.line.plan.task for one in structures}) == 1
+    titles = [_title(one, same, int(_LETTERS * inches / columns)) for one in structures]
+    words = title_of(structures[0].line.plan.task) if same else "several moves on one clock"
+    heading = wrap(words, int(_LETTERS * inches) - 24)  # the clock stands beside it
+    above = _LINE * len(heading) + rows * (_HIGH + _LINE * max(map(len, titles)))
+    figure = new_figure(inches, above + _CURVES_HIGH)
+    figure.set_dpi(film.width / inches)
+    figure.suptitle("\n".join(heading), x=0.01, ha="left", fontsize=11)
+    clock = figure.text(0.99, 0.99, "", ha="right", va="top", fontsize=11)
+    at_speed = f", speed x {film.speed:g}" if film.speed != 1 else ""
+    updates: list[Update] = [lambda k: clock.set_text(f"t = {times[k]:.2f} s{at_speed}")]
+    upper, lower = figure.subfigures(2, 1, height_ratios=[above, _CURVES_HIGH])
+    panels = list(upper.subplots(rows, columns, squeeze=False).flat)
+    for spare in panels[len(structures) :]:
+        spare.axis("off")
+    for one, title, ax in zip(structures, titles, panels, strict=False):
+        ax.set_title("\n".join(title), **TITLE)
+        name = one.line.plan.task.plant.name
+        for other in structures:
+            if other.line.plan.task.plant.name == name:
+                ax.update_datalim(other.corners)
+        updates += _draw_structure(ax, one)
+    for ax, quantity in zip(lower.subplots(1, len(_CURVES)), _CURVES, strict=True):
+        draw_lines([one.line for one in structures], quantity, axes_or_new(ax))
+        ax.set_xlim(0.0, film.end)
+        ax.xaxis.label.set_fontsize(9)
+        cursor = ax.axvline(0.0, color="0.2", linewidth=1.2)
+        updates.append(lambda k, cursor=cursor: cursor.set_xdata([times[k], times[k]]))
+    with as_written(figure):
+        figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    return figure, updates
+
+
+def _title(one: Structure, same: bool, room: int) -> list[str]:
+    """The lines above a panel."""
+    plan, task = one.line.plan, one.line.plan.task
+    scale = "to scale" if one.scale == 1 else f"deflection x {one.scale:g}"
+    lines = [
+        f"{one.line.label}, {scale}",
+        *([] if same else [f"{moved(task)}, {move_of(task)}"]),
+        f"energy {plan.energy:.3g} J, residual {residual_words(plan.residual)}",
+    ]
+    return [part for line in lines for part in wrap(line, room)]
+
+
+def _draw_structure(ax: Axes, one: Structure) -> Iterator[Update]:
+    """Set up a structure's panel, in metres; what brings its parts to a frame."""
+    ax.tick_params(labelsize=8)
+    ax.autoscale_view()
+    ax.set_aspect("equal", adjustable="datalim")
+
+    def part(points: Sequence[NDArray[np.float64]] | NDArray[np.float64], **look: Any) -> Update:
+        (artist,) = ax.plot([], [], solid_capstyle="round", **look)
+        return lambda k: artist.set_data(*points[k].T)
+
+    for points, _, _ in one.unbent:
+        yield part(points, color="0.55", linewidth=1.0, linestyle="--")
+    arrived = int(np.searchsorted(one.times, one.line.plan.task.duration))
+    for path in one.paths:
+        trail = [path[arrived : k + 1] for k in range(len(path))]
+        yield part(trail, color=one.line.colour, linewidth=2.0, alpha=0.5)
+    for points, colour, width in one.bent:
+        disc = np.ptp(points[0], axis=0).max() < _DISC
+        yield part(points, color=colour, linewidth=_THIN * width, marker="o" if disc else "",
+                   markersize=_THIN * width)  # fmt: skip

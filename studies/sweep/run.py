@@ -1,0 +1,169 @@
+"""Run a sweep: its missing chunks, here, by processes of this machine or by a cluster."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError
+from contextlib import contextmanager
+from dataclasses import fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, SolveSettings
+from quietarm.ocp.checks import has_no
+from quietarm.ocp.interrupts import note_interrupts
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.studies.sweep.cells import plan_chunk
+from quietarm.studies.sweep.definition import Definition
+from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
+from quietarm.studies.sweep.store import Store
+
+if TYPE_CHECKING:
+    import xarray
+
+_CONNECT_SECONDS = 10
+_REMEDY = "what is done is kept; give the same line again to go on"
+
+
+def sweep(
+    task: PointToPoint,
+    axes: Mapping[str, Sequence[float]],
+    path: str | Path,
+    *,
+    profile: JointProfile | None = None,
+    residual_limit: float = 0.0,
+    bound: float | None = None,
+    starts: int = 1,
+    front: int = 0,
+    margin: float = 0.0,
+    workers: int = 1,
+    scheduler: str | None = None,
+) -> xarray.Dataset:
+    """Plan every move of a grid; the same call goes on where one was stopped.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        What the moves have in common.
+    axes : mapping of str to sequence of float
+        Values of ``"start"``, ``"target"``, ``"duration"`` and of parameters of the plant, in SI
+        units, rising or falling.
+    path : str or Path
+        The dataset, a folder.
+    profile, residual_limit, bound, starts
+        As for `plan_moves`.
+    front : int
+        Points of a front for every move; 0 for none.
+    margin : float
+        Share of each limit that the plans leave unused, so that moves between the cells keep it.
+    workers, scheduler : int, str, optional
+        Processes of this machine, or the address of a dask scheduler.
+
+    Returns
+    -------
+    xarray.Dataset
+        Its variables are explained in docs/sweeps.md.
+
+    Raises
+    ------
+    FileFormatError
+        When the path is something else, or the dataset of another sweep.
+    ValueError
+        When a name or a number is out of range.
+    QuietarmError
+        When a worker died or the scheduler is gone; finished chunks are kept.
+    """
+    units = {entry.name: entry.metadata.get("unit", "-") for entry in fields(task.plant)}
+    units |= OF_MOVES
+    for name in axes:
+        if name not in units:
+            raise ValueError(has_no(task.plant.name, "axis", name, units))
+    order = sorted(axes, key=lambda name: name in OF_MOVES)  # chunks then have few plants
+    grid = Grid(task, tuple(Axis(name, tuple(map(float, axes[name])), units[name])
+                            for name in order))  # fmt: skip
+    settings = SolveSettings(residual_limit, bound, starts)
+    profile = CycloidPolynomial() if profile is None else profile
+    store = Store.of(Path(path), Definition(grid, profile, settings, front, margin))
+    run_sweep(store, workers=workers, scheduler=scheduler)
+    return store.dataset
+
+
+def run_sweep(
+    store: Store,
+    part: tuple[int, int] = (1, 1),
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    report: Callable[[int, int], object] = lambda done, total: None,
+) -> None:
+    """Plan the chunks of a part that are missing; each is in the store as soon as it is done."""
+    from joblib import Parallel, delayed
+
+    missing = store.missing(part)
+    number = 1 if not missing or scheduler else min(workers, len(missing))
+    with _backend(scheduler):
+        parallel = Parallel(n_jobs=number, return_as="generator_unordered", batch_size=1)
+        work = (delayed(_plan_numbered)(store.definition, number) for number in missing)
+        for done, (number, columns) in enumerate(parallel(work), start=1):
+            with note_interrupts() as came:
+                store.write(number, columns)
+            report(done, len(missing))
+            if came:
+                raise KeyboardInterrupt
+    if not store.missing():
+        with note_interrupts():
+            store.mark_jumps()
+
+
+def _plan_numbered(definition: Definition, number: int) -> tuple[int, Any]:
+    return number, plan_chunk(definition, number)
+
+
+@contextmanager
+def _backend(scheduler: str | None) -> Iterator[None]:
+    """Where joblib has the work done; QuietarmError where its workers are lost on the way."""
+    from joblib import parallel_config
+
+    if scheduler is None:
+        try:
+            with parallel_config("loky"):
+                yield
+        except BrokenExecutor:
+            raise QuietarmError(f"a worker died; {_REMEDY}") from None
+        return
+    with _connect(scheduler) as client:
+        from distributed.scheduler import KilledWorker
+
+        try:
+            with parallel_config("dask", client=client):
+                yield
+        except (CancelledError, KilledWorker):
+            raise QuietarmError(f"the scheduler at {scheduler} is gone; {_REMEDY}") from None
+
+
+@contextmanager
+def _connect(scheduler: str) -> Iterator[Any]:
+    """A client of a dask scheduler that has workers."""
+    from distributed import Client
+    from distributed.comm.addressing import get_address_host_port
+
+    # what a user has to know is said here
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL + 1)
+    try:
+        get_address_host_port(scheduler, strict=True)
+        client = Client(scheduler, timeout=_CONNECT_SECONDS, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise ValueError(
+            f"no scheduler answers at {scheduler} ({error}); start one with `dask scheduler` and "
+            "give its address as tcp://host:8786, or give --workers"
+        ) from None
+    try:
+        if not client.nthreads():
+            raise QuietarmError(
+                f"the scheduler at {scheduler} has no workers; start some with `dask worker "
+                f"{scheduler}`"
+            )
+        yield client
+    finally:
+        client.close(timeout=1)

@@ -1,0 +1,114 @@
+"""A film is a file that opens, with frames that differ as the structures do."""
+
+import math
+
+import numpy as np
+import pytest
+from PIL import Image
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import PointToPoint, energy_floor, evaluate_coefficients
+from quietarm.studies.export import animate
+from quietarm.studies.figures import Line
+from quietarm.studies.figures.structure import structures_of
+
+SMALL = "--width 240 --rate 4 --quiet"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_frames_differ_while_the_structure_moves_and_where_it_does(plan, cycloid, tmp_path):
+    film = animate([Line(cycloid, "plain cycloid"), Line(plan, "plan")], width=240, rate=10)
+    film.save(tmp_path / "film.gif")
+    with Image.open(tmp_path / "film.gif") as image:
+        # 0.8 s and a second after it, 10 frames a second, the first one
+        assert (image.n_frames, image.width, film.frames) == (19, 240, 19)
+        assert (image.info["loop"], image.info["duration"]) == (0, 100)  # for ever, [ms]
+        frames = []
+        for number in range(image.n_frames):
+            image.seek(number)
+            frames.append(np.asarray(image.convert("RGB")).astype(int))
+    frames = np.array(frames)
+    top = frames[:, : frames.shape[1] * 6 // 10]
+    left, right = np.split(top[:, 15:], 2, axis=2)  # below the clock
+    changes = np.abs(np.diff(left, axis=0)).sum(axis=(1, 2, 3))
+    assert (changes > 0).all()  # the plain cycloid rings to the end
+    still = np.abs(np.diff(right, axis=0)).sum(axis=(1, 2, 3))
+    assert (still[:6] > 0).all()
+    # the plan has arrived: only the dot of its path gets darker
+    assert still[9:].max() < changes[9:].min() / 10
+    cursor = np.abs(np.diff(frames[:, frames.shape[1] * 7 // 10 :], axis=0)).sum(axis=(1, 2, 3))
+    assert (cursor > 0).all()
+
+
+def test_tips_are_drawn_at_the_joint_angle_and_the_displacement_of_the_plan(plan, cycloid):
+    lines, times = [Line(cycloid, "plain cycloid"), Line(plan, "plan")], np.arange(19) / 10
+    for scale in (1.0, 4.0):
+        for structure in structures_of(lines, times, 1.8, scale):
+            exact = structure.line.plan.sampled(times)
+            angle = exact.joint[:, 0]
+            radial = np.column_stack([np.cos(angle), np.sin(angle)])
+            across = np.column_stack([-np.sin(angle), np.cos(angle)])
+            expected = 0.475 * radial + scale * exact.tips * across  # section 3.1: 475 mm
+            # between samples 1.2 ms apart the tip's motion is taken for straight
+            assert structure.paths[0] == pytest.approx(expected, abs=scale * 2e-6)
+
+
+def test_small_deflections_are_drawn_larger_and_those_of_one_plant_alike(plan, cycloid):
+    arm = evaluate_coefficients(PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), [])
+    lines = [Line(cycloid, "a"), Line(plan, "b"), Line(arm, "c")]
+    single, same, other = structures_of(lines, np.arange(37) / 20, 1.8)
+    # docs/physics.md: 77 mm of the plate's 475 mm would be above a fifth at twice its size; the
+    # arm's 15 mm of a drawing of 550 mm are not at five times
+    assert (single.scale, same.scale, other.scale) == (1, 1, 5)
+    assert np.abs(other.tips).max() * 5 <= 0.2 * 0.55 < np.abs(other.tips).max() * 10
+
+
+def test_moves_of_different_durations_share_a_clock(plan, task):
+    longer = evaluate_coefficients(PointToPoint(ArmOnFlexibleLink(), 0.5, 1.4), [])
+    floor = energy_floor(task, starts=1, tolerance=0.5)
+    times = np.arange(25) / 10  # 1.4 s and its residual window
+    lines = [Line(plan, "short"), Line(longer, "long"), Line(floor, "floor")]
+    structures = structures_of(lines, times, 2.4)
+    for structure in structures:
+        assert structure.trajectory.time[-1] == pytest.approx(2.4)
+    first, _, third = structures
+    assert first.tips == pytest.approx(plan.sampled(times).tips, abs=2e-6)
+    still = floor.trajectory  # up to 1.8 s
+    expected = np.interp(times[:19], still.time, still.tips[:, 0])
+    assert third.tips[:19, 0] == pytest.approx(expected, abs=2e-6)
+
+
+def test_plans_of_different_plants_and_durations_become_a_page_and_a_gif(
+    call, folder, plan, two_links
+):
+    plan.save("plan.json")
+    evaluate_coefficients(PointToPoint(two_links, math.pi / 2, 0.9), []).save("links.json")
+    code, out, err = call(f"export plan.json links.json --output move.gif {SMALL}")
+    assert (code, err) == (0, "")
+    with Image.open("move.gif") as image:  # in 1.9 s, 7 after the first
+        assert (image.n_frames, image.width) == (8, 240)
+    kilobytes = (folder / "move.gif").stat().st_size / 1e3
+    assert out == f"8 frames, 2.0 s, {kilobytes:.0f} kB\nwrote move.gif\n"
+    assert call(f"export plan.json --output move.html {SMALL}")[0] == 0
+    assert (folder / "move.html").read_text().count("data:image/png;base64") == 8
+
+
+def test_ctrl_c_leaves_nothing_behind(at_a_terminal, ctrl_c, folder, plan):
+    plan.save("plan.json")
+    before = set(folder.iterdir())
+    process = at_a_terminal("export plan.json --output m.gif --width 2000 --rate 50 --speed 20%")
+    assert "of 451 frames" in process.stderr.readline()
+    _, err = ctrl_c(process)
+    assert process.returncode == 1
+    assert err.endswith("quietarm: interrupted; what was written until then is kept\n")
+    assert set(folder.iterdir()) == before
+
+
+def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(ValueError, match="needs the program ffmpeg, which is not found here"):
+        animate([Line(plan, "plan")]).save(tmp_path / "m.mp4")
