@@ -35,8 +35,7 @@ COMMANDS = {
     "export": "Write a plan for a controller, or as a film.",
     "plants": "List plants, and what their parameters mean.",
     "problems": "List named problems with their exact fronts.",
-    "study": "Run every method on a task, and write one report.",
-    "contest": "Hold methods with equal evaluations against exact fronts.",
+    "bench": "Hold methods of all kinds against reference fronts, from several seeds.",
     "reproduce": "Recompute the paper.",
 }
 """What each command does. `NAME` is the function `NAME` of `commands.NAME`, with an underscore
