@@ -69,6 +69,19 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
     return Report(template, values, tables, figures)
 
 
+def brief_report(results: Results) -> Report:
+    """What a terminal shows: a narrow table and a verdict for each problem."""
+    columns = ["method", "runs", "missing [%]", "at rest", "seconds"]
+    names = [problem.name for problem in results.problems]
+    tables = {name: problem_table(results, name)[columns].map(_rounded) for name in names}
+    verdicts = {name: verdict_on(results, name) for name in names}
+    return Report("bench/brief.md", {"verdicts": verdicts}, tables)
+
+
+def _rounded(cell: Any) -> Any:
+    return f"{cell:.3g}" if isinstance(cell, float) else cell
+
+
 def problem_table(results: Results, problem: str) -> pd.DataFrame:
     """Medians over the runs of every method on a problem, best first."""
     rows = []

@@ -142,7 +142,7 @@ class Results:
     def expected_running_time(
         self, problem: str, method: str, target: float, by: str = "seconds"
     ) -> float:
-        """What all runs spent until the target, or in all, over the number of those that reached it.
+        """What all runs spent until the target, or in all, over the number that reached it.
 
         As COCO defines it: runs that did not reach it are censored, not left out; infinite where
         none did.
@@ -156,7 +156,7 @@ class Results:
 
     @cached_property
     def running_times(self) -> pd.DataFrame:
-        """Expected running times to `TARGETS` and how many runs reached each, a row for a target."""
+        """Expected running times to `TARGETS`, a row each, and how many runs reached it."""
         rows = []
         for problem in self.problems:
             for method in self.methods:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from math import ceil, comb, sqrt
+from math import comb, sqrt
 
 import numpy as np
 import pandas as pd
@@ -161,11 +161,7 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
     methods = [m for m in results.methods if all(m in known[name] for name in names)]
     kept = list[str]()
     for method in methods:
-        twin = next(
-            (one for one in kept
-             if all(np.array_equal(known[n][one], known[n][method], equal_nan=True) for n in names)),
-            None,
-        )  # fmt: skip
+        twin = next((one for one in kept if _same(known, one, method)), None)
         if twin is None:
             kept.append(method)
         else:
@@ -191,6 +187,11 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
     )
 
 
+def _same(known: Mapping[str, Mapping[str, Array]], one: str, other: str) -> bool:
+    """Whether two methods have the same values on all problems."""
+    return all(np.array_equal(own[one], own[other], equal_nan=True) for own in known.values())
+
+
 def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
     """Which methods end nearest on a problem, in a sentence; none without power to say so."""
     values = values_on(results, problem, column)
@@ -211,9 +212,3 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
     others = [label_of(name) for name in sorted(near[1:], key=lambda name: medians[name])]
     alike = f"; not told apart from it: {', '.join(others)}" if others else ""
     return f"{label_of(best)} ends nearest{alike}"
-
-
-def needed_runs(methods: int) -> int:
-    """Runs of each method from which a pair can become significant."""
-    pairs = max(comb(methods, 2), 1)
-    return next(n for n in range(2, ceil(1e3)) if attainable_p(n, n, pairs) < ALPHA)

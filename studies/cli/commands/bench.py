@@ -76,7 +76,7 @@ def bench(
     from quietarm.ocp import Front
     from quietarm.ocp.errors import QuietarmError
     from quietarm.studies.bench.asked import jobs_of, problems_of, write_references
-    from quietarm.studies.bench.page import bench_report
+    from quietarm.studies.bench.page import bench_report, brief_report
     from quietarm.studies.bench.results import Results
     from quietarm.studies.bench.statistics import say_power
     from quietarm.studies.display.progress import progress
@@ -108,7 +108,7 @@ def bench(
     files = report.files(output)
     for path, write in files:
         write(path)
-    show(Console(), report)
+    show(Console(), brief_report(Results.of_jobs(fronts, given)))
     click.echo(f"wrote report.md and {len(files) - 1} tables and pictures to {output}")
     if trouble is not None:
         raise trouble
