@@ -10,7 +10,6 @@ Notebooks are shown as they are committed, with outputs that the tests hold agai
 import re
 import sys
 from importlib import import_module
-from keyword import iskeyword
 from pathlib import Path
 
 from docutils import nodes
@@ -105,7 +104,7 @@ def _fill(app, docname, source):
     """Put every command, or every public name, on its page."""
     if docname == "docs/commands":
         for name in COMMANDS:
-            own = f"{name}_" if iskeyword(name) else name
+            own = "list_" if name == "list" else name
             command = f"quietarm.studies.cli.commands.{own}:{own}"
             directive = f".. click:: {command}\n   :prog: quietarm {name}"
             source[0] += f"\n```{{eval-rst}}\n{directive}\n```\n"

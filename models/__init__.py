@@ -1,10 +1,16 @@
 """What moves: plants as symbolic equations, and nothing else."""
 
+import casadi
+
+if not hasattr(casadi, "SX"):  # a script's own file of that name was imported in its place
+    raise ImportError(f"{casadi.__file__} hides the library casadi; give that file another name")
+
 from quietarm.models.arm_on_flexible_link import ArmOnFlexibleLink
 from quietarm.models.drawing import Body, flexible_link, rigid_link
 from quietarm.models.dual_link import DualLinkManipulator
 from quietarm.models.flexible_beam import FlexibleBeam
-from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.joint_motion import Expression, JointMotion, joint_unit
+from quietarm.models.linear_axis import LinearAxis
 from quietarm.models.plant import Plant, known_plants, parameter
 from quietarm.models.plant_file import PlantFile, file_of_plant, load_plant_file
 from quietarm.models.single_link import SingleLinkManipulator
@@ -17,12 +23,14 @@ __all__ = [
     "Expression",
     "FlexibleBeam",
     "JointMotion",
+    "LinearAxis",
     "Plant",
     "PlantFile",
     "SingleLinkManipulator",
     "__version__",
     "file_of_plant",
     "flexible_link",
+    "joint_unit",
     "known_plants",
     "load_plant_file",
     "parameter",

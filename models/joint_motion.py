@@ -14,9 +14,19 @@ Expression = Any
 Modes = Sequence[Expression]
 """A value for each mode: amplitudes W [m], rates [m/s], accelerations [m/s^2]."""
 
+LINEAR, ROTARY = "linear", "rotary"
+"""Kinds of joint."""
+
+
+def joint_unit(unit: str, joint: str) -> str:
+    """A unit of a rotary joint's quantity as it is of a kind of joint: rad/s is m/s, N m is N."""
+    return unit if joint == ROTARY else unit.replace("N m", "N").replace("rad", "m")
+
 
 class JointMotion(NamedTuple):
     """Angle [rad], speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of the joint.
+
+    Of a linear joint in metres.
 
     All have the same shape. The jerk is None where it is not asked for; no plant may use it.
     """

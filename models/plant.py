@@ -17,7 +17,7 @@ from pkgutil import iter_modules
 from typing import Any, ClassVar
 
 from quietarm.models.drawing import Body, rigid_link
-from quietarm.models.joint_motion import Expression, JointMotion, Modes
+from quietarm.models.joint_motion import ROTARY, Expression, JointMotion, Modes
 from quietarm.models.validation import check_contract, check_passive
 
 COUNT = "count"
@@ -57,6 +57,8 @@ class Plant(ABC):
     modes: ClassVar[int]
     """How many modal amplitudes the plant has."""
 
+    joint: ClassVar[str] = ROTARY
+    """The kind of joint: rotary, in rad and N m, or linear, in m and N (`joint_unit`)."""
     small_deflection: ClassVar[float | None] = None
     """Largest tip displacement that the equations are made for [m]; None where none is stated."""
 

@@ -37,7 +37,7 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
     Parameters
     ----------
     path : str or Path
-        The file; what it imports must be installed.
+        The file; what it imports stands beside it or is installed.
 
     Returns
     -------
@@ -85,6 +85,7 @@ def _run(file: PlantFile) -> dict[str, type[Plant]]:
     module = ModuleType(f"plant file {file.path}, {file.digest}")
     sys.modules[module.__name__] = module  # dataclasses look their annotations up there
     module.__file__ = file.path
+    sys.path.append(folder := str(Path(file.path).resolve().parent))  # it may import its neighbour
     try:
         exec(compile(file.source, file.path, "exec", dont_inherit=True), vars(module))
     except Exception as error:
@@ -94,9 +95,11 @@ def _run(file: PlantFile) -> dict[str, type[Plant]]:
         line = (lines or [getattr(error, "lineno", None)])[-1]  # of a SyntaxError
         text = " ".join(f"{type(error).__name__}: {error}".split())
         raise ValueError(
-            f"plant file {file.path}{f', line {line}' if line else ''}: {text}; mend it: a plant "
-            "is one file, and what it imports is installed"
+            f"plant file {file.path}{f', line {line}' if line else ''}: {text}; mend it: what it "
+            "imports stands beside it or is installed"
         ) from None
+    finally:
+        sys.path.remove(folder)
     plants = {
         name: plant
         for name, plant in Plant._known.items()

@@ -31,6 +31,8 @@ _FROM_THE_NETWORK = re.compile(
 _UNDESCRIBED = re.compile(r'alt="No description[^"]*"')
 _HIDDEN = ("%matplotlib", "# Your attempt")
 """How the code cells begin that are not on slides."""
+_A_SLIDE = 18
+"""Lines of a program that has a slide of its own."""
 _SHOWN = re.compile(r"#|\||- |\d\. |```|<|\s*\$\$")
 """How the blocks of text begin that are on slides as they stand."""
 _QUESTION = re.compile(r"\*\*[^*]+\?\*\*")
@@ -68,6 +70,7 @@ _ON_THE_WALL = """<style>
 .reveal details pre { font-size: 15px; line-height: 18px; }
 .reveal img { display: block; margin: 0 auto; max-width: 100%; }
 .reveal .jp-Cell { padding: 0; }
+.reveal .jp-OutputArea-output pre { max-height: 430px; overflow-y: auto; display: block; }
 .reveal .jp-RenderedText pre { padding: 0; word-break: normal; overflow-wrap: anywhere; }
 .reveal :is(.jp-InputPrompt, .jp-OutputPrompt, .jp-Collapser) { display: none; }
 .reveal .celltag_hide-input .jp-Cell-inputWrapper { display: none; }
@@ -121,13 +124,15 @@ def split_text(source):
 def as_slides(cells):
     """The cells with their places on slides.
 
-    A slide begins at every heading, question and equation, and at each program after another.
+    A slide begins at every heading, question and equation, at each program after another and at a
+    long one.
     """
     placed, after_program = [], False
     for cell in cells:
         if cell.cell_type == "code":
             hidden = cell.source.startswith(_HIDDEN)
-            _place(cell, "skip" if hidden else "subslide" if after_program else "-")
+            begins = after_program or cell.source.count("\n") > _A_SLIDE
+            _place(cell, "skip" if hidden else "subslide" if begins else "-")
             placed.append(cell)
             after_program |= not hidden
             continue

@@ -20,6 +20,7 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.validation import check_profile
 from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.grid import Grid
@@ -72,6 +73,7 @@ class Candidate(Ranged):
         cls, task: PointToPoint, profile: JointProfile, coefficients: ArrayLike
     ) -> Candidate:
         """The move along a profile; ValueError where coefficients or duration do not fit it."""
+        check_profile(profile)
         return cls(task, PiecewiseMotion.of_profile(task, profile, coefficients))
 
     @classmethod

@@ -78,10 +78,22 @@ def typed(document: Any, kind: type[T]) -> T:
     except msgspec.ValidationError as error:
         raise ValueError(str(error)) from None
     wanted = plain(value)
-    if isinstance(document, dict) and document.keys() != wanted.keys():
-        odd = ", ".join(sorted(document.keys() ^ wanted.keys()))
-        raise ValueError(f"entries that are missing, or not known here: {odd}")
+    odd = _unknown(document, wanted)
+    odd |= wanted.keys() - document.keys() if isinstance(document, dict) else set()
+    if odd:
+        raise ValueError(f"entries that are missing, or not known here: {', '.join(sorted(odd))}")
     return value
+
+
+def _unknown(document: Any, known: Any) -> set[str]:
+    """Entries of a document, at any depth, that what is known does not have."""
+    match document, known:
+        case dict(), dict():
+            inner = (_unknown(document[name], known[name]) for name in document.keys() & known)
+            return (document.keys() - known.keys()).union(*inner)
+        case list(), list():
+            return set().union(*map(_unknown, document, known))
+    return set()
 
 
 def _known_here(kind: Any, entry: Any) -> Any:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.models import Plant
+from quietarm.models import Plant, known_plants
 from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
@@ -55,6 +55,14 @@ _MOST = {"rad": 1e6, "s": 1e6}
 """Beyond these no joint moves, and double precision does not follow."""
 LEAST_DURATION, LEAST_MOVE = 1e-6, 1e-6
 """Below these [s, rad] double precision or the integrators' absolute tolerances do not suffice."""
+
+
+def _plant_for(given: object) -> str:
+    """What to give instead of something that is no plant: the class of a name, made."""
+    kinds = known_plants()
+    kind = given if isinstance(given, type) else kinds.get(str(given))
+    names = [kind] if kind in kinds.values() else kinds.values()
+    return f"a plant, as {' or '.join(f'{one.__name__}()' for one in names)}"
 
 
 @dataclass(frozen=True)
@@ -114,6 +122,8 @@ class PointToPoint:
     @one_at_a_time
     @keep_interrupts()  # casadi loses a Ctrl-C
     def __post_init__(self) -> None:
+        if not isinstance(self.plant, Plant):
+            raise TypeError(f"plant is {self.plant!r}; give {_plant_for(self.plant)}")
         self.plant.validate()
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)

@@ -14,7 +14,7 @@ from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import start_coefficients
-from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Outcome, Tolerances, certify
+from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, SolveSettings
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
@@ -93,28 +93,25 @@ class Curve:
 
     def certify(
         self,
-        solution: Solution,
-        asked: Mapping[str, float],
+        found: Sequence[tuple[Solution, Mapping[str, float]]],
         most_residual: float = np.inf,
         *,
         free: bool = False,
-    ) -> Certificate:
-        """Give a solution the figures of the independent integrator.
+    ) -> list[Certificate]:
+        """Give solutions, each with what was asked for, the figures of another integrator.
 
-        Its residual is its limit, unless it is the cheapest of all, whose residual is free.
+        Their residuals are their limits, unless it is the cheapest of all, whose residual is free.
         """
-        problem = self.problem(np.inf if free else solution.residual)
-        limits = self.limits(most_residual)
-        tolerances = OF_A_PLAN if free else self.tolerances
-        (found,) = certify([problem], [solution], self.solver, tolerances, limits)
-        return self._certificate(found, asked, solution)
-
-    def _certificate(
-        self, found: Outcome, asked: Mapping[str, float], solution: Solution
-    ) -> Certificate:
-        if isinstance(found, SolverFailedError):
-            return Certificate(FailedPoint(asked, str(found)), solution.iterations)
-        return self.point_of(found)
+        solutions = [solution for solution, _ in found]
+        problems = [self.problem(np.inf if free else one.residual) for one in solutions]
+        tolerances, limits = OF_A_PLAN if free else self.tolerances, self.limits(most_residual)
+        outcomes = certify(problems, solutions, self.solver, tolerances, limits)
+        return [
+            Certificate(FailedPoint(asked, str(outcome)), solution.iterations)
+            if isinstance(outcome, SolverFailedError)
+            else self.point_of(outcome)
+            for (solution, asked), outcome in zip(found, outcomes, strict=True)
+        ]
 
     def point_of(self, found: Certified) -> Certificate:
         """A certified solution as a point."""
@@ -123,18 +120,6 @@ class Curve:
         prices = solution.shadow_prices
         point = FrontPoint(coefficients, checked.residual, checked.energy, prices)
         return Certificate(point, solution.iterations)
-
-    def certify_all(
-        self, found: Sequence[tuple[Solution, Mapping[str, float]]]
-    ) -> list[Certificate]:
-        """Certify many solutions, each with what was asked for."""
-        solutions = [solution for solution, _ in found]
-        problems = [self.problem(solution.residual) for solution in solutions]
-        outcomes = certify(problems, solutions, self.solver, self.tolerances, self.limits())
-        return [
-            self._certificate(outcome, asked, solution)
-            for (solution, asked), outcome in zip(found, outcomes, strict=True)
-        ]
 
     def to_front(
         self,

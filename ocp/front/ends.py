@@ -80,7 +80,8 @@ def find_ends(curve: Curve) -> Ends:
 
 
 def _certify_cheapest(curve: Curve, cheapest: Solution) -> Certificate:
-    return curve.certify(cheapest, {RESIDUAL_LIMIT: cheapest.residual}, free=True)
+    (end,) = curve.certify([(cheapest, {RESIDUAL_LIMIT: cheapest.residual})], free=True)
+    return end
 
 
 def _at_rest(curve: Curve) -> tuple[Curve, Solution, Certificate] | None:
@@ -119,7 +120,8 @@ def _least_residual(curve: Curve, cheapest: Solution) -> tuple[Solution, Certifi
         still = found if found.status.solved else reached.solution
         end = certify_one(problem, still, solver, OF_A_PLAN, limits)
     except SolverFailedError:
-        return least, curve.certify(least, {RESIDUAL_LIMIT: least.residual})
+        (end,) = curve.certify([(least, {RESIDUAL_LIMIT: least.residual})])
+        return least, end
     point, iterations = curve.point_of(end)
     return still, Certificate(point, least.iterations + iterations)
 
@@ -144,5 +146,5 @@ def _of_scenarios(curve: Curve) -> Ends:
         problem = curve.problem(minimise=weights)
         (found,) = curve.solver.solve([problem], [still.coefficients])
         still = found if found.status.solved else still
-    certificate = curve.certify(still, {RESIDUAL_LIMIT: still.residual})
+    (certificate,) = curve.certify([(still, {RESIDUAL_LIMIT: still.residual})])
     return Ends(curve, still, cheapest, (certificate, _certify_cheapest(curve, cheapest)))

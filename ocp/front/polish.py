@@ -109,7 +109,7 @@ def _improve(curve: Curve, point: FrontPoint, solution: Solution) -> list[Certif
     asked, kept = {RESIDUAL_LIMIT: point.residual}, Certificate(point, 0)
     if not solution.status.solved:
         return [kept, Certificate(FailedPoint(asked, solution.status.text), solution.iterations)]
-    found = curve.certify(solution, asked, point.residual)
+    (found,) = curve.certify([(solution, asked)], point.residual)
     if isinstance(found.point, FailedPoint):
         return [kept, found]
     return [

@@ -91,7 +91,7 @@ def weighted_front(
     stated = ", ".join(f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen or ())
     return ends.curve.to_front(
         "weighted",
-        [*ends.certificates, *ends.curve.certify_all(solved), *sums.failures],
+        [*ends.certificates, *ends.curve.certify(solved), *sums.failures],
         points,
         time.perf_counter() - began,
         gaps=sorted(sums.gaps),

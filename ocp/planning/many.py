@@ -16,6 +16,7 @@ from quietarm.ocp.planning.best_of_starts import (
     start_coefficients,
 )
 from quietarm.ocp.planning.certify import certify, finer_peaks
+from quietarm.ocp.planning.terms import choose_profile
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
@@ -101,7 +102,8 @@ def plan_moves(
     ValueError
         When there is no task, plants, energies or limits differ, or an argument is out of range.
     """
-    profile = CycloidPolynomial() if profile is None else profile
+    if profile is None:
+        profile = choose_profile(tasks[0]) if tasks else CycloidPolynomial()
     settings = SolveSettings(residual_limit, bound, starts, seed, solver=solver)
     _check(tasks, profile)
     problems = [

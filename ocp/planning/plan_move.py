@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL, Limit
@@ -22,6 +23,7 @@ from quietarm.ocp.planning.best_of_starts import (
 )
 from quietarm.ocp.planning.certify import OVERRUN, certify_one
 from quietarm.ocp.planning.plan import Plan, only_motion
+from quietarm.ocp.planning.terms import plan_with_chosen_terms
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, Provenance, SolveSettings, Verification
@@ -88,8 +90,10 @@ def plan_move(
     task : PointToPoint
         The move and its limits.
     profile : JointProfile, optional
-        How the joint moves; by default the cycloid of a polynomial of six terms. The only motion
-        of a profile without coefficients, such as `shaped_cycloid`, is evaluated, not optimised.
+        How the joint moves; by default the cycloid of a polynomial, of six terms without limits,
+        and of 18 or 24 within limits (`ocp.planning.terms`); the plan's record then says what six
+        would cost. The only motion of a profile without coefficients, such as `shaped_cycloid`, is
+        evaluated, not optimised.
     residual_limit : float, optional
         Largest F1 [m]; 0 asks for rest on arrival, or for the task's `final` state, where there
         are coefficients to choose. By default 0; of an uncertain task, which hardly ever arrives
@@ -109,7 +113,8 @@ def plan_move(
         Steps of the solver's discretisation, chosen from the task by default; they are doubled
         while the verification disagrees.
     guess : array_like, shape (profile.size,), optional
-        Coefficients to start from first, such as a metaheuristic's, to be improved.
+        Coefficients to start from first, such as a metaheuristic's, to be improved; six without a
+        profile.
     solver : {"sqp", "ipopt"}
         Sequential quadratic programs, all starts at once, or IPOPT, one after another. Where the
         first solves no start, IPOPT takes over.
@@ -132,6 +137,7 @@ def plan_move(
         When no motion of this profile meets the task, with what would be feasible; when no start
         ended at an optimum for another reason.
     """
+    chosen = profile is None and guess is None
     profile = CycloidPolynomial() if profile is None else profile
     if guess is not None:
         guess = profile.checked(guess)
@@ -139,7 +145,11 @@ def plan_move(
     settings = SolveSettings(least, bound, starts, seed, steps, guess, solver, log)
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
-    return _plan_within(task, profile, settings, residual_limit)
+
+    def plan(profile: JointProfile, settings: SolveSettings) -> Plan:
+        return _plan_within(task, profile, settings, residual_limit)
+
+    return plan_with_chosen_terms(task, settings, plan) if chosen else plan(profile, settings)
 
 
 def _plan_within(
@@ -263,6 +273,7 @@ def plan_from_starts(
     problem = Problem(transcription, Scalarization(limits, settings.bound))
     best, solved = solve_from_starts(problem, starts, solver)
     certified = certify_one(problem, best, solver)
+    assert isinstance(certified.checked, Candidate)  # one alone is judged by CVODES
     solution, motion = certified.solution, certified.checked.motion
     plan = Plan(
         task=task,

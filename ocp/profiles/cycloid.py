@@ -17,9 +17,9 @@ from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 Input = tuple[Expression, Expression, Expression]
 """U, and its first two derivatives by the fraction of the duration."""
 
-MAX_TERMS = 32
-"""Most terms: the condition number of the powers of T on [-1, 1] grows like (1 + sqrt 2)^N, and at
-4e11 double precision leaves four digits of a coefficient."""
+MAX_TERMS, MAX_POWERS = 32, 28
+"""Most terms, and of a polynomial: the condition number of the powers of T on [-1, 1] grows like
+(1 + sqrt 2)^N, and with 29 and more (5e10) some plans of the paper's plate end nowhere."""
 
 DEGREE = 5
 """With a cubic, fixed steps miss the residual of a move at rest by 1e-5 m where pieces meet."""
@@ -31,6 +31,7 @@ class Cycloid(JointProfile):
 
     term: ClassVar[str] = "term"
     least_terms: ClassVar[int] = 1
+    most_terms: ClassVar[int] = MAX_TERMS
     constants: ClassVar[int] = 0
     each: ClassVar[int] = 1
     """Coefficients that every member has, and those of each term."""
@@ -38,7 +39,7 @@ class Cycloid(JointProfile):
 
     def __post_init__(self) -> None:
         why = "beyond that double precision no longer tells the terms apart"
-        terms = whole("terms", self.terms, self.least_terms, MAX_TERMS, why)
+        terms = whole("terms", self.terms, self.least_terms, self.most_terms, why)
         object.__setattr__(self, "terms", terms)
 
     @property
@@ -105,11 +106,12 @@ class CycloidPolynomial(Cycloid):
     Parameters
     ----------
     terms : int
-        N of eq (6), 0 (the plain cycloid) to `MAX_TERMS`; as many coefficients, a_1 to a_N.
+        N of eq (6), 0 (the plain cycloid) to `MAX_POWERS`; as many coefficients, a_1 to a_N.
     """
 
     name: ClassVar[str] = "cycloid-polynomial"
     least_terms: ClassVar[int] = 0
+    most_terms: ClassVar[int] = MAX_POWERS
 
     def input(self, coefficients: Values, fraction: Expression) -> Input:
         """U of eq (6) and its derivatives: linear in the coefficients."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.validation import check_profile
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Derivatives, batch
@@ -50,6 +51,7 @@ class Transcription:
     """
 
     def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
+        check_profile(profile)
         self.task, self.profile, self.steps = task, profile, steps
         self.wanted = np.array(task.final_state)
         self.errors = np.array(task.scenarios, dtype=float)
@@ -98,10 +100,6 @@ class Transcription:
     def plain_residual(self) -> float:
         """Residual of the plain motion [m]."""
         return self.peaks(self.plain)[RESIDUAL]
-
-    def refine(self) -> Transcription:
-        """The same on twice the steps."""
-        return Transcription(self.task, self.profile, 2 * self.steps)
 
     def evaluate(self, coefficients: Array) -> Derivatives:
         """One candidate in all scenarios."""

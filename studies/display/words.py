@@ -7,6 +7,7 @@ from dataclasses import fields
 from math import degrees
 
 from quietarm.models import Plant
+from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import Front, ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from rich.console import Console
@@ -66,8 +67,9 @@ def move_of(task: PointToPoint) -> str:
     """The move of a task: "0 to 30 deg in 0.8 s"; its energy where that is not the paper's."""
     ringing = ", ringing at the start" if task.initial else ""
     wanted = ", to a state other than rest" if task.final else ""
-    angles = f"{degrees(task.start):.6g} to {degrees(task.target):.6g} deg"
-    return ", ".join([f"{angles} in {task.duration:g} s{ringing}{wanted}", *energy_words(task)])
+    factor, unit = (1e3, "mm") if task.plant.joint == LINEAR else (degrees(1.0), "deg")
+    ends = f"{factor * task.start:.6g} to {factor * task.target:.6g} {unit}"
+    return ", ".join([f"{ends} in {task.duration:g} s{ringing}{wanted}", *energy_words(task)])
 
 
 def state_words(state: ModalState) -> str:

@@ -122,12 +122,15 @@ class Page:
             if self._filling:
                 return
             if not self._pending:
-                self._document.add_timeout_callback(lambda: self._set() and None, _WAIT)
+                self._document.add_timeout_callback(self._on_time, _WAIT)
             self._pending[name] = new
 
         field.name = f"{name}-{type(field).__name__.lower()}"
         field.on_change("value", heard)
         return field
+
+    def _on_time(self) -> None:
+        self._set()
 
     def _set(self) -> bool:
         """Set what was gathered; False where that cannot be."""

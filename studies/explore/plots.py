@@ -12,30 +12,27 @@ from bokeh.document import Document
 from bokeh.models import ColumnDataSource, CustomJS, DataRange1d, ScaleBar
 from bokeh.plotting import figure
 from numpy.typing import NDArray
-from quietarm.models import Body
 from quietarm.ocp import Plan
 from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.display.words import residual_words
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading
-from quietarm.studies.figures.structure import structures_of
+from quietarm.studies.figures.structure import INK, structures_of
 
-GREY, INK = "#9e9e9e", "#404040"
+GREY = "#9e9e9e"
 PANELS = ("deflection", "angle", "torque", "speed", "acceleration", "jerk")
 FRAMES = 25
 """A second."""
 _POINTS = 200
 """Of a curve: on a panel a third of a screen wide their corners cannot be seen."""
-_DOT = 1e-6
-"""Length of a line that shows as a dot [m]; without any length it would not show."""
 _IN_SIGHT = 0.4
 """A limit is drawn where the motion comes to this share of it; else it would flatten the motion."""
 _HIGH, _HIGHER = 200, 280
 _NO_FRONT = "Press Front to see what each millimetre saves"
 _PLAY = Path(__file__).with_name("play.js").read_text()
 """The frame of the moment, and the last one for a second."""
-Columns = dict[str, list[Any]]
+Columns = dict[str, Any]
 
 
 class Plots:
@@ -178,12 +175,9 @@ def _film(plan: Plan) -> dict[str, Columns]:
     """The structure of a plan from its start to the end of the residual window, all frames."""
     end = plan.task.duration + plan.task.residual_window
     times = np.arange(0.0, end, 1 / FRAMES)
-    (one,) = structures_of([Line(plan, "")], times, end)
-    bodies = [
-        np.array([_drawable(body) for body in frames]) for frames in zip(*one.bodies, strict=True)
-    ]
-    xs, ys = ([_plain(points[..., axis].ravel()) for points in bodies] for axis in (0, 1))
-    colours, widths = zip(*map(_look, one.bodies[0]), strict=True)
+    (one,) = structures_of([Line(plan, "", BLUE)], times, end)
+    xs, ys = ([_plain(part.points[..., k].ravel()) for part in one.bent] for k in (0, 1))
+    looks = {"colour": [part.colour for part in one.bent], "width": [p.width for p in one.bent]}
     scale = "to scale" if one.scale == 1 else f"deflection x {one.scale:g}"
     words = f"{plan.energy:.4g} J, {residual_words(plan.residual)}; {scale}"
     alike = {"frames": [len(times)] * len(xs), "words": [words] * len(xs)}
@@ -191,24 +185,10 @@ def _film(plan: Plan) -> dict[str, Columns]:
         key: [_plain(path[:, axis]) for path in one.paths] for axis, key in enumerate(("xs", "ys"))
     }
     return {
-        "film": {"xs": xs, "ys": ys, "colour": [*colours], "width": [*widths], **alike},
+        "film": {"xs": xs, "ys": ys, **looks, **alike},
         "corners": dict(zip("xy", map(_plain, one.corners.T), strict=True)),
         "paths": paths,
     }
-
-
-def _drawable(body: Body) -> NDArray[np.float64]:
-    """The line of a body; a disc is hardly one, with round ends."""
-    dot = np.array([[0.0, 0.0], [_DOT, 0.0]])
-    return body.points if len(body.points) > 1 else body.points + dot
-
-
-def _look(body: Body) -> tuple[str, float]:
-    """Colour and width of a disc, a thick line or a thin one, as films have them."""
-    if len(body.points) == 1:
-        return INK, 16.0
-    dark = body.rigid and not body.tip
-    return (INK if dark else BLUE), (9.0 if body.rigid else 5.0)
 
 
 def _plain(values: NDArray[np.float64]) -> list[float]:

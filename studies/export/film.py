@@ -14,14 +14,12 @@ import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from numpy.typing import NDArray
 from PIL import Image
-from quietarm.models import Body
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import write_whole
 from quietarm.studies.display.pictures import as_written
-from quietarm.studies.display.words import REST, millimetres, move_of, moved, title_of
+from quietarm.studies.display.words import move_of, moved, residual_words, title_of
 from quietarm.studies.export.formats import FORMATS, FRAMES, format_of
 from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
 from quietarm.studies.figures.motion import Motions, draw_lines, lines_of
@@ -35,9 +33,10 @@ _ROUNDING = 1e-6
 """Of a frame: one that is this close to the end belongs to it."""
 _COLUMNS = {1: 1, 2: 2, 4: 2}
 """Panels in a row, by how many there are; else 3."""
-_PANEL, _LINE, _LETTERS = 4.0, 0.2, 11.5
-"""Width of a panel and height of a line of its title [inch], and letters an inch."""
-_LEAST_HEIGHT, _MOST_HEIGHT, _CURVES_HEIGHT = 1.7, 3.2, 2.0
+_PANEL, _HIGH, _CURVES_HIGH, _LINE, _LETTERS = 4.0, 2.6, 2.0, 0.2, 11.5
+"""Width and height of a panel, heights of curves and of a line [inch]; letters an inch."""
+_THIN, _DISC = 0.8, 1e-5
+"""Of the widths of parts; a part as small as this [m] is a disc."""
 _COLOURS = 128
 _MEGABYTES = 200.0
 """Most of a page, far above what `_MOST_FRAMES` take."""
@@ -179,7 +178,7 @@ def _frame_times(end: float, speed: float, rate: float) -> NDArray[np.float64]:
     return np.arange(float(int(frames + _ROUNDING) + 1)) * speed / rate
 
 
-def _writer(name: str, rate: float) -> AbstractMovieWriter:
+def _writer(name: str, rate: Any) -> AbstractMovieWriter:
     if name == "html":
         return HTMLWriter(fps=rate, embed_frames=True, embed_limit=_MEGABYTES)
     return FFMpegWriter(fps=rate) if name == "mp4" else _GifWriter(fps=rate)
@@ -200,38 +199,32 @@ class _GifWriter(PillowWriter):
 
 def _draw(film: Film) -> tuple[Figure, list[Update]]:
     """The figure, laid out, and what brings it to a frame."""
-    structures = film.structures
+    structures, times = film.structures, film.structures[0].times
     columns = _COLUMNS.get(len(structures), 3)
-    rows = -(-len(structures) // columns)
-    inches = _PANEL * max(columns, 2)
+    rows, inches = -(-len(structures) // columns), _PANEL * max(columns, 2)
     same = len({one.line.plan.task for one in structures}) == 1
-    room = int(_LETTERS * inches / columns)
-    titles = [_title(one, same, room) for one in structures]
+    titles = [_title(one, same, int(_LETTERS * inches / columns)) for one in structures]
     words = title_of(structures[0].line.plan.task) if same else "several moves on one clock"
     heading = wrap(words, int(_LETTERS * inches) - 24)  # the clock stands beside it
-    corners = [_corners(structures, one.line.plan.task.plant.name) for one in structures]
-    highest = max(inches / columns * up / across for across, up in np.ptp(corners, axis=1))
-    row = float(np.clip(highest, _LEAST_HEIGHT, _MOST_HEIGHT)) + _LINE * max(map(len, titles))
-    heights = [_LINE * len(heading) + 0.1 + rows * row, _CURVES_HEIGHT]
-    figure = new_figure(inches, sum(heights))
+    above = _LINE * len(heading) + rows * (_HIGH + _LINE * max(map(len, titles)))
+    figure = new_figure(inches, above + _CURVES_HIGH)
     figure.set_dpi(film.width / inches)
-    above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=heights).flat
     figure.suptitle("\n".join(heading), x=0.01, ha="left", fontsize=11)
     clock = figure.text(0.99, 0.99, "", ha="right", va="top", fontsize=11)
-    times = structures[0].times
-
-    def tell(k: int) -> None:
-        at_speed = f", speed x {film.speed:g}" if film.speed != 1 else ""
-        clock.set_text(f"t = {times[k]:.2f} s{at_speed}")
-
-    updates: list[Update] = [tell]
-    panels = list(above.subplots(rows, columns, squeeze=False).flat)
+    at_speed = f", speed x {film.speed:g}" if film.speed != 1 else ""
+    updates: list[Update] = [lambda k: clock.set_text(f"t = {times[k]:.2f} s{at_speed}")]
+    upper, lower = figure.subfigures(2, 1, height_ratios=[above, _CURVES_HIGH])
+    panels = list(upper.subplots(rows, columns, squeeze=False).flat)
     for spare in panels[len(structures) :]:
         spare.axis("off")
-    for one, title, its_corners, ax in zip(structures, titles, corners, panels, strict=False):
+    for one, title, ax in zip(structures, titles, panels, strict=False):
         ax.set_title("\n".join(title), **TITLE)
-        updates += _draw_structure(ax, one, its_corners)
-    for ax, quantity in zip(below.subplots(1, len(_CURVES)), _CURVES, strict=True):
+        name = one.line.plan.task.plant.name
+        for other in structures:
+            if other.line.plan.task.plant.name == name:
+                ax.update_datalim(other.corners)
+        updates += _draw_structure(ax, one)
+    for ax, quantity in zip(lower.subplots(1, len(_CURVES)), _CURVES, strict=True):
         draw_lines([one.line for one in structures], quantity, axes_or_new(ax))
         ax.set_xlim(0.0, film.end)
         ax.xaxis.label.set_fontsize(9)
@@ -245,66 +238,33 @@ def _draw(film: Film) -> tuple[Figure, list[Update]]:
 
 def _title(one: Structure, same: bool, room: int) -> list[str]:
     """The lines above a panel."""
-    plan = one.line.plan
-    residual = millimetres(plan.residual) if plan.residual >= REST else f"below {millimetres(REST)}"
+    plan, task = one.line.plan, one.line.plan.task
+    scale = "to scale" if one.scale == 1 else f"deflection x {one.scale:g}"
     lines = [
-        one.line.label,
-        *([] if same else [f"{moved(plan.task)}, {move_of(plan.task)}"]),
-        f"residual {residual}, energy {plan.energy:.3g} J",
+        f"{one.line.label}, {scale}",
+        *([] if same else [f"{moved(task)}, {move_of(task)}"]),
+        f"energy {plan.energy:.3g} J, residual {residual_words(plan.residual)}",
     ]
     return [part for line in lines for part in wrap(line, room)]
 
 
-def _draw_structure(ax: Axes, one: Structure, corners: NDArray[np.float64]) -> Iterator[Update]:
-    """Set up a structure's panel; what brings its parts to a frame."""
-    ax.set(xticks=[], yticks=[])
-    for spine in ax.spines.values():
-        spine.set_color("0.8")
-    ax.margins(0)
-    ax.update_datalim(corners)
+def _draw_structure(ax: Axes, one: Structure) -> Iterator[Update]:
+    """Set up a structure's panel, in metres; what brings its parts to a frame."""
+    ax.tick_params(labelsize=8)
     ax.autoscale_view()
     ax.set_aspect("equal", adjustable="datalim")
-    words = "deflection to scale" if one.scale == 1 else f"deflection x {one.scale:g}"
-    ax.text(0.02, 0.03, words, transform=ax.transAxes, fontsize=9, color="0.3")
-    length = _round_below(0.25 * float(np.ptp(corners, axis=0).max()))
-    ax.add_artist(
-        AnchoredSizeBar(ax.transData, length, f"{length:g} m", "lower right", frameon=False)
-    )
 
-    def part(points: Sequence[NDArray[np.float64]], **look: Any) -> Update:
-        (artist,) = ax.plot([], [], **look)
+    def part(points: Sequence[NDArray[np.float64]] | NDArray[np.float64], **look: Any) -> Update:
+        (artist,) = ax.plot([], [], solid_capstyle="round", **look)
         return lambda k: artist.set_data(*points[k].T)
 
-    colour = one.line.colour
-    for bodies in zip(*one.unbent, strict=True):
-        dashed = {"color": "0.55", "linewidth": 1.0, "linestyle": "--"}
-        yield part([body.points for body in bodies], **dashed)
+    for points, _, _ in one.unbent:
+        yield part(points, color="0.55", linewidth=1.0, linestyle="--")
     arrived = int(np.searchsorted(one.times, one.line.plan.task.duration))
     for path in one.paths:
         trail = [path[arrived : k + 1] for k in range(len(path))]
-        yield part(trail, color=colour, linewidth=2.0, alpha=0.5)
-    for bodies in zip(*one.bodies, strict=True):
-        look = _look(bodies[0], colour)
-        yield part([body.points for body in bodies], solid_capstyle="round", **look)
-
-
-def _look(body: Body, colour: str) -> dict[str, Any]:
-    """A disc, a thick line or a thin one."""
-    if len(body.points) == 1:
-        return {"color": "0.25", "marker": "o", "markersize": 13.0, "linestyle": ""}
-    dark = body.rigid and not body.tip
-    return {"color": "0.25" if dark else colour, "linewidth": 7.0 if body.rigid else 4.0}
-
-
-def _corners(structures: Sequence[Structure], plant: str) -> NDArray[np.float64]:
-    """The corners of all motions of a plant [m] with a margin, wider below where words stand."""
-    every = np.vstack([s.corners for s in structures if s.line.plan.task.plant.name == plant])
-    low, high = every.min(axis=0), every.max(axis=0)
-    room = 0.08 * float((high - low).max())
-    return np.array([low, high]) + room * np.array([[-1.0, -2.5], [1.0, 1.0]])
-
-
-def _round_below(length: float) -> float:
-    """The largest of 1, 2 or 5 times a power of ten that is no longer."""
-    power = 10.0 ** np.floor(np.log10(length))
-    return max(float(m * power) for m in (1, 2, 5) if m * power <= length)
+        yield part(trail, color=one.line.colour, linewidth=2.0, alpha=0.5)
+    for points, colour, width in one.bent:
+        disc = np.ptp(points[0], axis=0).max() < _DISC
+        yield part(points, color=colour, linewidth=_THIN * width, marker="o" if disc else "",
+                   markersize=_THIN * width)  # fmt: skip

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import Plan
-from quietarm.ocp.checks import install, unknown
+from quietarm.ocp.checks import unknown
 from quietarm.ocp.planning.plan import ticks_of_move
 from quietarm.studies.display.templates import templates
 
@@ -94,10 +94,8 @@ def csv_text(columns: Mapping[str, Array]) -> str:
 
 def mat_bytes(columns: Mapping[str, Array], facts: Mapping[str, Any]) -> bytes:
     """A MATLAB v5 file: a column vector for each column, and some facts."""
-    try:
-        from scipy.io import savemat
-    except ImportError:
-        raise ValueError(f"MATLAB files need scipy; give csv, or {install('mat')}") from None
+    from scipy.io import savemat  # slow to load
+
     file, signs = io.BytesIO(), {"-": "minus ", "+": "plus ", " %": ""}
     vectors = {
         re.sub(r"\W+", "_", re.sub("[-+]| %", lambda sign: signs[sign[0]], name)): column

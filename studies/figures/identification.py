@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
+from math import pi
+from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
-from quietarm.studies.figures.looks import BLUE, GREY
-from quietarm.studies.identify import Identified, Recording
-from quietarm.studies.identify.identification import fitted_parts
+from quietarm.studies.figures.looks import BLUE, GREY, RED
+from quietarm.studies.identify import Identified, Part, Recording
+from quietarm.studies.identify.diagnosis import spectrum_of
+from quietarm.studies.identify.forced import Forced
+from quietarm.studies.identify.identification import fit_again
 
-_MOST = 8
-_UNITS = {"tip": "m, or as recorded", "acceleration": "m/s^2, or as recorded", "torque": "N m"}
+_MOST = 6
+"""Parts that are drawn; of more the first."""
+_UNITS = {"tip": "m, or as recorded", "acceleration": "m/s²", "torque": "N m"}
 
 
 def identification_figure(found: Identified, recordings: Sequence[Recording]) -> Figure:
-    """Draw the fitted parts of recordings, a panel each.
+    """Draw the fitted parts of recordings, and the frequency over parts.
 
     Parameters
     ----------
@@ -26,21 +33,94 @@ def identification_figure(found: Identified, recordings: Sequence[Recording]) ->
     Returns
     -------
     matplotlib.figure.Figure
-        Of up to eight parts, measured and fitted over time.
+        A row a part: measured and fitted over time, below it what is left; beside it the spectrum
+        of what is left. At the end, of several parts, the first parameter of each, and the
+        intervals of the mean and of the next swing.
     """
-    parts = list(zip(found.parts, fitted_parts(found, recordings), strict=True))[:_MOST]
-    columns = min(2, len(parts))
-    rows = -(-len(parts) // columns)
-    figure = Figure(figsize=(4.6 * columns, 2.4 * rows), layout="constrained")
-    quantity = next(iter(recordings[0].signals))
-    panels = figure.subplots(rows, columns, squeeze=False).flat
-    for ax, (part, (time, measured, fitted)) in zip(panels, parts, strict=False):
-        ax.plot(time, measured[:, 0], color=GREY, linewidth=2.2, label="measured")
-        ax.plot(time, fitted[:, 0], color=BLUE, linewidth=1.0, label="fitted")
-        ax.set_title(f"{part.recording}: {part.misfit:.1%} left", loc="left", fontsize=8)
-        ax.margins(x=0)
-        ax.set(xlabel="time [s]", ylabel=f"{quantity} [{_UNITS[quantity]}]")
-    for ax in list(panels):
-        ax.remove()
-    figure.axes[0].legend(fontsize=8, frameon=False)
+    drawn = found.parts[:_MOST]
+    several = len(found.parts) > 1 and found.estimates
+    figure = Figure(
+        figsize=(9.0, 2.5 * len(drawn) + 2.6 * bool(several) + 0.3), layout="constrained"
+    )
+    rows = figure.subfigures(len(drawn) + bool(several), 1, squeeze=False)[:, 0]
+    for row, part in zip(rows, drawn, strict=False):
+        _draw_part(row, found, part, recordings)
+    figure.axes[0].legend(
+        fontsize=7, frameon=False, loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderpad=0
+    )
+    if several:
+        _over_parts(rows[-1], found)
     return figure
+
+
+def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Recording]) -> None:
+    """Measured and fitted, what is left, and its spectrum."""
+    grid = row.add_gridspec(2, 2, width_ratios=(2.2, 1), height_ratios=(2, 1))
+    over = row.add_subplot(grid[0, 0])
+    left = row.add_subplot(grid[1, 0], sharex=over)
+    spectrum = row.add_subplot(grid[:, 1])
+    fit = fit_again(found, part, recordings)
+    recording = next(one for one in recordings if one.name == part.recording)
+    piece = recording.part(recording.rows(part.begin, part.end))
+    time = fit.time if isinstance(fit, Forced) else fit.window.begin + fit.window.time
+    fitted, residual = fit.fitted[:, 0], fit.residual[:, 0]
+    size = max(float(np.abs(fitted - fitted.mean()).max()), 1e-300)
+    drawn = (piece.time, fit.at(piece.time)[:, 0]) if not part.hub else (time, fitted)
+    over.plot(piece.time, piece.values[:, 0], color=GREY, linewidth=2.2, label="measured")
+    over.plot(*drawn, color=BLUE, linewidth=1.0, label="fitted")
+    over.set_title(f"{part.recording}, {part.begin:.3g} to {part.end:.3g} s: {part.misfit:.1%} "
+                   f"left, noise {part.noise:.1%}", loc="left", fontsize=8)  # fmt: skip
+    quantity = next(iter(recording.signals))
+    over.set_ylabel(f"{quantity}\n[{_UNITS[quantity]}]", fontsize=8)
+    over.tick_params(labelbottom=False)
+    gap = np.append(np.diff(time) > 3 * np.median(np.diff(time)), False)
+    left.plot(time, np.where(gap, np.nan, 100 * residual / size), color=RED, linewidth=0.6)
+    left.axhline(0, color="0.3", linewidth=0.5)
+    left.set_ylabel("left [%]", fontsize=8)
+    left.set_xlabel("time [s]", fontsize=8)
+    at, amplitude = spectrum_of(time, residual[:, None])
+    spectrum.loglog(at[1:], 100 * amplitude[1:] / size + 1e-9, color=RED, linewidth=0.7)
+    for frequency in _frequencies(found, part):
+        spectrum.axvline(frequency, color=BLUE, linewidth=0.8, linestyle="--")
+    for axis in (spectrum.xaxis, spectrum.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
+    spectrum.set_title("spectrum of what is left", loc="left", fontsize=8)
+    spectrum.set_xlabel("frequency [Hz]", fontsize=8)
+    spectrum.set_ylabel("[% of the swing]", fontsize=8)
+    for ax in (over, left, spectrum):
+        ax.tick_params(labelsize=7)
+        ax.margins(x=0)
+
+
+def _frequencies(found: Identified, part: Part) -> list[float]:
+    units = _units(found)
+    return [value / (2 * pi) for name, value in part.values.items() if units[name] == "rad/s"]
+
+
+def _units(found: Identified) -> dict[str, str]:
+    return {one.name: one.metadata.get("unit", "") for one in fields(found.plant)}
+
+
+def _over_parts(row: Any, found: Identified) -> None:
+    """The identified parameters of every part, with both intervals."""
+    axes = row.subplots(1, len(found.estimates[:2]), squeeze=False)[0]
+    units = _units(found)
+    number = np.arange(1, len(found.parts) + 1)
+    for ax, one in zip(axes, found.estimates, strict=False):
+        hertz = units[one.parameter] == "rad/s"
+        size = 2 * pi if hertz else 1.0
+        values = np.array([part.values[one.parameter] for part in found.parts]) / size
+        spread = 1.96 * np.array([part.deviations[one.parameter] for part in found.parts]) / size
+        if one.next_low is not None and one.next_high is not None:
+            ends = one.next_low / size, one.next_high / size
+            ax.axhspan(*ends, color=GREY, alpha=0.35, linewidth=0, label="next swing, 95 %")
+        ends = one.low / size, one.high / size
+        ax.axhspan(*ends, color=BLUE, alpha=0.35, linewidth=0, label="mean, 95 %")
+        ax.errorbar(number, values, spread, fmt="o", color="0.15", markersize=3, linewidth=0.8)
+        ax.set_xlabel("ring-down", fontsize=8)
+        ax.set_ylabel("frequency [Hz]" if hertz else one.parameter, fontsize=8)
+        ax.xaxis.get_major_locator().set_params(integer=True)
+        ax.ticklabel_format(axis="y", useOffset=False)
+        ax.tick_params(labelsize=7)
+        ax.legend(fontsize=7, frameon=False, loc="lower right", bbox_to_anchor=(1, 1), ncols=2)

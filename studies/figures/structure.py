@@ -1,10 +1,11 @@
-"""Where structures are at the frames of a film."""
+"""Where structures are at the frames of a film, and how their parts look."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +14,26 @@ from quietarm.ocp import Candidate, Floor, Plan, Trajectory
 from quietarm.studies.figures.motion import Line
 
 Array = NDArray[np.float64]
-
+INK = "#404040"
 _SCALES = (1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0)
 _BENT = 0.2
 """Share of a structure's size up to which deflections are drawn larger than they are."""
 _SAMPLES = 1500
+_DOT = np.array([[0.0, 0.0], [1e-6, 0.0]])
+"""A line of hardly any length [m], which with round ends shows as a disc."""
+
+
+class Part(NamedTuple):
+    """A line of a structure: its points, shape (frames, points, 2) [m], and its look."""
+
+    points: Array
+    colour: str
+    width: float
 
 
 @dataclass(frozen=True)
 class Structure:
-    """A structure that moves as one motion has it."""
+    """A structure that moves as one motion has it, deflections drawn `scale` times larger."""
 
     line: Line
     trajectory: Trajectory
@@ -31,47 +42,61 @@ class Structure:
 
     @cached_property
     def tips(self) -> Array:
-        """Displacements of the tips at the frames [m]."""
+        """Displacements of the tips at the frames [m], shape (frames, tips)."""
         return self._at_frames(self.trajectory.tips)
 
     @cached_property
-    def bodies(self) -> list[list[Body]]:
-        """What is drawn at every frame."""
-        return self._structures(self.scale * self.tips)
+    def bent(self) -> list[Part]:
+        """What is drawn: discs, links and tips."""
+        return self._parts(self.scale * self.tips)
 
     @cached_property
-    def unbent(self) -> list[list[Body]]:
-        """The same without bending."""
-        return self._structures(0 * self.tips)
+    def unbent(self) -> list[Part]:
+        """The same without deflection."""
+        return self._parts(0 * self.tips)
 
     @property
-    def paths(self) -> Array:
-        """Where the tips are drawn, shape (tips, frames, 2) [m]."""
-        ends = [[body.points[-1] for body in bodies if body.tip] for bodies in self.bodies]
-        return np.array(ends).reshape(len(ends), -1, 2).transpose(1, 0, 2)
+    def paths(self) -> list[Array]:
+        """Where each tip is drawn, shape (frames, 2) [m]."""
+        first = self._bodies(self.scale * self.tips)[0]
+        return [part.points[:, -1] for part, body in zip(self.bent, first, strict=True) if body.tip]
 
     @property
     def corners(self) -> Array:
         """Least and largest coordinates of all that is drawn [m], shape (2, 2)."""
-        return _corners([body for bodies in (*self.bodies, *self.unbent) for body in bodies])
+        every = np.vstack([part.points.reshape(-1, 2) for part in (*self.bent, *self.unbent)])
+        return np.array([every.min(axis=0), every.max(axis=0)])
 
     @property
     def largest_share(self) -> float:
         """The largest displacement of a tip as a share of the structure's size."""
-        size = np.ptp(_corners(self.unbent[0]), axis=0).max() or 1.0  # 1 m of a single point
+        first = np.vstack([part.points[0] for part in self.unbent])
+        size = np.ptp(first, axis=0).max() or 1.0  # 1 m of a single point
         return float(np.abs(self.tips).max() / size)
 
     def _at_frames(self, columns: Array) -> Array:
         sampled = [np.interp(self.times, self.trajectory.time, column) for column in columns.T]
         return np.column_stack(sampled)
 
-    def _structures(self, tips: Array) -> list[list[Body]]:
+    def _bodies(self, tips: Array) -> list[list[Body]]:
+        """The bodies at every frame."""
         plant = self.line.plan.task.plant
         angles = self._at_frames(self.trajectory.joint[:, :1])[:, 0]
         return [
             list(plant.structure(float(angle), row.tolist()))
             for angle, row in zip(angles, tips, strict=True)
         ]
+
+    def _parts(self, tips: Array) -> list[Part]:
+        parts = list[Part]()
+        for bodies in zip(*self._bodies(tips), strict=True):
+            points, body = np.array([one.points for one in bodies]), bodies[0]
+            if points.shape[1] == 1:
+                parts.append(Part(points + _DOT, INK, 16.0))
+                continue
+            colour = INK if body.rigid and not body.tip else self.line.colour
+            parts.append(Part(points, colour, 9.0 if body.rigid else 5.0))
+        return parts
 
 
 def structures_of(
@@ -88,7 +113,7 @@ def structures_of(
 
 
 def _until(motion: Plan | Floor, end: float) -> Trajectory:
-    """A motion from its start to the end of the animation."""
+    """A motion from its start to the end of the film."""
     task = motion.task
     if task.duration + task.residual_window == end:
         return motion.trajectory
@@ -96,8 +121,3 @@ def _until(motion: Plan | Floor, end: float) -> Trajectory:
         return motion.sampled(np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration]))
     task = replace(task, residual_window=end - task.duration)
     return Candidate.of_free_motion(task, motion.free).trajectory
-
-
-def _corners(bodies: Sequence[Body]) -> Array:
-    points = np.vstack([body.points for body in bodies])
-    return np.array([points.min(axis=0), points.max(axis=0)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import casadi as ca
@@ -11,8 +11,8 @@ from quietarm.models import JointMotion, Plant
 from quietarm.ocp.saved import Saved
 from quietarm.ocp.uncertainty import with_values
 
-POOR = 0.25
-"""Share of a recording that a fit may leave; with more the plant is not what was recorded."""
+_LEAST_ERROR = 1e-6
+"""Of a parameter known without error, as of a simulation: a range of none is no range."""
 
 
 @dataclass(frozen=True)
@@ -24,28 +24,40 @@ class Estimate:
     parameter : str
         Its name.
     value : float
-        By least squares [SI units].
+        The mean over the parts, weighed by how well each tells it [SI units].
     low, high : float
-        Ends of the interval that covers the truth in 95 of 100 cases.
-    by : str
-        What the interval is of: ``"fit"``, or ``"spread"`` where ring-downs differ by more.
+        Ends of the interval that covers the mean in 95 of 100 cases.
+    next_low, next_high : float or None
+        Ends of the interval that covers the next swing's in 95 of 100 cases, by how much the parts
+        differ beyond their own uncertainty; None where there is one part.
     """
 
     parameter: str
     value: float
     low: float
     high: float
-    by: str
+    next_low: float | None = None
+    next_high: float | None = None
 
     @property
     def error(self) -> float:
-        """The larger distance to an end, as a share of the value."""
-        return max(self.high - self.value, self.value - self.low) / self.value
+        """The larger distance to an end of the widest interval, as a share of the value."""
+        ends = [
+            end for end in (self.low, self.high, self.next_low, self.next_high) if end is not None
+        ]
+        return max(abs(end - self.value) for end in ends) / abs(self.value)
+
+    @property
+    def varies(self) -> bool:
+        """Whether the parts differ by more than their own uncertainty, twice and more."""
+        if self.next_low is None or self.next_high is None:
+            return False
+        return self.next_high - self.next_low > 2 * (self.high - self.low)
 
 
 @dataclass(frozen=True)
-class Fitted:
-    """A part of a recording, and how it is met.
+class Part:
+    """A part of a recording, fitted alone.
 
     Attributes
     ----------
@@ -53,20 +65,38 @@ class Fitted:
         Name of the recording.
     begin, end : float
         The part of it [s].
-    values : tuple of float
-        The parameters by this part alone, those told and then those not.
+    values, deviations : dict of str to float
+        The parameters by this part alone, and their standard deviations.
+    amplitude : float
+        Of the swing at its begin, in the signal's unit.
     misfit : float
-        Root mean square of what the fit leaves, as a share of the signals'.
-    held_back : float or None
-        The same where this part was not fitted, but the others; None where there are none.
+        Root mean square of what the fit leaves, as a share of the swing's.
+    noise : float
+        The recording's own noise, as a share of the same.
+    cause, warning : str
+        Why the fit leaves more than noise: a word, and a sentence; empty where it does not.
+    saturated : int
+        Samples at the sensor's limit, which are left out.
+    drifts : bool
+        Whether a slow motion of the signal is left out.
+    hub : str
+        How the joint's recorded motion is met: not at all where it is empty, ``"creeps"`` beside a
+        free decay, ``"moves"`` all of it, ``"equations"`` all of it by the plant's own equations.
     """
 
     recording: str
     begin: float
     end: float
-    values: tuple[float, ...]
-    misfit: float
-    held_back: float | None
+    values: dict[str, float] = field(default_factory=dict)
+    deviations: dict[str, float] = field(default_factory=dict)
+    amplitude: float = 0.0
+    misfit: float = 0.0
+    noise: float = 0.0
+    cause: str = ""
+    warning: str = ""
+    saturated: int = 0
+    drifts: bool = False
+    hub: str = ""
 
 
 @dataclass(frozen=True)
@@ -76,58 +106,61 @@ class Identified(Saved):
     Attributes
     ----------
     plant : Plant
-        With what is told; all else is as it was given.
-    fitted : dict of str to float
-        What least squares made of the parameters, also of those not told.
-    told : tuple of Estimate
+        With what is identified; all else is as it was given.
+    estimates : tuple of Estimate
         The parameters that the recordings tell.
-    untold : dict of str to str
+    not_identifiable : dict of str to str
         Those asked for that they do not tell, and why.
-    parts : tuple of Fitted
+    parts : tuple of Part
         What was fitted.
-    left_out : tuple of str
-        Recordings without a ring-down.
+    left_out : dict of str to str
+        Recordings that were not, and why.
+    warnings : tuple of str
+        What is doubtful about the recordings themselves, as their units.
     versions : dict of str to str
         Of what identified it.
     """
 
     kind: ClassVar[str] = "machine"
-    version: ClassVar[int] = 1
+    version: ClassVar[int] = 2
 
     plant: Plant
-    fitted: dict[str, float]
-    told: tuple[Estimate, ...]
-    untold: dict[str, str]
-    parts: tuple[Fitted, ...]
-    left_out: tuple[str, ...]
+    estimates: tuple[Estimate, ...]
+    not_identifiable: dict[str, str]
+    parts: tuple[Part, ...]
+    left_out: dict[str, str]
+    warnings: tuple[str, ...]
     versions: dict[str, str]
 
     @property
     def errors(self) -> dict[str, float]:
-        """Relative errors of the plant by the intervals, for an `Uncertainty`.
+        """Relative errors of the plant by the intervals of the next swing, for an `Uncertainty`.
 
         Raises
         ------
         ValueError
-            When a parameter is not told, or the plant does not move as what was recorded.
+            When a parameter is not identifiable, the plant does not move as what was recorded, or
+            one part alone does not tell how much the machine varies.
         """
-        if (left := min(part.misfit for part in self.parts)) > POOR:
+        doubtful = [part for part in self.parts if part.warning]
+        own = "state errors of your own, as --error frequency=5%"
+        if 2 * len(doubtful) >= len(self.parts):
+            raise ValueError(f"{doubtful[0].recording}: {doubtful[0].warning}; or {own}")
+        if self.not_identifiable:
+            name, why = next(iter(self.not_identifiable.items()))
+            known = " and ".join(one.parameter for one in self.estimates) or "omega"
             raise ValueError(
-                f"{left:.0%} and more of the recordings is left by the plant, so that the "
-                "intervals say nothing; state errors of your own, as frequency=5%, or record anew"
+                f"{name} is not identifiable by the recordings ({why}); {own}, or identify again "
+                f"with {known} alone, by --free"
             )
-        if self.untold:
-            name, told = next(iter(self.untold)), [one.parameter for one in self.told]
+        moving = [one for one in self.estimates if not in_torque_alone(self.plant, one.parameter)]
+        if len(self.parts) == 1:
+            least = max((one.error for one in moving), default=0.0)
             raise ValueError(
-                f"{name} was not told by the recordings ({self.untold[name]}); state errors of "
-                f"your own, as frequency=5%, or identify again with "
-                f"{' and '.join(told) or 'omega'} alone, by --free"
+                "one ring-down does not tell how much the machine varies, beyond "
+                f"{100 * least:.2g} % by its fit; record several, or {own}"
             )
-        return {
-            one.parameter: one.error
-            for one in self.told
-            if not in_torque_alone(self.plant, one.parameter)
-        }
+        return {one.parameter: max(one.error, _LEAST_ERROR) for one in moving}
 
     def check_unchanged(self, names: Iterable[str]) -> None:
         """Refuse to change parameters on which the measured intervals rest.

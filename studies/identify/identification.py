@@ -2,45 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from math import pi
+from collections.abc import Sequence
+from dataclasses import replace
+from math import tau
 
 import numpy as np
-from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
-from quietarm.studies.identify.answer import Estimate, Fitted, Identified, in_torque_alone
-from quietarm.studies.identify.fit import Fit, Piece, fit, left, measured, not_told
-from quietarm.studies.identify.recording import Recording
-from quietarm.studies.identify.response import Joint, Response
-from quietarm.studies.identify.ring_downs import (
-    LEAST_PERIODS,
-    ring_downs,
-    standstills,
-    strongest_frequency,
+from quietarm.studies.identify.answer import Identified, Part, in_torque_alone
+from quietarm.studies.identify.combine import combine
+from quietarm.studies.identify.forced import (
+    Forced,
+    ForcedModel,
+    described,
+    fit_forced,
+    not_identifiable,
 )
+from quietarm.studies.identify.parameters import is_modal, started_at, values_of
+from quietarm.studies.identify.parts import candidates, longest_rest, moves, prominence
+from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.response import Response
+from quietarm.studies.identify.ring_down import RingDowns
+from quietarm.studies.identify.swing import Swing, averaged
 
-Array = NDArray[np.float64]
-_FREQUENCY, _DAMPING = "rad/s", "zeta"
-"""Unit of a mode's frequency, and how the name of its damping ratio begins."""
-_LEVEL = 0.95
 _SLOWEST, _FASTEST = 0.02, 500.0
-"""Frequencies [Hz] beyond which a wrong unit of the time is more likely."""
+"""Frequencies [Hz] that no arm has: a wrong unit of the time is more likely."""
+_COARSE, _DOUBTFUL = 0.2, 0.1
+"""A step [s] and a frequency [Hz] that may come from a time in milliseconds."""
+_TURNS = 2 * tau
+"""A joint that turns further may be in degrees."""
 _BAD = 0.9
-"""Share of the signals' size that a fit may leave."""
+"""Share of the signal's size that a forced fit may leave."""
+_FACTORS = (1.0, 0.8, 1.25, 0.6, 1.6)
+"""Of the spectrum's frequency, from which forced fits start, beside the plant's own."""
+_SAMPLES = 200
+"""A period, of what is fitted to the joint's motion."""
 
 
 @one_at_a_time
 def identify(
-    recordings: Sequence[Recording], plant: Plant, free: Sequence[str] | None = None
+    recordings: Sequence[Recording],
+    plant: Plant,
+    free: Sequence[str] | None = None,
+    parts: Sequence[tuple[float, float]] = (),
 ) -> Identified:
     """Fit a plant's parameters to recordings, by least squares on its own equations.
 
-    Frequencies and dampings are told by ring-downs, which are found: where a recorded joint stands,
-    or where a swing decays. All else, and they where the joint never stands, is told by how the
+    Frequencies and dampings are identified by ring-downs, each found and fitted alone: where a
+    recorded joint is at rest or creeps. All else, and they where the joint never rests, by how the
     plant answers the recorded motion of its joint.
 
     Parameters
@@ -52,11 +63,13 @@ def identify(
     free : sequence of str, optional
         The parameters that are sought; by default frequencies and dampings, and with a torque what
         nothing but the torque depends on.
+    parts : sequence of (float, float), optional
+        Begin and end [s] of each ring-down, in every recording; found by default.
 
     Returns
     -------
     Identified
-        The plant, the intervals, and what the recordings do not tell.
+        The plant, the intervals of the mean and of the next swing, and what is not identifiable.
 
     Raises
     ------
@@ -76,42 +89,64 @@ def identify(
             )
     _check_tips(plant, recordings)
     names = _sought(plant, free, kinds)
-    modal = [name for name in names if _is_modal(plant, name)]
-    swings = _swings_alone(plant, names, kinds)
-    pieces, left_out, frequency = _pieces(recordings, forced=not swings)
-    plant = _started(plant, modal, frequency)
-    answer = _Identification(plant, names, kinds, pieces, swings)
-    return answer.made(left_out)
+    frequencies = find_frequencies(recordings)
+    warnings = _doubts(recordings, frequencies)
+    fitted, left_out, unknown = list[Part](), dict[str, str](), dict[str, str]()
+    if _swings_alone(plant, names, kinds):
+        fitter = RingDowns(plant, names)
+        for one, frequency in zip(recordings, frequencies, strict=True):
+            found, why = fitter.fit(one, frequency, parts)
+            fitted += found
+            if why:
+                left_out[one.name] = why
+        if not fitted and not any(moves(one) for one in recordings):
+            raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
+    if not fitted:
+        fitted, unknown = _forced(recordings, plant, names, frequencies)
+        left_out = {}
+    known = [name for name in names if name not in unknown]
+    estimates, wide = combine(known, fitted)
+    unknown |= wide
+    return Identified(
+        replace(plant, **{one.parameter: one.value for one in estimates}),
+        tuple(estimates), {name: unknown[name] for name in names if name in unknown},
+        tuple(fitted), left_out, tuple(warnings), versions(),
+    )  # fmt: skip
 
 
-def fitted_parts(
-    found: Identified, recordings: Sequence[Recording]
-) -> list[tuple[Array, Array, Array]]:
-    """Time, measured and fitted signals of every part, a row a sample."""
-    kinds, names = list(recordings[0].signals), list(found.fitted)
-    response = Response(found.plant, names, kinds)
-    p, scaled = np.array([*found.fitted.values()]), _swings_alone(found.plant, names, kinds)
-    drawn: list[tuple[Array, Array, Array]] = []
-    for part in found.parts:
-        (one,) = (each for each in recordings if each.name == part.recording)
-        first, last = np.searchsorted(one.time, [part.begin, part.end])
-        piece = Piece.of(one.part(int(first), int(last) + 1), Joint.of(one))
-        fitted = left(response, piece, p, scaled).fitted
-        drawn.append((piece.recording.time, measured(piece.recording), fitted))
-    return drawn
+def fit_again(found: Identified, part: Part, recordings: Sequence[Recording]) -> Swing | Forced:
+    """The fit of a part, as it was made from the recordings."""
+    recording = next(one for one in recordings if one.name == part.recording)
+    names = list(part.values)
+    if part.hub == "equations":
+        model = _model(found.plant, names, _thinned(recording, find_frequencies([recording])[0]))
+        return fit_forced(model, [found.plant], names)
+    return RingDowns(found.plant, names).again(part, recording)
 
 
 def _swings_alone(plant: Plant, names: Sequence[str], kinds: Sequence[str]) -> bool:
     """Whether only frequencies and dampings are sought, which need no scale."""
-    return "torque" not in kinds and all(_is_modal(plant, name) for name in names)
+    return "torque" not in kinds and all(is_modal(plant, name) for name in names)
 
 
-def _is_modal(plant: Plant, name: str) -> bool:
-    return _unit(plant, name) == _FREQUENCY or name.startswith(_DAMPING)
+def _model(plant: Plant, names: Sequence[str], recording: Recording) -> ForcedModel:
+    kinds = list(recording.signals)
+    return ForcedModel(Response(plant, names, kinds), recording, _swings_alone(plant, names, kinds))
 
 
-def _unit(plant: Plant, name: str) -> str:
-    return next(one.metadata.get("unit", "") for one in fields(plant) if one.name == name)
+def _thinned(recording: Recording, frequency: float) -> Recording:
+    """A recording averaged to what a forced fit needs."""
+    given = {
+        k: v for k, v in vars(recording).items() if isinstance(v, np.ndarray) and k != "values"
+    }
+    share = _SAMPLES * frequency * recording.step
+    if not share or share > 0.5:
+        return recording
+    mean = {
+        k: averaged(v.reshape(len(v), -1), share).reshape(-1, *v.shape[1:])
+        for k, v in given.items()
+    }
+    return replace(recording, **mean)
 
 
 def _check_tips(plant: Plant, recordings: Sequence[Recording]) -> None:
@@ -129,7 +164,7 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
     if free is not None:
         refuse_unknown(plant, free, also=())
         return list(dict.fromkeys(free))
-    names = [name for name in known if _is_modal(plant, name)]
+    names = [name for name in known if is_modal(plant, name)]
     if "torque" in kinds:
         names += [name for name in known if name not in names and in_torque_alone(plant, name)]
     if not names:
@@ -140,158 +175,90 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
     return names
 
 
-def _pieces(recordings: Sequence[Recording], forced: bool) -> tuple[list[Piece], list[str], float]:
-    """What is fitted, the names of what is not, and the frequency of the swing [Hz]."""
-    joints = [Joint.of(one) for one in recordings]
-    known = list(zip(recordings, joints, strict=True))
-    stills = [still for one, joint in known for still in standstills(one, joint)]
-    frequency = strongest_frequency(_loudest(stills) or recordings)
-    if not _SLOWEST <= frequency <= _FASTEST:
-        raise ValueError(
-            f"{recordings[0].name} swings at {frequency:.3g} Hz, as no arm does; is its time in "
-            "another unit?"
-        )
-    whole = [Piece.of(*each) for each in known if each[1].moves]
-    found = [
-        Piece.of(decay, joint)
-        for one, joint in known
-        for decay in ring_downs(one, joint, frequency)
-    ]
-    taken = whole if forced or not found else found
-    if forced and len(whole) < len(known):
-        name = next(one.name for one, joint in known if not joint.moves)
-        raise ValueError(
-            f"{name}: the joint does not move, and what is sought shows while it moves alone; "
-            "record its angle during a move"
-        )
-    if not taken:
-        raise _too_short(recordings, frequency)
-    names = {piece.recording.name for piece in taken}
-    return taken, [one.name for one in recordings if one.name not in names], frequency
-
-
-def _too_short(recordings: Sequence[Recording], frequency: float) -> ValueError:
-    longest = max(one.periods(frequency) for one in recordings)
-    few = ""
-    if longest < LEAST_PERIODS:
-        few = f": it lasts {longest:.2g} periods of {frequency:.3g} Hz"
-    angle = "" if recordings[0].angle is not None else ", or record the joint's angle, too"
-    return ValueError(
-        f"{recordings[0].name} has no ring-down{few}; record the tip for two periods and more "
-        f"after a push, with the joint held{angle}"
-    )
-
-
-def _loudest(stills: Sequence[Recording]) -> list[Recording]:
-    """Those that swing a tenth as much as the one that swings most."""
-    sizes = [
-        max(float(values.std(axis=0).max()) for values in one.signals.values()) for one in stills
-    ]
-    return [one for one, size in zip(stills, sizes, strict=True) if size > 0.1 * max(sizes)]
-
-
-def _started(plant: Plant, modal: Sequence[str], frequency: float) -> Plant:
-    """The plant with the frequency of the swing, where it has but one to be set."""
-    of_modes = [name for name in modal if _unit(plant, name) == _FREQUENCY]
-    if len(of_modes) != 1:
-        return plant
-    return replace(plant, **{of_modes[0]: 2 * pi * frequency})
-
-
-@dataclass(frozen=True)
-class _Identification:
-    plant: Plant
-    names: list[str]
-    kinds: list[str]
-    pieces: list[Piece]
-    scaled: bool
-
-    def made(self, left_out: Sequence[str]) -> Identified:
-        start = np.array([getattr(self.plant, name) for name in self.names])
-        everything = Response(self.plant, self.names, self.kinds)
-        untold = not_told(everything, self.pieces, start, self.scaled)
-        names = [name for name in self.names if name not in untold]
-        if not names:
+def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
+    """The frequency of every recording's swing [Hz]: that of all, where it is a candidate."""
+    rests = [longest_rest(one) for one in recordings]
+    tables = [{f: prominence(one, f) for f in candidates(one)} for one in rests]
+    for one, table in zip(recordings, tables, strict=True):
+        if not any(table.values()):
+            if len(recordings) == 1:
+                raise ValueError(
+                    f"{one.name}: no swing stands out of the noise; push harder, or record longer "
+                    "and with more samples"
+                )
+            table[0.0] = 0.0
+    pooled: dict[float, float] = {}
+    for table in tables:
+        total = sum(table.values()) + 1e-300
+        for frequency, loud in table.items():
+            key = next((k for k in pooled if k and abs(frequency / k - 1) < 0.3), frequency)
+            pooled[key] = pooled.get(key, 0.0) + loud / total
+    common = max(pooled, key=lambda key: pooled[key])
+    found: list[float] = []
+    for table in tables:
+        near = {f: v for f, v in table.items() if common and abs(f / common - 1) < 0.3}
+        own = max(table, key=lambda f: table[f])
+        best = max(near, key=lambda f: near[f]) if near else own
+        found.append(best if near and near[best] > 0.05 * table[own] else own)
+    for one, frequency in zip(recordings, found, strict=True):
+        if frequency and not _SLOWEST <= frequency <= _FASTEST:
             raise ValueError(
-                f"the recordings tell nothing of {', '.join(self.names)}; name others by free"
+                f"{one.name} swings at {frequency:.3g} Hz, as no arm does; is its time in another "
+                "unit? say so by --units, as time:ms"
             )
-        response = Response(self.plant, names, self.kinds)
-        start = np.array([getattr(self.plant, name) for name in names])
-        among = fit(response, self.pieces, start, self.scaled)
-        self._check(among)
-        fitted = dict(zip(names, map(float, among.p), strict=True))
-        swung = self._long_enough(fitted)
-        if len(swung) < len(self.pieces):
-            there = {piece.recording.name for piece in swung}
-            every = dict.fromkeys(piece.recording.name for piece in self.pieces)
-            more = [name for name in every if name not in there]
-            return replace(self, pieces=swung).made([*left_out, *more])
-        alone = [fit(response, [one], among.p, self.scaled) for one in among.pieces]
-        estimates: list[Estimate] = []
-        for k, name in enumerate(names):
-            one = self._estimate(name, among, np.array([each.p[k] for each in alone]), k)
-            if one.low <= 0 or one.error >= 1:
-                ends = f"{max(one.low, 0.0):.3g} to {one.high:.3g}"
-                untold[name] = f"its interval, {ends}, is as wide as its value"
-            else:
-                estimates.append(one)
-        untold = {name: untold[name] for name in self.names if name in untold}
-        plant = replace(self.plant, **{one.parameter: one.value for one in estimates})
-        parts = tuple(self._part(response, among, alone, k) for k in range(len(alone)))
-        return Identified(
-            plant, fitted, tuple(estimates), untold, parts, tuple(left_out), versions()
-        )
+    return found
 
-    def _long_enough(self, found: Mapping[str, float]) -> list[Piece]:
-        """The pieces that last two periods of what was found: the spectrum of a short one errs."""
-        rates = [value for name, value in found.items() if _unit(self.plant, name) == _FREQUENCY]
-        if len(rates) != 1 or not self.scaled:
-            return self.pieces
-        frequency = rates[0] / (2 * pi)
-        long = [one for one in self.pieces if one.recording.periods(frequency) >= LEAST_PERIODS]
-        if not long:
-            raise _too_short([one.recording for one in self.pieces], frequency)
-        return long
 
-    def _check(self, among: Fit) -> None:
-        misfits = [
-            _misfit(piece, one.fitted) for piece, one in zip(among.pieces, among.parts, strict=True)
-        ]
-        if min(misfits) > _BAD:
+def _doubts(recordings: Sequence[Recording], frequencies: Sequence[float]) -> list[str]:
+    """What units may be wrong."""
+    found: list[str] = []
+    for one, frequency in zip(recordings, frequencies, strict=True):
+        if one.step >= _COARSE or 0 < frequency < _DOUBTFUL:
+            found.append(
+                f"{one.name}: {frequency:.3g} Hz by samples {one.step:.3g} s apart; is its time in "
+                "milliseconds? say so by --units time:ms"
+            )
+        if frequency > _FASTEST / 2:
+            found.append(
+                f"{one.name}: {frequency:.4g} Hz is fast for an arm; is its time in seconds? say "
+                "so by --units time:s"
+            )
+        if one.angle is not None and np.ptp(one.angle) > _TURNS:
+            found.append(
+                f"{one.name}: its joint turns by {np.ptp(one.angle):.3g} rad, more than two turns; "
+                "is it in degrees? say so by --units angle:deg"
+            )
+    return found
+
+
+def _forced(
+    recordings: Sequence[Recording], plant: Plant, names: list[str], frequencies: Sequence[float]
+) -> tuple[list[Part], dict[str, str]]:
+    """Every recording by all of its joint's motion, and what these do not tell."""
+    for one in recordings:
+        if not moves(one):
             raise ValueError(
-                f"{self.pieces[0].recording.name}: with no {' and '.join(self.names)} does "
-                f"{self.plant.name} move so, {min(misfits):.0%} of the signal is left; check "
-                "columns and units"
+                f"{one.name}: the joint does not move, and what is sought shows while it moves "
+                "alone; record its angle during a move"
             )
-
-    def _estimate(self, name: str, among: Fit, alone: Array, k: int) -> Estimate:
-        """The interval of the fit, or of the spread of its parts, whichever is wider."""
-        from scipy.stats import t  # not at the top: it takes long to load
-
-        value, half, by = float(among.p[k]), float(among.half_widths(_LEVEL)[k]), "fit"
-        if len(alone) > 1:
-            spread = float(
-                alone.std(ddof=1) / len(alone) ** 0.5 * t.ppf((1 + _LEVEL) / 2, len(alone) - 1)
-            )
-            if spread > half:
-                half, by = spread, "spread"
-        return Estimate(name, value, value - half, value + half, by)
-
-    def _part(self, response: Response, among: Fit, alone: Sequence[Fit], k: int) -> Fitted:
-        piece = among.pieces[k]
-        others = [*among.pieces[:k], *among.pieces[k + 1 :]]
-        held_back = None
-        if others:
-            p = fit(response, others, among.p, self.scaled).p
-            held_back = _misfit(piece, left(response, piece, p, self.scaled).fitted)
-        recording = piece.recording
-        return Fitted(
-            recording.name, float(recording.time[0]), float(recording.time[-1]),
-            tuple(map(float, alone[k].p)), _misfit(piece, among.parts[k].fitted), held_back,
-        )  # fmt: skip
-
-
-def _misfit(piece: Piece, fitted: Array) -> float:
-    """What is left, as a share of the signals' deviation; of several the largest."""
-    y = measured(piece.recording)
-    return float(((y - fitted).std(axis=0) / np.maximum(y.std(axis=0), 1e-300)).max())
+    modal, loudest = [name for name in names if is_modal(plant, name)], max(frequencies)
+    starts = [plant, *(started_at(plant, modal, loudest * factor) for factor in _FACTORS)]
+    thin = [_thinned(one, f) for one, f in zip(recordings, frequencies, strict=True)]
+    p = values_of(plant, names)
+    unknown = not_identifiable([_model(plant, names, one) for one in thin], names, p)
+    names = [name for name in names if name not in unknown]
+    if not names:
+        raise ValueError(
+            f"the recordings tell nothing of {', '.join(unknown)}; name others by free"
+        )
+    fits = [
+        fit_forced(_model(plant, names, one), list(dict.fromkeys(starts)), names) for one in thin
+    ]
+    least = min(fit.misfit for fit in fits)
+    if least > _BAD:
+        raise ValueError(
+            f"{thin[0].name}: with no {' and '.join(names)} does {plant.name} move so, {least:.0%} "
+            "of the signal is left; check columns and units"
+        )
+    each = zip(thin, fits, frequencies, strict=True)
+    return [described(one, names, fit, frequency) for one, fit, frequency in each], unknown

@@ -21,13 +21,11 @@ def read_numbers(
     path: Path,
     of_columns: Callable[[list[str] | None, Array], T],
     of_variables: Callable[[Mapping[str, Any]], T],
-    marked: bool = False,
 ) -> T:
     """What is made of a file's columns, with their names or None, or of its named arrays.
 
     By its ending: .npy, .npz, .mat (version 5), and text for any other, with commas, semicolons,
-    tabs or spaces between, whose first line may name the columns, `marked` also after a #. Nothing
-    in a file is run.
+    tabs or spaces between, whose first line may name the columns. Nothing in a file is run.
     """
     content, kind = read_bytes(path), path.suffix.lower()
     try:
@@ -42,7 +40,7 @@ def read_numbers(
             values = loadmat(io.BytesIO(content))
             return of_variables({k: v for k, v in values.items() if not k.startswith("__")})
         text = content.decode("utf-8-sig")
-        return of_columns(*_columns_in(text.lstrip("#% \r\n") if marked else text))
+        return of_columns(*_columns_in(text))
     except FileFormatError as error:
         raise FileFormatError(f"{path}: {error}") from None
     except UnicodeDecodeError:

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.profiles.free_motion import FreeMotion
-from quietarm.studies.export.tables import UNITS
 from quietarm.studies.identify.recording import MOST_ANGLE
-from quietarm.studies.reading.table import column_in, column_of, read_table
+from quietarm.studies.reading.table import read_table
 
 Array = NDArray[np.float64]
 _LEAST_ROWS, _MOST_ROWS = 5, 5000
@@ -38,8 +37,7 @@ def read_path(path: Path) -> RecordedPath:
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
     table = read_table(path)
-    names = {one: column_of(path, table, one, UNITS[one]) for one in ("time", "angle")}
-    time, angle = (column_in(path, table, names[one], "", UNITS[one]) for one in names)
+    time, angle = (table.in_si(table.first(one), one) for one in ("time", "angle"))
     _check(path, time, angle)
     turns = np.abs(angle).max() > 2 * np.pi
     if turns and "_" not in names["angle"]:

@@ -44,3 +44,8 @@ def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> Joint
         return shaped_cycloid(task, name)
     family = FAMILIES[name]
     return family() if terms is None else family(terms)
+
+
+def chooses_terms(name: str, terms: int | None) -> bool:
+    """Whether a plan chooses its number of terms: a polynomial's, where none is given."""
+    return name == POLYNOMIAL and terms is None

@@ -11,7 +11,9 @@ from quietarm.ocp import CycloidPolynomial, Floor, Motion, Plan, PointToPoint, S
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
+from quietarm.ocp.planning.terms import CHOSEN, OF_SIX
 from quietarm.ocp.record import AGREEMENT
 from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
 
@@ -34,6 +36,7 @@ def plan_rows(plan: Plan) -> list[Row]:
     return [
         *_move_rows(plan.task, plan.motion, settings.residual_limit if settings else 0.0),
         _choice(plan),
+        *_terms_rows(plan),
         *_figure_rows(plan.task, plan.motion),
         *([("turns back", f"by {back:.3g} rad on the way")] if back > _SEEN else []),
         *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
@@ -211,3 +214,17 @@ def _tip(task: PointToPoint) -> str:
     tips, scenarios = task.plant.tips, len(task.scenarios)
     words = "tip" if tips == 1 else f"worst of {tips} tips"
     return words if scenarios == 1 else f"{words}, worst of {scenarios} scenarios"
+
+
+def _terms_rows(plan: Plan) -> list[Row]:
+    """How many terms the plan chose, and what six would cost; none where they were given."""
+    found = plan.provenance.search
+    if CHOSEN not in found:
+        return []
+    energy, duration = (float(found.get(name) or 0) for name in (OF_SIX, DURATION_OF_SIX))
+    six = "" if energy or plan.worst is not None else "six terms find no motion"
+    if energy:
+        six = f"six would take {energy:.4g} J ({energy / plan.energy - 1:+.0%})"
+    if duration:
+        six = f"six would take {duration:.4g} s"
+    return [("terms", ", ".join(filter(None, [f"{found[CHOSEN]}, chosen for the limits", six])))]

@@ -8,36 +8,52 @@ from math import floor, log10, pi
 
 from quietarm.models import Plant
 from quietarm.studies.document.blocks import Document, Facts, Lines
-from quietarm.studies.identify import Estimate, Identified
-from quietarm.studies.identify.answer import POOR
+from quietarm.studies.identify import Estimate, Identified, Part, Prediction
 
-_BY = {"fit": "by the fit", "spread": "by the spread between parts"}
+_HUB = {
+    "": "",
+    "creeps": ", with the hub's motion",
+    "moves": ", all of the hub's motion with it",
+    "equations": ", all of the hub's motion with it",
+}
 
 
 def identified_document(found: Identified) -> Document:
     """The parameters with their intervals, then each part of the recordings."""
     rows = [("plant", found.plant.name)]
-    rows += [(one.parameter, _told(found.plant, one)) for one in found.told]
     rows += [
-        (name, f"not told: {why}; {getattr(found.plant, name):.4g} as given")
-        for name, why in found.untold.items()
+        (one.parameter, text) for one in found.estimates for text in _estimate(found.plant, one)
     ]
-    known = {one.parameter for one in found.told} | found.untold.keys()
+    rows += [
+        (name, f"not identifiable: {why}; {getattr(found.plant, name):.4g} as given")
+        for name, why in found.not_identifiable.items()
+    ]
+    known = {one.parameter for one in found.estimates} | found.not_identifiable.keys()
     given = [name for name in found.plant.measured if name not in known]
     if given:
         rows.append(("as given", ", ".join(_with_unit(found.plant, name) for name in given)))
-    for part in found.parts:
-        held = "" if part.held_back is None else f", {part.held_back:.1%} by the fit of the others"
-        rows.append(
-            (part.recording, f"{part.begin:.3g} to {part.end:.3g} s, {part.misfit:.1%} left{held}")
-        )
-    rows += [(name, "no ring-down of two periods in it: left out") for name in found.left_out]
+    rows += [(part.recording, _part(found.plant, part)) for part in found.parts]
+    rows += [(name, f"left out: {why}") for name, why in found.left_out.items()]
     return Document("", [Facts(rows), Lines(_notes(found, given))])
+
+
+def prediction_document(plant: Plant, predictions: Sequence[Prediction]) -> Document:
+    """How much of each ring-down a machine predicts."""
+    rows = [("plant", plant.name)]
+    for one in predictions:
+        worst = f"at worst {max(one.worst, 0):.1%} from {one.worst_at:.3g} s on"
+        rows.append((one.recording, f"{one.begin:.3g} to {one.end:.3g} s: {one.share:.1%} of the "
+                     f"swing predicted over five periods, {worst}; by itself {one.frequency:.4g} Hz"
+        ))  # fmt: skip
+    notes = ["The state is taken from two periods, and the five after them are predicted."]
+    return Document("", [Facts(rows), Lines(notes)])
 
 
 def _notes(found: Identified, given: Sequence[str]) -> list[str]:
     """What is to be known before the intervals are believed."""
-    notes = ["What is left is the root mean square, as a share of the recorded signal's."]
+    notes = [
+        "Left: root mean square of what the fit leaves, as a share of the swing's; and the noise's."
+    ]
     if given:
         notes.append(
             "Torque and energy depend on what is as given: set what you know by --set, as "
@@ -45,14 +61,53 @@ def _notes(found: Identified, given: Sequence[str]) -> list[str]:
         )
     if len(found.parts) == 1:
         notes.append(
-            "One ring-down does not tell whether the machine is always the same: give several."
+            "One ring-down does not tell how much the machine varies: record several. Until then "
+            "--error takes errors of your own, as frequency=5%."
         )
-    return notes + [
-        f"warning: {part.recording}: {part.misfit:.0%} is left, so that its interval says nothing. "
-        "Did the joint move? Name its angle by --angle, or leave the recording out."
-        for part in found.parts
-        if part.misfit > POOR
+    notes += [
+        f"The machine varies: {one.parameter} differs between ring-downs by more than their fits "
+        f"are uncertain{_by_amplitude(found, one)}."
+        for one in found.estimates
+        if one.varies
     ]
+    notes += [f"warning: {text}" for text in found.warnings]
+    return notes + [
+        f"warning: {part.recording}, {part.begin:.3g} to {part.end:.3g} s: {part.warning}"
+        for part in found.parts
+        if part.warning
+    ]
+
+
+def _by_amplitude(found: Identified, one: Estimate) -> str:
+    """Whether a parameter grows or falls with the amplitude, in words."""
+    from scipy.stats import spearmanr  # not at the top: it takes long to load
+
+    if len(found.parts) < 5:
+        return ""
+    sizes = [part.amplitude for part in found.parts]
+    if max(sizes) < 1.3 * min(sizes):
+        return ""
+    values = [part.values[one.parameter] for part in found.parts]
+    rank, chance = spearmanr(sizes, values)
+    if chance > 0.05:
+        return ""
+    return f", and {'grows' if rank > 0 else 'falls'} with the amplitude"
+
+
+def _part(plant: Plant, part: Part) -> str:
+    values = ", ".join(_short(plant, name, value) for name, value in part.values.items())
+    left = f"{part.misfit:.1%} left, noise {part.noise:.1%}"
+    saturated = f"; {part.saturated} saturated samples left out" if part.saturated else ""
+    drift = "; a slow motion left out" if part.drifts else ""
+    return (
+        f"{part.begin:.3g} to {part.end:.3g} s: {values}, {left}{_HUB[part.hub]}{saturated}{drift}"
+    )
+
+
+def _short(plant: Plant, name: str, value: float) -> str:
+    if _unit(plant, name) == "rad/s":
+        return f"{value / (2 * pi):.5g} Hz"
+    return f"{name} {value:.3g}"
 
 
 def _with_unit(plant: Plant, name: str) -> str:
@@ -64,11 +119,17 @@ def _unit(plant: Plant, name: str) -> str:
     return next(one.metadata.get("unit", "-") for one in fields(plant) if one.name == name)
 
 
-def _told(plant: Plant, one: Estimate) -> str:
+def _estimate(plant: Plant, one: Estimate) -> list[str]:
+    """The value with the mean's interval, and below it the next swing's."""
     unit = _unit(plant, one.parameter)
     size, words = 1.0, "" if unit == "-" else f" {unit}"
     if unit == "rad/s":
         size, words = 2 * pi, " Hz"
-    digits = max(3, 1 - floor(log10(one.error)))  # two of the interval
-    value, low, high = (f"{x / size:.{digits}g}" for x in (one.value, one.low, one.high))
-    return f"{value}{words}, within {low} to {high}{words} (95 %, {_BY[one.by]})"
+    share = max((one.high - one.low) / 2 / abs(one.value), 1e-12) if one.value else 1.0
+    digits = max(4, 1 - floor(log10(share)))  # two of the interval
+    text = lambda x: f"{x / size:.{digits}g}"  # noqa: E731
+    lines = [f"{text(one.value)}{words}, within {text(one.low)} to {text(one.high)}{words} (95 %)"]
+    if one.next_low is not None and one.next_high is not None:
+        ends = f"{text(one.next_low)} to {text(one.next_high)}"
+        lines.append(f"of the next swing within {ends}{words} (95 %)")
+    return lines

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from quietarm.ocp.robustness.perturbed import sensitivities_of_moves
 from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
 
-Columns = dict[str, NDArray[np.float64]]
+Columns = dict[str, NDArray[Any]]
 """Variables by name, a row a cell; NaN where a cell has no plan."""
 _CHECKED, _COLD_STARTS = 10, 4
 """One cell in so many, at random, is planned from so many starts of its own as well."""
@@ -48,7 +49,7 @@ def _plan_group(definition: Definition, tasks: list[PointToPoint], seed: int) ->
         for name, (energy, residual) in changes.items():
             columns[f"energy_by_{name}"][solved] = energy
             columns[f"residual_by_{name}"][solved] = residual
-    for k in solved if definition.front else ():
+    for k in solved.tolist() if definition.front else ():
         _add_front(definition, tasks[k], columns, k)
     return columns
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from scipy.interpolate import BarycentricInterpolator
 
 Array = NDArray[np.float64]
 ORDERS = (6, 4, 2)
@@ -96,7 +97,7 @@ class Interpolation:
             np.clip(np.searchsorted(axis, values, side="right") - 1, 0, len(axis) - 2)
             for axis, values in zip(self.axes, places.T, strict=True)
         ])  # fmt: skip
-        boxes = np.ravel_multi_index(tuple(corners), self.orders.shape)
+        boxes: Any = np.ravel_multi_index(tuple(corners), self.orders.shape)
         order = np.argsort(boxes, kind="stable")
         for rows in np.split(order, np.flatnonzero(np.diff(boxes[order])) + 1):
             if len(rows):
@@ -107,8 +108,6 @@ class Interpolation:
 
     def _through(self, box: tuple[int, ...], places: Array) -> Array:
         """Values of the polynomial of a box; NaN where it has none."""
-        from scipy.interpolate import BarycentricInterpolator  # sweeps do without it
-
         order = int(self.orders[box])
         if order == 0:
             return np.full((len(places), self.cells.shape[-1]), np.nan)
@@ -126,4 +125,4 @@ class Interpolation:
         near = [int(np.abs(axis - at).argmin()) for axis, at in zip(self.axes, place, strict=True)]
         values = [axis[k] for axis, k in zip(self.axes, near, strict=True)]
         same = np.allclose(values, place, rtol=_SAME, atol=_SAME)
-        return self.cells[tuple(near)] if same else np.nan
+        return self.cells[tuple(near)] if same else np.full(self.cells.shape[-1], np.nan)

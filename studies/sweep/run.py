@@ -103,7 +103,7 @@ def run_sweep(
     missing = store.missing(part)
     number = 1 if not missing or scheduler else min(workers, len(missing))
     with _backend(scheduler):
-        parallel = Parallel(n_jobs=number, return_as="generator_unordered", batch_size=1)
+        parallel: Any = Parallel(n_jobs=number, return_as="generator_unordered")
         work = (delayed(_plan_numbered)(store.definition, number) for number in missing)
         for done, (number, columns) in enumerate(parallel(work), start=1):
             with note_interrupts() as came:

@@ -7,6 +7,8 @@ import os
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
-NEEDS = f"the dataset of a sweep needs xarray, zarr and joblib; {install('sweep')}"
+NEEDS = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
 _FORMAT = "quietarm-sweep"
 
 
@@ -78,10 +80,8 @@ class Store:
         self._write({JUMP: (self._dims, find_jumps(axes, self.read(COEFFICIENTS)))})
 
     def _write(self, variables: Mapping[str, Any], **place: Any) -> None:
-        import xarray as xr
-
         try:
-            xr.Dataset(variables).to_zarr(self.path, mode="r+", consolidated=False, **place)
+            _xarray().Dataset(variables).to_zarr(self.path, mode="r+", consolidated=False, **place)
         except OSError as error:  # nothing is damaged: the chunk counts as not computed
             raise QuietarmError(
                 f"{self.path}: {error.strerror or error}; make room, and give the same line again"
@@ -143,13 +143,9 @@ def damage_told(path: Path) -> Iterator[None]:
 
 
 def _xarray() -> Any:
-    try:
-        import joblib  # noqa: F401
-        import xarray
-        import zarr  # noqa: F401
-    except ImportError:
-        raise ValueError(NEEDS) from None
-    return xarray
+    if find_spec("xarray") is None or find_spec("zarr") is None:
+        raise ValueError(NEEDS)
+    return import_module("xarray")
 
 
 def _open(path: Path) -> xarray.Dataset:

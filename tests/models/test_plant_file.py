@@ -57,3 +57,10 @@ def test_a_file_that_gives_no_plant_is_refused_with_the_line(tmp_path, name, con
     assert told in str(error.value)
     assert "\n" not in str(error.value)
     assert known_plants() == before
+
+
+def test_a_plant_file_may_import_what_stands_beside_it(tmp_path, crane_file):
+    (tmp_path / "lengths_of_a_crane.py").write_text("PENDULUM = 1.5\n")
+    path = tmp_path / "own.py"
+    path.write_text("from lengths_of_a_crane import PENDULUM\n" + crane_file.read_text())
+    assert list(load_plant_file(path)) == ["crane"]

@@ -108,3 +108,18 @@ def test_every_parameter_has_a_unit_and_a_source(plant):
     for entry in fields(plant):
         assert entry.metadata["unit"], entry.name
         assert entry.metadata["source"], entry.name
+
+
+def test_a_linear_axis_is_two_masses_and_a_spring():
+    # mass M with a load m on a spring, m (x'' + W'') = -m omega^2 W - 2 m zeta omega W': the force
+    # on the carriage is (M - m) x'' + m (x'' + W'') + c x'
+    axis = qa.LinearAxis(omega1=20.0, zeta1=0.1, mass=5.0, load=2.0, friction=3.0)
+    joint = qa.JointMotion(0.2, 0.5, 7.0)
+    (ddW,) = axis.modal_accelerations(joint, [0.01], [0.3])
+    assert ddW == pytest.approx(-7.0 - 2 * 0.1 * 20.0 * 0.3 - 400.0 * 0.01)
+    force = axis.torque(joint, [0.01], [0.3], [ddW])
+    assert force == pytest.approx((5.0 - 2.0) * 7.0 + 2.0 * (7.0 + ddW) + 3.0 * 0.5)
+    assert qa.joint_unit("rad/s^2", axis.joint) == "m/s^2"
+    for wrong, told in (({"load": 9.0}, "load is 9 kg"), ({"share1": 1.2}, "shares of the swing")):
+        with pytest.raises(ValueError, match=told):
+            qa.LinearAxis(**wrong)

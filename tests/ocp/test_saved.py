@@ -41,6 +41,17 @@ def test_an_answer_comes_back_equal(plan, saved, tasks, tmp_path):
     assert qa.Plan.load(tmp_path / "guess.json").provenance.settings.guess == (0.01, 0.02)
 
 
+def test_limits_by_direction_and_speed_come_back_and_older_files_load(plan, saved, tasks, tmp_path):
+    task = replace(tasks["arm"], acceleration_limit=(-30, 40), torque_speed=[(1.5, 0), (0.8, 20)])
+    limited = qa.evaluate_coefficients(task, [0.01, -0.1])
+    limited.save(tmp_path / "limited.json")
+    assert qa.Plan.load(tmp_path / "limited.json") == limited
+    document = json.loads(saved.read_text())
+    del document["task"]["torque_speed"], document["motion"]["ranges"]
+    saved.write_text(json.dumps(document))
+    assert qa.Plan.load(saved) == plan
+
+
 @pytest.mark.parametrize(
     "spoil",
     [
@@ -62,6 +73,7 @@ def test_what_is_not_whole_json_is_refused(saved, spoil):
         ("task/duration", -1.0, "duration is -1 s"),
         ("task/plant/name", "crane", "crane"),
         ("profile/terms", 99, "terms is 99"),
+        ("task/torque_sped", [[1.0, 0.0], [0.5, 2.0]], "torque_sped"),
     ],
 )
 def test_a_wrong_entry_is_named(saved, place, value, word):

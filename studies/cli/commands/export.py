@@ -68,25 +68,25 @@ def export(
       quietarm export moves.zarr --output moves.c
       quietarm export plan.json zvd.json --output move.gif --speed 25%
     """  # noqa: D301  # \b is click's: do not rewrap
-    form = format_of(output, form)
-    known = FORMATS[form]
-    for name in settings:
-        if typed(name) and name not in known.takes:
-            takers = [one for one, each in FORMATS.items() if name in each.takes]
-            option = name.replace("_", "-")
-            raise ValueError(f"--{option} is for {', '.join(takers)}, not for {form}; leave it out")
-    settings = {name: settings[name] for name in known.takes if settings[name] is not None}
+    name = format_of(output, form)
+    known = FORMATS[name]
+    for option in settings:
+        if typed(option) and option not in known.takes:
+            takers = [one for one, each in FORMATS.items() if option in each.takes]
+            words = option.replace("_", "-")
+            raise ValueError(f"--{words} is for {', '.join(takers)}, not for {name}; leave it out")
+    settings = {one: settings[one] for one in known.takes if settings[one] is not None}
     if not known.is_film and len(plans) > 1:
-        raise ValueError(f"{form} is of one plan, and {len(plans)} are given; give one")
+        raise ValueError(f"{name} is of one plan, and {len(plans)} are given; give one")
     if len(plans) == 1 and plans[0].is_dir():
-        if form != "c":
+        if name != "c":
             raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
         written, size = export_moves(plans[0], output), []
     elif known.is_film:
-        written, size = [output], [_write_film(plans, output, form, quiet, settings)]
+        written, size = [output], [_write_film(plans, output, name, quiet, settings)]
     else:
         (plan,) = load_plans(plans).values()
-        written, size = export_plan(plan, output, form, **settings), []
+        written, size = export_plan(plan, output, name, **settings), []
     finish([], Document("", [Lines([*size, *(f"wrote {path}" for path in written)])]))
 
 

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import click
 from quietarm.models import Plant
 from quietarm.studies import figures
+from quietarm.studies import identify as identification
 from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.options import command, quiet_option
+from quietarm.studies.cli.files import PICTURE, files_of, output_option
+from quietarm.studies.cli.options import command, plant_file, quiet
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
-from quietarm.studies.cli.task import plant_file_option
-from quietarm.studies.cli.types import INPUT, JSON_FILE, PICTURE, SETTING, Parsed
+from quietarm.studies.cli.types import INPUT, SETTING, Parsed
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import drawing
-from quietarm.studies.identify import Identified
-from quietarm.studies.identify import identify as identified
-from quietarm.studies.reading.recording import read_recording, units_of
-from quietarm.studies.reports.identify import identified_document
+from quietarm.studies.reading.recording import part_of, read_recording, scale_of, units_of
+from quietarm.studies.reports.identify import identified_document, prediction_document
 from rich.console import Console
 
 
-def _plant_at_the_end(name: str) -> type[Plant] | Identified:
+def _plant_at_the_end(name: str) -> type[Plant] | identification.Identified:
     try:
         return parse_plant(name)
     except ValueError as error:
@@ -30,9 +29,7 @@ def _plant_at_the_end(name: str) -> type[Plant] | Identified:
 
 
 @command()
-@click.argument("recordings", type=INPUT, nargs=-1, required=True, metavar="RECORDING...")
-@click.argument("plant", type=Parsed("plant", _plant_at_the_end), metavar="PLANT")
-@plant_file_option()
+@click.argument("files", type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT")
 @click.option("--set", "parameters", type=SETTING, multiple=True,
               help="What is known of the plant, as length=0.6 (SI); may be repeated.")  # fmt: skip
 @click.option("--time", help="Column of the time.  [default: the one that is called so]")
@@ -42,36 +39,43 @@ def _plant_at_the_end(name: str) -> type[Plant] | Identified:
               help="Column of an accelerometer at the tip, across; one for each tip.")  # fmt: skip
 @click.option("--torque", help="Column of the joint's torque.")
 @click.option("--units", type=Parsed("units", units_of), default={},
-              help="Of columns whose names do not end in them, as time:ms,angle:deg,tip:mm,"
+              help="Of columns whose names do not have them, as time:ms,angle:deg,tip:mm,"
               "acceleration:g. [default: SI]")  # fmt: skip
+@click.option("--scale", "scales", type=Parsed("scale", scale_of), multiple=True,
+              help="What a count is in SI units, as angle=2pi/4096; may be repeated.")  # fmt: skip
+@click.option("--part", "parts", type=Parsed("begin:end", part_of), multiple=True,
+              help="Where a ring-down begins and ends [s], as 3.2:7.3; may be repeated. "
+              "[default: they are found]")  # fmt: skip
 @click.option("--free", type=Parsed("names", lambda text: [one.strip() for one in text.split(",")]),
               help="The parameters that are sought, as omega,zeta. [default: frequencies and "
               "dampings, and with a torque what shows in it alone]")  # fmt: skip
-@click.option("--output", type=JSON_FILE,
-              help="Write the machine to this JSON file, which serves as a PLANT.")  # fmt: skip
-@click.option("--figure", type=PICTURE, help="Draw recordings and fit (.png, .pdf or .svg).")
-@quiet_option
+@click.option("--check", type=Parsed("machine", parse_plant),
+              help="A machine that was identified: how much of the recordings it predicts. PLANT "
+              "is left out.")  # fmt: skip
+@output_option({".json": "the machine, which serves as a PLANT", PICTURE: "a picture of the fit"})
+@click.pass_context
 def identify(
-    recordings: tuple[Path, ...],
-    plant: type[Plant],
-    plant_file: Mapping[str, type[Plant]] | None,
+    context: click.Context,
+    files: tuple[Path, ...],
     parameters: tuple[tuple[str, str], ...],
     units: Mapping[str, str],
+    scales: tuple[tuple[str, float], ...],
+    parts: tuple[tuple[float, float], ...],
     free: list[str] | None,
-    output: Path | None,
-    figure: Path | None,
-    quiet: bool,
+    check: type[Plant] | identification.Identified | None,
+    output: Sequence[Path],
     **named: str | tuple[str, ...] | None,
 ) -> None:
     """Fit parameters of PLANT to each RECORDING of a machine: csv, npy, or MATLAB's up to v7.
 
-    Ring-downs are found by themselves. Where the joint's angle is recorded, how the tip follows the
-    joint is fitted, too.
+    Ring-downs are found, and each is fitted alone; two intervals tell how well the mean is known,
+    and where the next swing will be. Where the joint's angle is recorded, its motion counts, too.
 
     \b
     Examples:
-      quietarm identify push.csv flexible-beam --tip tip_mm --output arm.json
+      quietarm identify push*.csv flexible-beam --tip tip_mm --output arm.json --output fit.png
       quietarm identify run*.mat flexible-beam --time t --angle theta --tip w --output arm.json
+      quietarm identify --check arm.json new.csv --tip tip_mm
       quietarm plan arm.json --error measured --target 60deg --duration 0.9
     """  # noqa: D301  # \b is click's: do not rewrap
     columns = {
@@ -80,13 +84,22 @@ def identify(
     }
     if not any(columns[one] for one in ("tip", "acceleration", "torque")):
         raise click.UsageError("give the column of what rings: --tip, --acceleration or --torque")
-    short = len({path.name for path in recordings}) == len(recordings)
+    kind = check or Parsed("plant", _plant_at_the_end).convert(str(files[-1]), None, context)
+    paths = files if check else files[:-1]
+    if not paths:
+        raise click.UsageError("give a RECORDING before PLANT")
+    known = chosen_plant(kind, plant_file(), parameters)
+    short = len({path.name for path in paths}) == len(paths)
     read = [
-        read_recording(path, columns, units, path.name if short else str(path))
-        for path in recordings
+        read_recording(path, columns, units, path.name if short else str(path), dict(scales))
+        for path in paths
     ]
-    known = chosen_plant(plant, plant_file, parameters)
-    with working("fitting", Console(stderr=True), quiet=quiet):
-        found = identified(read, known, free)
+    if check:
+        if output or parts or free:
+            raise click.UsageError("--check fits nothing: leave --output, --part and --free out")
+        finish([], prediction_document(known, identification.predict(known, read)))
+        return
+    with working("fitting", Console(stderr=True), quiet=quiet()):
+        found = identification.identify(read, known, free, parts)
     picture = drawing(lambda: figures.identification_figure(found, read))
-    finish([(output, found.save), (figure, picture)], identified_document(found))
+    finish(files_of(output, {".json": found.save, PICTURE: picture}), identified_document(found))

@@ -36,7 +36,7 @@ from quietarm.studies.cli.task import NAMES, TypedMove, task_options
 from quietarm.studies.cli.types import INPUT
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import File, drawing
-from quietarm.studies.registry.profiles import FAMILIES, profile_of
+from quietarm.studies.registry.profiles import FAMILIES, chooses_terms, profile_of
 from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
 from quietarm.studies.sweep.grid import OF_MOVES
 from rich.console import Console
@@ -104,7 +104,7 @@ def plan(
         _plan_freely(move, FREE[profile], asked["starts"], asked["seed"], output)
         return
     task, notes = move.task(), list[str]()
-    motions = profile_of(profile, task, terms)
+    motions = None if chooses_terms(profile, terms) else profile_of(profile, task, terms)
     errors = Console(stderr=True)
     if move.fastest:
         if typed("starts"):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from quietarm.ocp import QuietarmError, SolveSettings
+from quietarm.ocp.planning.terms import choose_profile
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import DATASET, PICTURE, ending_of, files_of, output_option
 from quietarm.studies.cli.options import (
@@ -24,7 +25,7 @@ from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import SHARE
 from quietarm.studies.display.progress import count
 from quietarm.studies.display.saving import drawing
-from quietarm.studies.registry.profiles import profile_of
+from quietarm.studies.registry.profiles import chooses_terms, profile_of
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -98,6 +99,8 @@ def sweep(
             "or --yes"
         )
     motions, errors = profile_of(profile, grid.task, terms), Console(stderr=True)
+    if chooses_terms(profile, terms):
+        motions = choose_profile(grid.task)
     definition = Definition(
         grid,
         motions,

@@ -160,7 +160,7 @@ def many(plant: Any) -> Answer:
 
 def fastest() -> Answer:
     """The shortest duration within a limit of the torque."""
-    found = qa.fastest_move(link(torque_limit=0.2))
+    found = qa.fastest_move(link(torque_limit=0.2), qa.CycloidPolynomial(6))
     return {"duration": found.plan.task.duration}
 
 
@@ -173,11 +173,11 @@ def swing(omega: float, zeta: float, rate: float, seconds: float) -> tuple[NDArr
 
 
 def identified(plant: Any, omega: float, zeta: float) -> Answer:
-    """Parameters from a made-up ring-down, with the ends of their intervals."""
+    """Parameters from a made-up ring-down."""
     time, tip = swing(omega, zeta, 200.0, 6.0)
     package = qa if hasattr(qa, "identify") else import_module("quietarm.studies.identify")
     found = package.identify([package.Recording(time, tip=tip)], plant)
-    return {one.parameter: [one.value, one.low, one.high] for one in found.told}
+    return {one.parameter: one.value for one in found.estimates}
 
 
 def _plans() -> dict[str, Question]:

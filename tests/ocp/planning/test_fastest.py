@@ -6,6 +6,7 @@ from math import pi
 import pytest
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
+    CycloidPolynomial,
     InfeasibleTaskError,
     PointToPoint,
     fastest_move,
@@ -13,11 +14,12 @@ from quietarm.ocp import (
 )
 
 LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8, torque_limit=0.15)
+SIX = CycloidPolynomial(6)
 
 
 @pytest.fixture(scope="module")
 def fastest():
-    return fastest_move(LINK)
+    return fastest_move(LINK, SIX)
 
 
 def test_the_plan_keeps_its_limits_and_a_shorter_one_fails(fastest):
@@ -28,7 +30,7 @@ def test_the_plan_keeps_its_limits_and_a_shorter_one_fails(fastest):
     assert fastest.duration / (1 + 1e-3) <= duration < fastest.duration
     assert "torque limit" in why
     with pytest.raises(InfeasibleTaskError):
-        plan_move(replace(LINK, duration=duration))
+        plan_move(replace(LINK, duration=duration), SIX)
     # and neither do others farther below it
     assert min(shorter for shorter, _ in fastest.failed) < 0.85 * fastest.duration
 

@@ -97,3 +97,43 @@ def test_plans_are_kept_and_do_not_depend_on_how_the_coefficients_are_said_to_en
         plan.save(tmp_path / "plan.json")
         assert qa.Plan.load(tmp_path / "plan.json") == plan
     assert plans[0].energy == pytest.approx(plans[1].energy, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("factors", "told"),
+    [
+        ((0.9, 0.9, 0.9), "its angle is .* at 1 of the duration"),
+        ((1.0, 1.1, 1.1), "its speed is .* where the derivative of the angle is"),
+        ((1.0, 1.0, 0.5), "its acceleration is .* where the derivative of the speed is"),
+        ((1.0, 1.0, math.nan), "its acceleration is nan"),
+    ],
+)
+def test_a_profile_that_is_wrong_gives_no_record(tasks, factors, told):
+    @dataclass(frozen=True)
+    class Wrong(_Waves):
+        name: ClassVar[str] = "wrong-waves-of-a-test"
+
+        def derivatives(self, coefficients, fraction, start, target, duration):
+            angle, *others = super().derivatives(coefficients, fraction, start, target, duration)
+            values = angle - start, *others
+            angle, *others = (f * x for f, x in zip(factors, values, strict=True))
+            return start + angle, *others
+
+    with pytest.raises(ValueError, match=f"profile 'wrong-waves-of-a-test': {told}"):
+        qa.plan_move(tasks["arm"], Wrong(4))
+    with pytest.raises(ValueError, match=told):
+        qa.evaluate_coefficients(tasks["arm"], [0.0] * 4, profile=Wrong(4))
+
+
+def test_a_profile_that_still_moves_on_arrival_is_refused(tasks):
+    @dataclass(frozen=True)
+    class Ramp(qa.JointProfile):
+        name: ClassVar[str] = "ramp-of-a-test"
+        size = 1
+
+        def derivatives(self, coefficients, fraction, start, target, duration):
+            span = target - start
+            return start + span * fraction, span / duration + 0 * fraction, 0 * fraction
+
+    with pytest.raises(ValueError, match=r"its speed is .* where rest at both ends is 0"):
+        qa.plan_move(tasks["arm"], Ramp())

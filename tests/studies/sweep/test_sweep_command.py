@@ -38,7 +38,7 @@ def same(one, other):
 def test_one_axis_is_shown_as_a_table_and_too_short_a_move_says_so(call, folder):
     code, out, err = call(
         "sweep single-link --target 30deg --duration 400ms:1.2s:400ms --acceleration-limit 40 "
-        "--quiet --output times.zarr --output times.png"
+        "--terms 6 --quiet --output times.zarr --output times.png"
     )
     assert (code, err) == (0, "")
     assert (folder / "times.png").read_bytes().startswith(b"\x89PNG")
@@ -114,7 +114,8 @@ def test_two_parts_and_a_killed_run_end_as_one_that_ran_through(call, folder):
 
 
 def test_workers_here_and_of_a_cluster_make_the_same_dataset(call, folder):
-    line = MOVES.replace("10ms", "20ms") + " --error frequency=1%"
+    axes = "--target 30deg,60deg --duration 800ms:1.2s:80ms"
+    line = f"sweep single-link {axes} --terms 3 --error frequency=1% --quiet"  # two chunks
     assert call(f"{line} --workers 1 --output one.zarr")[0] == 0
     one = dataset("one.zarr")
     assert call(f"{line} --workers 2 --output two.zarr")[0] == 0

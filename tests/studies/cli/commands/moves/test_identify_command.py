@@ -15,35 +15,45 @@ TIP = 20 * SWING + np.random.default_rng(0).standard_normal(len(TIME))  # mm
 PUSH = "identify push.csv flexible-beam --quiet --tip tip_mm"
 
 
+def write(path, tip, header="time_s,tip_mm", time=TIME):
+    rows = "".join(f"{t:.4g},{x:.2f}\n" for t, x in zip(time, tip, strict=True))
+    path.write_text(f"{header}\n{rows}")
+
+
 @pytest.fixture
 def push(folder):
-    rows = "".join(f"{t:.3f},{tip:.1f}\n" for t, tip in zip(TIME, TIP, strict=True))
-    (folder / "push.csv").write_text(f"time_s,tip_mm\n{rows}")
-    rows = "".join(f"{1e3 * t:.0f},{tip:.1f}\n" for t, tip in zip(TIME, TIP, strict=True))
-    (folder / "ms.csv").write_text(f"time,tip\n{rows}")
+    write(folder / "push.csv", TIP)
+    for k in range(2):
+        noise = np.random.default_rng(k + 1).standard_normal(len(TIME))
+        write(folder / f"again{k}.csv", 18 * SWING + noise)
     return folder
 
 
-def test_a_push_makes_a_machine_that_is_planned_for(push, call):
-    code, out, err = call(f"{PUSH} --set length=0.6 --output arm.json --figure fit.png")
+def test_pushes_make_a_machine_that_is_planned_for(push, call, refused):
+    code, out, err = call(f"{PUSH} --set length=0.6 --output one.json")
     assert (code, err) == (0, "")
-    assert " Hz, within 3." in out
-    assert "wrote arm.json" in out
+    assert "One ring-down does not tell how much the machine varies" in out
+    plan = "--quiet --set friction=0.02 --target 30deg --duration 1 --error measured"
+    assert "one ring-down does not tell" in refused(f"plan one.json {plan}")
+    line = PUSH.replace("push.csv", "push.csv again0.csv again1.csv")
+    code, out, err = call(f"{line} --set length=0.6 --output arm.json --output fit.png")
+    assert (code, err) == (0, "")
+    assert "of the next swing within 3." in out
     assert (push / "fit.png").read_bytes().startswith(b"\x89PNG")
     found = Identified.load(push / "arm.json")
     assert found.plant.length == 0.6
-    code, out, err = call(
-        "plan arm.json --quiet --set friction=0.02 --target 30deg --duration 1 --error measured "
-        "--output plan.json"
-    )
+    code, out, err = call(f"plan arm.json {plan} --output plan.json")
     assert (code, err) == (0, "")  # friction shows in the torque alone
     task = Plan.load(push / "plan.json").task
     assert task.ranges == found.errors
     assert (task.plant.friction, task.plant.omega) == (0.02, found.plant.omega)
+    code, out, err = call("identify --check arm.json again1.csv --tip tip_mm --quiet")
+    assert (code, err) == (0, "")
+    assert "of the swing predicted over five periods, at worst" in out
 
 
 def test_another_tip_mass_keeps_the_measured_frequency_and_says_so(push, call, refused):
-    call(f"{PUSH} --output arm.json")
+    call(f"{PUSH.replace('push.csv', 'push.csv again0.csv')} --output arm.json")
     beam = Identified.load(push / "arm.json").plant
     line = "plan arm.json --quiet --target 30deg --duration 1"
     code, _, err = call(f"{line} --set tip_mass=0.1 --output plan.json")
@@ -62,34 +72,75 @@ def test_another_tip_mass_keeps_the_measured_frequency_and_says_so(push, call, r
     assert "with omega" in said
 
 
-def test_files_of_other_programs_tell_the_same(push, call):
+def rows(form, *columns):
+    return "".join(form % row for row in zip(*columns, strict=True))
+
+
+TEXTS = {
+    "klipper.csv": ("##errors=0\n#time,accel_x,accel_y\n", "%.3f,%.3f,0\n", 1e3,
+                    "--acceleration accel_x --units acceleration:mm/s^2"),
+    "labview.lvm": ("LabVIEW Measurement\n***End_of_Header***\nX_Value\tUntitled\tComment\n",
+                    "%.3f\t%.3f\t\n", 1, "--tip Untitled --units tip:mm"),
+    "scope.csv": ("Model,X1\nRecord length,1000\n\ntime,tip\n(s),(mm)\n", "%.3f,%.3f\n", 1,
+                  "--tip tip"),
+    "marked.txt": ("#my rig, push 1\n#time_s\ttip_mm\n", "%.3f\t%.3f\n", 1, "--tip tip_mm"),
+    "trailing.csv": ("time_s,tip_mm,\n", "%.3f,%.3f,\n", 1, "--tip tip_mm"),
+    "slash.csv": ("t/s;w/mm\n", "%.3f;%.3f\n", 1, "--tip w/mm"),
+    "counts.csv": ("time_s,laser_counts\n", "%.3f,%.0f\n", 100,
+                   "--tip laser_counts --scale tip=1e-5"),
+    "numbers.dat": ("", "%.3f %.3f\n", 1, "--time 0 --tip 1 --units tip:mm"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_texts_of_other_programs_tell_the_same(push, call, name):
+    header, form, size, options = TEXTS[name]
+    (push / name).write_text(header + rows(form, TIME, size * TIP))
+    same(call, f"identify {name} flexible-beam {options}")
+
+
+def same(call, line):
+    code, _, err = call(f"{line} --quiet --output arm.json")
+    assert (code, err) == (0, "")
+    omega, zeta = Identified.load("arm.json").estimates
+    assert omega.low < OMEGA < omega.high, line
+    assert zeta.value == pytest.approx(ZETA, rel=0.1)
+
+
+def test_arrays_and_german_texts_tell_the_same(push, call):
     np.save(push / "push.npy", np.column_stack([TIME, TIP]))
     savemat(push / "push.mat", {"t": TIME, "w": TIP, "rate": 200.0})
-    rows = "".join(f"{t:.3f},{a:.2f},0,9810\n" for t, a in zip(TIME, 1e3 * SWING, strict=True))
-    (push / "push-raw.csv").write_text(f"#time,accel_x,accel_y,accel_z\n{rows}")
+    savemat(push / "nested.mat", {"run": {"t": TIME, "X": np.column_stack([0 * TIP, TIP])}})
     (push / "german.csv").write_text((push / "push.csv").read_text().translate({44: 59, 46: 44}))
+    milliseconds = rows("%.0f,%.2f\n", 1e3 * TIME, TIP)
+    (push / "ms.csv").write_text(f"Time (ms),tip [mm]\n{milliseconds}")
     for line in (
         PUSH,
         "identify push.npy flexible-beam --time 0 --tip 1 --units tip:mm",
         "identify push.mat flexible-beam --tip w",
-        "identify push-raw.csv flexible-beam --acceleration accel_x --units acceleration:mm/s^2",
+        "identify nested.mat flexible-beam --time run.t --tip run.X:2",
         "identify german.csv flexible-beam --tip tip_mm",
+        "identify ms.csv flexible-beam --tip tip",
+        "identify push.csv ms.csv flexible-beam --time 0 --tip 1",
     ):
-        code, _, err = call(f"{line} --quiet --output arm.json")
-        assert (code, err) == (0, "")
-        omega, zeta = Identified.load(push / "arm.json").told
-        assert omega.low < OMEGA < omega.high, line
-        assert zeta.value == pytest.approx(ZETA, rel=0.1)
+        same(call, line)
 
 
 @pytest.mark.parametrize(
     ("line", "said"),
     [
         ("identify push.csv flexible-beam --quiet", "give the column of what rings"),
-        (f"{PUSH.replace('tip_mm', 'tip')}", "unknown column 'tip'; did you mean 'tip_mm'?"),
-        (f"{PUSH} --units tip:inch", "unknown unit of tip 'inch'"),
+        (f"{PUSH.replace('tip_mm', 'top')}", "no column 'top'"),
+        (f"{PUSH.replace('tip_mm', 'top')}", "its columns, from 0, are time_s, tip_mm"),
+        (f"{PUSH} --units tip:furlong", "unknown unit of tip 'furlong'"),
+        (f"{PUSH} --part 7:3", "give its begin and end in seconds, as 3.2:7.3"),
+        (f"{PUSH} --scale tip=0", "'0' is no scale"),
+        ("identify hours.csv flexible-beam --tip tip_mm", "is 'h' of column time_h a unit?"),
+        ("identify twice.csv flexible-beam --tip tip_mm", "2 columns are called 'tip_mm'"),
+        ("identify word.csv flexible-beam --tip tip_mm", "line 6: 'abc' is no number"),
+        ("identify --check none.json push.csv --tip tip_mm", "none.json"),
         (f"{PUSH} --units time:ms", "column time_s is in s by its name and in ms as given"),
-        ("identify ms.csv flexible-beam --tip tip", "0.00319 Hz, as no arm does"),
+        ("identify slow.csv flexible-beam --tip tip_mm", "Hz, as no arm does"),
         (
             "plan single-link --target 1 --duration 1 --error measured",
             "--error measured is for an identified machine",
@@ -97,4 +148,12 @@ def test_files_of_other_programs_tell_the_same(push, call):
     ],
 )
 def test_what_cannot_be_is_refused(push, refused, line, said):
+    write(push / "hours.csv", TIP, "time_h,tip_mm")
+    (push / "slow.csv").write_text("time,tip_mm\n" + rows("%.0f,%.2f\n", 1e3 * TIME, TIP))
+    (push / "twice.csv").write_text(
+        "time_s,tip_mm,tip_mm\n" + rows("%.3f,%.2f,%.2f\n", TIME, TIP, TIP)
+    )
+    (push / "word.csv").write_text(
+        "time_s,tip_mm\n0,1\n1,2\n2,3\n3,4\n4,abc\n" + rows("%.3f,%.2f\n", 5 + TIME, TIP)
+    )
     assert said in refused(line)

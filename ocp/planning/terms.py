@@ -1,0 +1,83 @@
+"""How many terms a move within limits takes, where nobody says it.
+
+Without limits six terms are the paper's, and more only make the starts harder. Within the limits of
+a drive they cost up to twice the least energy, or find no motion. Two terms more often save
+nothing where four save a quarter, so the number is not looked for step by step: it follows from
+the number of modes. `benchmarks/terms.py` measures how far from the floor that ends.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.limits import Limit
+from quietarm.ocp.planning.best_of_starts import best_of_starts, start_coefficients
+from quietarm.ocp.planning.plan import Plan
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.solvers.choice import solver_of
+from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
+from quietarm.ocp.solvers.transcription import Transcription
+from quietarm.ocp.task import PointToPoint
+
+SIX = CycloidPolynomial()
+FEW, MANY = 18, 24
+"""Terms within limits: of plants with one mode, and with several. Where one mode swings for more
+than seven periods 24 come 2 % nearer to the floor, but the solver may take minutes."""
+CHOSEN, OF_SIX = "chosen_terms", "energy_of_six_terms"
+"""What a plan's record says of them."""
+
+
+def choose_profile(task: PointToPoint) -> CycloidPolynomial:
+    """Six terms without limits, else more, by the number of modes."""
+    if not task.limits:
+        return SIX
+    return CycloidPolynomial(FEW if task.plant.modes == 1 else MANY)
+
+
+def plan_with_chosen_terms(
+    task: PointToPoint,
+    settings: SolveSettings,
+    plan: Callable[[CycloidPolynomial, SolveSettings], Plan],
+) -> Plan:
+    """The plan of the chosen number of terms; its record states what six would cost.
+
+    One start does, the plain cycloid; another is what six terms give, where it leads nowhere.
+    """
+    began, profile = time.perf_counter(), choose_profile(task)
+    if profile == SIX:
+        return plan(SIX, settings)
+    six, asked = _solve_with_six(task, settings), replace(settings, starts=1)
+    is_better = six.status.solved and task.uncertainty is None
+    try:
+        found = plan(profile, asked)
+        is_better = is_better and six.energy < found.energy
+    except SolverFailedError:
+        if not six.status.solved:
+            raise
+        found, is_better = None, True
+    if is_better:
+        guess = np.pad(six.coefficients, (0, profile.size - SIX.size)).tolist()
+        found = plan(profile, replace(asked, guess=tuple(guess)))
+    assert found is not None
+    chosen: dict[str, float] = {CHOSEN: found.profile.size}
+    if six.status.solved and task.uncertainty is None:
+        chosen[OF_SIX] = six.energy
+    record, seconds = found.provenance, time.perf_counter() - began
+    used = record.settings and replace(record.settings, starts=settings.starts, guess=None)
+    return replace(found, provenance=replace(record, settings=used, search=chosen, seconds=seconds))
+
+
+def _solve_with_six(task: PointToPoint, settings: SolveSettings) -> Solution:
+    """What six terms give for the nominal plant, by the solver's own steps."""
+    limits = (Limit.of_residual(settings.residual_limit), *task.limits)
+    problem = Problem(
+        Transcription.of(task.certain, SIX, settings.steps), Scalarization(limits, settings.bound)
+    )
+    starts = start_coefficients(SIX, settings)
+    (six,) = best_of_starts([problem], [starts], solver_of(settings))
+    return six

@@ -1,0 +1,96 @@
+"""One value of several parts: the interval of their mean, and that of the next swing.
+
+Parts differ by their own uncertainty and by how the machine varies, within a recording and from one
+to the next: a random-effects model, whose variances are Paule and Mandel's (J. Res. NBS 87, 1982).
+The interval of a further one is Higgins, Thompson and Spiegelhalter's (J. R. Stat. Soc. A 172,
+2009), its degrees of freedom Satterthwaite's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.studies.identify.answer import Estimate, Part
+
+Array = NDArray[np.float64]
+_LEVEL = 0.95
+_OWN_FREEDOM = 30.0
+"""Degrees of freedom of a part's own uncertainty."""
+
+
+def combine(names: Sequence[str], parts: Sequence[Part]) -> tuple[list[Estimate], dict[str, str]]:
+    """The estimates of parameters from parts, and those with an interval as wide as their value."""
+    found: list[Estimate] = []
+    wide: dict[str, str] = {}
+    recordings = np.unique([part.recording for part in parts], return_inverse=True)[1]
+    for name in names:
+        values = np.array([part.values[name] for part in parts])
+        deviations = np.array([part.deviations[name] for part in parts])
+        one = estimate(name, values, deviations, recordings)
+        if one.value == 0 or one.error >= 1:
+            low = one.low if one.next_low is None else one.next_low
+            high = one.high if one.next_high is None else one.next_high
+            wide[name] = f"its interval, {low:.3g} to {high:.3g}, is as wide as its value"
+        else:
+            found.append(one)
+    return found, wide
+
+
+def estimate(
+    name: str, values: Array, deviations: Array, recordings: NDArray[np.int64]
+) -> Estimate:
+    """Mean and intervals of one parameter, of parts of some recordings (by number)."""
+    from scipy.stats import t  # not at the top: it takes long to load
+
+    own = np.maximum(deviations, 1e-12 * np.abs(values) + 1e-300) ** 2
+    groups = [recordings == k for k in np.unique(recordings)]
+    within = _between([values[g] for g in groups], [own[g] for g in groups])
+    means, of_means = np.array([_mean(values[g], own[g] + within) for g in groups]).T
+    among = _between([means], [of_means])
+    mean, of_mean = _mean(means, of_means + among)
+
+    def half(*variances: tuple[float, float]) -> float:
+        """Half of an interval, of variances and their degrees of freedom."""
+        total = sum(variance for variance, _ in variances)
+        freedom = total**2 / sum(v**2 / n for v, n in variances if v > 0)
+        return float(t.ppf((1 + _LEVEL) / 2, freedom)) * total**0.5
+
+    count, files = len(values), len(groups)
+    of_files, of_parts = (among, max(files - 1, 1)), (within, max(count - files, 1))
+    by_files, by_parts = among / files, within / count
+    rest = (max(of_mean - by_files - by_parts, of_mean / 1e6), _OWN_FREEDOM * count)
+    of_next = half(
+        (of_files[0] + by_files, of_files[1]), (of_parts[0] + by_parts, of_parts[1]), rest
+    )
+    to_mean = half((by_files, of_files[1]), (by_parts, of_parts[1]), rest)
+    low, high = mean - to_mean, mean + to_mean
+    if count == 1:
+        return Estimate(name, mean, low, high)
+    return Estimate(name, mean, low, high, mean - of_next, mean + of_next)
+
+
+def _mean(values: Array, variances: Array) -> tuple[float, float]:
+    """The weighed mean and its variance."""
+    weight = 1 / variances
+    return float((weight * values).sum() / weight.sum()), 1 / float(weight.sum())
+
+
+def _between(groups: Sequence[Array], own: Sequence[Array]) -> float:
+    """Variance within groups beyond their own: with it weighed squares are as many as free."""
+    from scipy.optimize import brentq  # not at the top: it takes long to load
+
+    free = sum(len(values) - 1 for values in groups)
+
+    def excess(between: float) -> float:
+        total = 0.0
+        for values, variances in zip(groups, own, strict=True):
+            mean, _ = _mean(values, variances + between)
+            total += float(((values - mean) ** 2 / (variances + between)).sum())
+        return total - free
+
+    if free == 0 or excess(0.0) <= 0:
+        return 0.0
+    widest = max(float(np.ptp(values)) for values in groups)
+    return float(brentq(excess, 0.0, 1e3 * widest**2))

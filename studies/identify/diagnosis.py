@@ -1,0 +1,135 @@
+"""Whether what a fit leaves is noise; and if it is not, the likely cause."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.studies.identify.recording import noise_of
+
+Array = NDArray[np.float64]
+_STANDS_OUT = 14.0
+"""A line of a spectrum has so many times the noise's power beside it."""
+_MATTERS = 0.03
+"""Share of the swing that lines together have; less changes no plan."""
+_MUCH = 0.1
+"""Share of the swing, from which on what is left is doubted even where it looks like noise."""
+_AT_LIMIT = 6
+"""Samples at the same extreme value, from which on a sensor may be saturated."""
+
+
+def spectrum_of(time: Array, left: Array) -> tuple[Array, Array]:
+    """Frequencies [Hz], and the amplitude of what is left in each, of the signal with most."""
+    column = left[:, int(left.std(axis=0).argmax())]
+    even = np.linspace(time[0], time[-1], len(time))
+    values = np.interp(even, time, column)
+    step = float(even[1] - even[0])
+    return np.fft.rfftfreq(len(even), step), 2 * np.abs(np.fft.rfft(values)) / len(even)
+
+
+def cause_of(
+    time: Array, left: Array, swinging: Array, frequency: float, noise: float
+) -> tuple[str, str]:
+    """What is left beside noise: a word for the cause and a sentence; empty where it is noise.
+
+    Parameters
+    ----------
+    time : array, shape (rows,)
+        [s].
+    left, swinging : array, shape (rows, signals)
+        What is left, and the fitted swing.
+    frequency : float
+        Of the swing [Hz].
+    noise : float
+        The recording's own, as a share of the swing.
+    """
+    at, size = spectrum_of(time, left)
+    power = size**2 / 2
+    whole = float((swinging**2).mean(axis=0).max()) + 1e-300
+    misfit = float((left**2).mean(axis=0).max() / whole) ** 0.5
+    if len(power) < 8:
+        return _unexplained(misfit, noise)
+    lines = np.flatnonzero(power[1:] > _STANDS_OUT * _beside(power)[1:]) + 1
+    excess = np.zeros(len(power))
+    for k in lines:
+        near = slice(max(k - 2, 1), k + 3)
+        excess[near] = power[near]
+    share = float(excess.sum() / whole) ** 0.5
+    if share < _MATTERS:
+        return _unexplained(misfit, noise)
+    bands = {
+        "slow": at < 0.6 * frequency,
+        "near": (at >= 0.6 * frequency) & (at < 1.5 * frequency),
+        "fast": at >= 1.5 * frequency,
+    }
+    amounts = {name: float(excess[band].sum()) for name, band in bands.items()}
+    most = max(amounts, key=lambda name: amounts[name])
+    peak = float(at[bands[most]][int(excess[bands[most]].argmax())])
+    left_words = f"{share:.1%} of the swing is left beside the noise"
+    if most == "slow":
+        return "drift", (
+            f"{left_words}, below the swing at {peak:.3g} Hz: the sensor drifts, the base sways, "
+            "or the hub moves; fix them, or name the joint's angle by --angle"
+        )
+    if most == "near":
+        return "amplitude", (
+            f"{left_words}, at the swing's own frequency: frequency or damping change with the "
+            f"amplitude, a second mode is near ({peak:.3g} Hz), or the hub gives way; name its "
+            "angle by --angle, or push as hard as your moves do"
+        )
+    ratio = peak / frequency
+    if abs(ratio - round(ratio)) < 0.04 and round(ratio) in (2, 3, 5):
+        return "harmonic", (
+            f"{left_words}, at {round(ratio)} times the swing's frequency ({peak:.4g} Hz): the "
+            "sensor or the link is not linear, as one that saturates; push less"
+        )
+    return "mode", (
+        f"{left_words}, at {peak:.4g} Hz: a second mode; plan with it (--set mode_count=2, where "
+        "the plant has it), or keep to a band below it"
+    )
+
+
+def _unexplained(misfit: float, noise: float) -> tuple[str, str]:
+    """Where no line stands out, but much more is left than the noise from sample to sample."""
+    if misfit < max(_MUCH, 4 * noise):
+        return "", ""
+    return "misfit", (
+        f"{misfit:.0%} of the swing is left, and its noise is {noise:.0%}: it is no free decay of "
+        "one mode; look at the picture, and name the part that is by --part"
+    )
+
+
+def _beside(power: Array) -> Array:
+    """The noise's power in each bin, by the median of those beside it: two octaves or 40 bins."""
+    from scipy.ndimage import median_filter
+
+    count = len(power)
+    width = min(40, max(8, count // 2))
+    local = median_filter(power[1:], width, mode="nearest") / np.log(2)
+    high = float(np.median(power[count // 2 :])) / np.log(2)
+    return np.concatenate([[local[0]], np.maximum(local, 0.2 * high)]) + 1e-30 * power.max()
+
+
+def limits_of(values: Array) -> tuple[Array, Array]:
+    """Least and largest value of every signal that is there many times, else none (infinity)."""
+    ends = []
+    for extreme, none in ((values.min(axis=0), -np.inf), (values.max(axis=0), np.inf)):
+        there = np.abs(values - extreme) <= 1e-9 * np.ptp(values, axis=0)
+        ends.append(np.where(there.sum(axis=0) >= _AT_LIMIT, extreme, none))
+    return ends[0], ends[1]
+
+
+def saturated(values: Array, fitted: Array | None = None) -> NDArray[np.bool_]:
+    """Samples at a signal's limits; by a fit, those where it comes near them by the noise."""
+    low, high = limits_of(values)
+    near = 0.0 if fitted is None else 2 * noise_of(values)
+    at = values if fitted is None else fitted
+    return ((at <= low + near) | (at >= high - near)).any(axis=1)
+
+
+def exceeds(values: Array, fitted: Array, flat: NDArray[np.bool_]) -> bool:
+    """Whether a swing fitted to the other samples passes what the flat ones show by far."""
+    side = np.sign(values - np.median(values, axis=0))
+    further = ((fitted - values) * side)[flat].mean(axis=0)
+    levels = np.diff(np.unique(values))
+    resolution = float(levels.min()) if len(levels) else 0.0
+    return bool((further > np.maximum(2 * noise_of(values), 0.6 * resolution)).any())
