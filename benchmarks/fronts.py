@@ -47,7 +47,6 @@ CASES = {
 }  # fmt: skip
 SIZES, SEEDS = (3, 5, 9, 17, 33, 65), range(5)
 METHODS = {"NSGA-II": "nsga2", "VEPSO": "vepso"}
-FILLED = 500
 COLOURS = {
     "gradient": "tab:blue",
     "gradient, filled": "tab:purple",
