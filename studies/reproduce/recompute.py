@@ -69,6 +69,8 @@ class Effort:
         Of the fronts that both solvers find.
     free_motion : mapping
         Settings of `energy_floor`.
+    systems : sequence of Case
+        Where every system stands side by side.
     """
 
     full: bool = False
@@ -78,6 +80,7 @@ class Effort:
     other_starts: int = 4
     points: int = 50
     free_motion: Mapping[str, Any] = field(default_factory=dict)
+    systems: tuple[Case, ...] = CONDITIONS
 
     @property
     def searched(self) -> list[tuple[Case, Input, bool]]:
@@ -169,12 +172,12 @@ def recompute_paper(
     )
     if not effort.full:
         return part
-    return replace(part, systems={case: _systems(part, case, begin) for case in CONDITIONS})
+    return replace(part, systems={case: _systems(part, case, begin) for case in effort.systems})
 
 
 def number_of_pieces(effort: Effort) -> int:
     """How many pieces of work there are."""
-    return len(_searches(effort, None)) + len(_solves(effort)) + len(CONDITIONS) * effort.full
+    return len(_searches(effort, None)) + len(_solves(effort)) + len(effort.systems) * effort.full
 
 
 _Calls = dict[Hashable, tuple[str, Callable[[], Any]]]
@@ -232,7 +235,8 @@ def _solves(effort: Effort) -> _Calls:
             solve = partial(plan_move, case.task, profile, bound=bound, starts=effort.starts)
             calls[where, case, terms] = f"gradient, {where}: {case.name}, N = {terms}", solve
     others = [(case, case.earlier[1]) for case in (CONDITIONS if effort.full else STUDIED)]
-    others += product(CONDITIONS if effort.full else (), ["spline"])
+    side_by_side = effort.systems if effort.full else ()
+    others += product(side_by_side, ["spline"])
     for case, name in others:
         solve = partial(plan_move, case.task, OTHERS[name], starts=effort.other_starts)
         calls["other", case, name] = f"gradient: {case.name}, {name}", solve
@@ -243,6 +247,7 @@ def _solves(effort: Effort) -> _Calls:
         calls["both solvers", case] = (
             f"both solvers: {case.name}", partial(_checked, case, effort.points)
         )  # fmt: skip
+    for case in side_by_side:
         calls["robust", case] = f"robust: {case.name}", partial(_robust, case, effort.starts)
     return calls
 

@@ -1,5 +1,6 @@
 """The paper recomputed with short searches and few starts."""
 
+from quietarm.studies.reproduce.paper import STUDIED
 from quietarm.studies.reproduce.recompute import Effort
 
 SHORT = Effort(
@@ -11,5 +12,6 @@ SHORT = Effort(
     starts=1,
     other_starts=1,
     points=3,
+    systems=STUDIED,
     free_motion={"starts": 1, "tolerance": 0.05},
 )
