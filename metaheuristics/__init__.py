@@ -1,7 +1,8 @@
 """The derivative-free answer: the paper's VEPSO and NSGA-II, and any other of pymoo's.
 
-`search` and `search_many` are on top; the rooms below are `objective`, `problems` for other
-libraries, `algorithms` and `runs`. It may import `ocp` and `models`.
+`search` runs one, and `jobs` many methods on many problems, the gradient among them, each to a
+file; the rooms below are `objective`, `problems` and `algorithms`. It may import `ocp` and
+`models`.
 """
 
 import lazy_loader

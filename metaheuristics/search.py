@@ -1,30 +1,69 @@
-"""Run a metaheuristic on a task: report, checkpoint, resume, and return a front."""
+"""Run a metaheuristic on a task, for generations or evaluations, and return a front."""
 
 from __future__ import annotations
 
+import inspect
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, preset_of
-from quietarm.metaheuristics.runs.progress import Report
-from quietarm.metaheuristics.runs.settings import (
-    SearchSettings,
-    SearchSpec,
-    number_of_individuals,
-)
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
-from quietarm.ocp.files import check_writable
-from quietarm.ocp.interrupts import note_interrupts
+from quietarm.ocp.checks import whole
+from quietarm.ocp.record import coefficient_bound
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from pymoo.core.algorithm import Algorithm
+    from quietarm.metaheuristics.quality import Reference
+
+MOST_INDIVIDUALS, MOST_GENERATIONS, MOST_EVALUATIONS = 100_000, 1_000_000, 1_000_000_000
+SEARCH_RESIDUAL = 1e-3
+"""Residual [m] at which the energies of searches are compared."""
 
 
-def _warn(message: str) -> None:
-    warnings.warn(message, RuntimeWarning, stacklevel=3)
+@dataclass(frozen=True)
+class SearchProgress:
+    """Where a search is, after a generation.
+
+    Attributes
+    ----------
+    generation, generations : int
+        Generations done and asked for.
+    residual, energy : float
+        Least residual [m] and least energy [J] found, of different candidates as a rule.
+    hypervolume : float
+        Share of the reference box that is dominated.
+    evaluations, failed, infeasible : int
+        Candidates evaluated, and those among them that were not finite, and that broke a limit.
+    seconds : float
+        Processor time of the search.
+    """
+
+    generation: int
+    generations: int
+    residual: float
+    energy: float
+    hypervolume: float
+    evaluations: int
+    seconds: float
+    failed: int = 0
+    infeasible: int = 0
+
+
+@dataclass(frozen=True)
+class _Chosen:
+    """An algorithm that was not run yet, and what it was asked for."""
+
+    method: str
+    algorithm: Algorithm
+    settings: Mapping[str, Any]
+    generations: int
+    evaluations: int | None
 
 
 def search(
@@ -39,11 +78,9 @@ def search(
     settings: Mapping[str, object] | None = None,
     seed: int = 0,
     threads: int = 1,
-    checkpoint: str | Path | None = None,
-    resume: str | Path | None = None,
-    report: Report = lambda progress: None,
-    found: Callable[[Front], None] | None = None,
-    warn: Callable[[str], None] = _warn,
+    start: Front | None = None,
+    reference: Reference | None = None,
+    report: Callable[[SearchProgress], None] | None = None,
 ) -> Front:
     """Search the trade-off between residual and energy without derivatives.
 
@@ -52,7 +89,7 @@ def search(
     task : PointToPoint
         The move; its limits become constraints.
     algorithm : str or pymoo Algorithm
-        A name of `PRESETS`: ``"nsga2"`` and ``"vepso"`` have the paper's settings, the others
+        A name of `PRESETS`: ``"nsga2-paper"`` and ``"vepso"`` have the paper's settings, the others
         pymoo's. Or any multi-objective algorithm of pymoo that was not run yet; it is copied, so
         the one given stays as it is.
     profile : JointProfile, optional
@@ -61,9 +98,10 @@ def search(
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
     population, generations : int, optional
         Individuals (particles in a swarm) and generations; those of the preset by default. With
-        an algorithm of your own its population counts, and generations are required.
+        an algorithm of your own its population counts.
     evaluations : int, optional
-        Candidates in all, in place of generations: as many whole generations as they suffice for.
+        Candidates in all, in place of generations: the search ends after exactly so many, in the
+        middle of a generation if need be.
     settings : mapping, optional
         What else a method known by name is set to, as ``{"crossover": 0.7}``; `Preset.settings`
         says what it has.
@@ -71,97 +109,133 @@ def search(
         Seed of the random numbers.
     threads : int
         Blocks of the population that are evaluated at the same time.
-    checkpoint : path, optional
-        File to keep the search in, every few seconds.
-    resume : path, optional
-        Checkpoint to go on from, of the same search and the same versions: what is in it is done
-        again without computing its figures.
+    start : Front, optional
+        Its points are in the first population, as many as that holds.
+    reference : Reference, optional
+        Scale of the quality on the way, as jobs have it.
     report : callable, optional
         Called with a `SearchProgress` after every generation.
-    found : callable, optional
-        Called with the front so far after the first generation and every second or so, for whom the
-        search itself may be lost; its ``complete`` is false.
-    warn : callable, optional
-        Called with a message when evaluations suffice for few generations, or the last checkpoint
-        could not be written, which do not stop the search; by default it becomes a RuntimeWarning.
 
     Returns
     -------
     Front
-        The points found, with figures of a finer rollout. After Ctrl-C what was found until then,
-        with ``complete`` false.
+        At most 100 of the points found that no other dominates, with figures by CVODES.
 
     Raises
     ------
     ValueError
-        When an argument is out of range or missing, or the checkpoint is of another search.
-    FileFormatError
-        When the file to resume from is not a whole checkpoint.
+        When an argument is out of range or missing, or the front to start from is of another
+        profile or beyond the bound.
     """
     # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
-    from quietarm.metaheuristics.objective.population import PopulationObjective
-    from quietarm.metaheuristics.objective.problem import MoveProblem
-    from quietarm.metaheuristics.runs.checkpoint import Keeper, KeptProblem, load_checkpoint
-    from quietarm.metaheuristics.runs.front import front_of, handing_over
-    from quietarm.metaheuristics.runs.loop import Loop
+    from quietarm.metaheuristics.problems.counted import BudgetSpentError, CountedProblem
+    from quietarm.metaheuristics.problems.function import MoveFunction
+    from quietarm.metaheuristics.record import Record
 
     profile = CycloidPolynomial() if profile is None else profile
     bound = profile.default_bound if bound is None else bound
-    if evaluations is not None:
-        generations = _generations(algorithm, population, generations, evaluations, warn)
-    given = population, generations, settings
-    method, chosen, population, generations, own = (
+    if generations is not None and evaluations is not None:
+        raise ValueError("evaluations stand in place of generations; leave one of them out")
+    given = population, generations, evaluations, settings
+    chosen = (
         _known(algorithm, task, *given) if isinstance(algorithm, str) else _own(algorithm, *given)
     )
     if bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
         raise ValueError(
-            f"{method} searches a box: give a bound on the coefficients (the paper used {papers})"
+            f"{chosen.method} searches a box: give a bound on the coefficients (the paper used "
+            f"{papers})"
         )
-    asked = SearchSettings(bound, population, generations)
-    spec = SearchSpec(task, profile, method, asked, seed, own)
-    objective = PopulationObjective(task, profile, threads=threads)
-    problem, keeper, known = MoveProblem(objective, asked.bound), None, None
-    if checkpoint is not None or resume is not None:
-        known = None if resume is None else load_checkpoint(resume, spec)
-        problem = KeptProblem(objective, asked.bound, known)
-        if checkpoint is not None:
-            keeper = Keeper(spec, problem, check_writable(checkpoint))
-    loop = Loop(spec, chosen, problem, known.seconds if known else 0.0)
-    # From here on Ctrl-C ends the search after the current generation and does nothing else: the
-    # checkpoint holds whole generations, and the front is worked out to the end.
-    reports = [report] if keeper is None else [report, keeper.after_generation]
-    if found is not None:  # before the report, so that what is heard of can be kept
-        reports.insert(0, handing_over(loop, found))
-    with note_interrupts() as interrupts:
-        loop.run(interrupts, *reports)
-        trouble = keeper.write(loop.seconds) if keeper and loop.history else ""
-        front = front_of(loop)
-    if trouble:
-        warn(f"the end of the search is in no checkpoint: {trouble}")
-    return replace(front, complete=not interrupts)
+    bound, seed = coefficient_bound(bound), whole("seed", seed, 0)
+    function = MoveFunction(task, profile, bound=bound, threads=threads)
+    first = _starts(start, function) if start is not None else np.empty((0, profile.size))
+    record = Record(task, profile.size, reference)
+    problem = CountedProblem(function, record, inf if evaluations is None else chosen.evaluations)
+    after = None if report is None else _reporting(problem, chosen.generations, report)
+    # a division by a distance of zero is of no concern to a user; and pymoo's NSGA-III leaves all
+    # warnings of the process switched off
+    with warnings.catch_warnings(), np.errstate(all="ignore"), suppress(BudgetSpentError):
+        _run(chosen, problem, seed, first, after)
+    return record.front(
+        task, profile, method=chosen.method, settings={"bound": bound, **chosen.settings},
+        seed=seed, failed=problem.failed, infeasible=problem.infeasible,
+    )  # fmt: skip
 
 
-def _generations(
-    algorithm: str | Algorithm,
-    population: int | None,
-    generations: int | None,
-    evaluations: int,
-    warn: Callable[[str], None],
-) -> int:
-    """As many generations as evaluations suffice for."""
-    if generations is not None:
-        raise ValueError("evaluations stand in place of generations; leave one of them out")
-    if not isinstance(algorithm, str):
-        raise ValueError("evaluations are for a method known by name; give generations")
-    preset = preset_of(algorithm)
-    if few := preset.too_few(evaluations, population):
-        warn(few)
-    return preset.generations_for(evaluations, population)
+def _run(
+    chosen: _Chosen,
+    problem: Any,
+    seed: int,
+    first: NDArray[np.float64],
+    after: Callable[[], None] | None,
+) -> None:
+    """The generations of a search: as `Algorithm.run`, with rows in the first population."""
+    from pymoo.termination.max_eval import MaximumFunctionCallTermination
+    from pymoo.termination.max_gen import MaximumGenerationTermination
+
+    algorithm: Any = chosen.algorithm  # for the type checker: pymoo declares much as optional
+    termination: Any = (
+        MaximumGenerationTermination(chosen.generations)
+        if chosen.evaluations is None
+        else MaximumFunctionCallTermination(chosen.evaluations)
+    )
+    try:
+        algorithm.setup(problem, termination=termination, seed=seed)
+    except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
+        raise ValueError(f"{chosen.method} cannot search this task: {error}") from None
+    while algorithm.has_next():
+        infills: Any = algorithm.infill()
+        if infills is None:
+            algorithm.advance()
+            continue
+        for individual, row in zip(infills, first, strict=False):
+            individual.X = row.copy()
+        first = first[:0]
+        algorithm.evaluator.eval(problem, infills, algorithm=algorithm)
+        algorithm.advance(infills=infills)
+        if after is not None:
+            after()
 
 
-_Chosen = tuple[str, "Algorithm", int | None, int, Mapping[str, object]]
-"""Name, algorithm, population, generations, and its own settings, defaults as well."""
+def _reporting(
+    problem: Any, generations: int, report: Callable[[SearchProgress], None]
+) -> Callable[[], None]:
+    """Report a generation."""
+    done = 0
+
+    def after() -> None:
+        nonlocal done
+        done += 1
+        record = problem.record
+        F = record.non_dominated()[1]
+        least = F.min(axis=0) if len(F) else np.full(2, np.nan)
+        report(
+            SearchProgress(
+                done,
+                max(generations, done),
+                float(least[0]),
+                float(least[1]),
+                record.share_of_box(),
+                record.evaluations,
+                record.seconds,
+                problem.failed,
+                problem.infeasible,
+            )
+        )
+
+    return after
+
+
+def _starts(front: Front, function: Any) -> NDArray[np.float64]:
+    """Coefficients of a front within the box of a search."""
+    if front.profile != function.profile:
+        raise ValueError("the front to start from has another profile; give one of the search's")
+    table = front.coefficients
+    if ((table < function.lower) | (table > function.upper)).any():
+        raise ValueError(
+            f"the front to start from is beyond the bound of {function.bound:g}; give a wider one"
+        )
+    return table
 
 
 def _known(
@@ -169,6 +243,7 @@ def _known(
     task: PointToPoint,
     population: int | None,
     generations: int | None,
+    evaluations: int | None,
     settings: Mapping[str, object] | None,
 ) -> _Chosen:
     preset = preset_of(name)
@@ -177,26 +252,46 @@ def _known(
             f"{preset.name} cannot search a task with limits; choose another method, or leave "
             "the limits out"
         )
-    population = number_of_individuals(preset.population if population is None else population)
-    generations = preset.generations if generations is None else generations
-    chosen, own = preset.build(population, settings), preset.checked(population, settings)
-    return preset.name, chosen, population, generations, own
+    size = whole(
+        "population", preset.population if population is None else population, 2,
+        MOST_INDIVIDUALS, f"{MOST_INDIVIDUALS} take 1.6 GB of memory",
+    )  # fmt: skip
+    own = {"population": size, **preset.checked(size, settings)}
+    if evaluations is not None:
+        evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
+        generations = -(-evaluations // (preset.swarms * size))
+        preset.generations_for(evaluations, size)  # refuses less than one
+        limits: dict[str, object] = {"evaluations": evaluations}
+    else:
+        wanted = preset.generations if generations is None else generations
+        generations = whole("generations", wanted, 1, MOST_GENERATIONS)
+        limits = {"generations": generations}
+    algorithm = preset.build(size, settings)
+    return _Chosen(preset.name, algorithm, {**limits, **own}, generations, evaluations)
 
 
 def _own(
     algorithm: Algorithm,
     population: int | None,
     generations: int | None,
+    evaluations: int | None,
     settings: Mapping[str, object] | None,
 ) -> _Chosen:
     from quietarm.metaheuristics.algorithms.own import own_algorithm
     from quietarm.metaheuristics.algorithms.provenance import settings_of
 
+    if inspect.isclass(algorithm):
+        raise ValueError(f"give an algorithm, as {algorithm.__name__}(), not its class")
     chosen = own_algorithm(algorithm)
     method = type(chosen).__name__
     for name, value in (("population", population), ("settings", settings)):
         if value:
             raise ValueError(f"{name} is set in the algorithm that you give, not beside it")
-    if generations is None:
-        raise ValueError(f"give the number of generations for {method}")
-    return method, chosen, None, generations, settings_of(chosen)
+    if generations is None and evaluations is None:
+        raise ValueError(f"give the number of generations or of evaluations for {method}")
+    own = settings_of(chosen)
+    if evaluations is not None:
+        evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
+        return _Chosen(method, chosen, {"evaluations": evaluations, **own}, 1, evaluations)
+    generations = whole("generations", generations, 1, MOST_GENERATIONS)
+    return _Chosen(method, chosen, {"generations": generations, **own}, generations, None)

@@ -8,7 +8,8 @@ from math import isclose
 
 from quietarm.models import Plant
 from quietarm.ocp.energy import Energy
-from quietarm.ocp.task import QUANTITIES, PointToPoint
+from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import Uncertainty
 
 _SAME, _NONE = 1e-9, 1e-15

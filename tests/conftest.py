@@ -31,9 +31,7 @@ settings.load_profile("repeatable")
 
 TOGETHER = {
     "tests/ocp/floor/": "floors",
-    "tests/studies/study/": "the small study",
-    "tests/studies/reproduction/": "the paper recomputed",
-    "tests/studies/cli/commands/studies/test_reproduce_command.py": "the paper recomputed",
+    "tests/studies/reproduce/": "the paper recomputed",
 }
 """Tests of several files that share what takes long, by the beginning of their names."""
 

@@ -234,8 +234,10 @@ _ALL = (
         ),
         population=100, generations=200, swarms=2, most=100_000,
     ),
+    Preset("nsga2", "NSGA-II", "Deb, Pratap, Agarwal and Meyarivan 2002",
+           f"{_OURS}.nsga2:PaperNSGA2", (*_sbx(0.9, 15.0), *_pm(1.0)), most=100_000),
     Preset(
-        "nsga2", "NSGA-II", "Deb, Pratap, Agarwal and Meyarivan 2002",
+        "nsga2-paper", "NSGA-II (paper)", "Deb, Pratap, Agarwal and Meyarivan 2002",
         f"{_OURS}.nsga2:PaperNSGA2", (*_sbx(0.8, 15.0), *_pm(1.0, 0.01)),
         population=200, generations=500, most=100_000,
     ),

@@ -13,12 +13,20 @@ from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Batch, batch
 
-CANDIDATE_STEPS = 24
-"""Steps that keep the energy of nine in ten random candidates of the paper's boxes within 1e-4, and
-W at arrival within 1e-6 m."""
+CANDIDATE_STEPS, _STEPS_A_TERM, _WITH_LIMITS = 24, 4, 48
+"""Steps of every search: the least, those for each coefficient, and the least with limits."""
+ACCURACY = 5e-4
+"""Residuals and energies of random candidates in the boxes of all named problems are within this
+share of those of much finer steps; docs/measures.md has what was measured."""
 UNUSABLE = 1e30
 """A figure from here up counts as not finite. This value replaces it, because algorithms can sort
 it: it comes last."""
+
+
+def search_steps(task: PointToPoint, profile: JointProfile) -> int:
+    """Steps at which every search sees a move, whether it runs here or in another library."""
+    least = max(_WITH_LIMITS if task.limits else CANDIDATE_STEPS, _STEPS_A_TERM * profile.size)
+    return default_steps(task, least=least)
 
 
 @dataclass(frozen=True)
@@ -54,7 +62,7 @@ class PopulationObjective:
     profile : JointProfile
         How the joint moves.
     steps : int, optional
-        Number of steps; by default `CANDIDATE_STEPS`, or more where the plant's modes need them.
+        Number of steps; those of `search_steps` by default.
     threads : int
         Blocks of candidates that are evaluated at the same time.
 
@@ -75,8 +83,7 @@ class PopulationObjective:
         threads: int = 1,
     ) -> None:
         self.task, self.profile, self.threads = task, profile, whole("threads", threads, 1)
-        default = default_steps(task, least=CANDIDATE_STEPS)
-        self.steps = default if steps is None else whole("steps", steps, 1)
+        self.steps = search_steps(task, profile) if steps is None else whole("steps", steps, 1)
         self._scenarios = np.array(task.scenarios)
         self._tip_rows = [vibration.rows for vibration in after_arrival(task)]
 

@@ -1,13 +1,13 @@
-"""Named problems, each with its exact front.
+"""Named problems, each with its reference front.
 
-The fronts are files beside this one; ``quietarm problems --again`` computes them anew.
+The fronts are files beside this one; benchmarks/reference_fronts makes and verifies them.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
 from math import pi
 from pathlib import Path
@@ -16,20 +16,31 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.problems.finding import exact_front, swept_front
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint, Uncertainty
+from quietarm.ocp import (
+    CycloidPolynomial,
+    Front,
+    JointProfile,
+    PointToPoint,
+    Uncertainty,
+    epsilon_front,
+)
 from quietarm.ocp.checks import unknown
+from quietarm.ocp.front.points import LEVELS
 
 if TYPE_CHECKING:
-    from quietarm.metaheuristics.problems.certificate import Certificate
-    from quietarm.metaheuristics.problems.pymoo_problem import ExactProblem
+    from quietarm.metaheuristics.problems.pymoo_problem import MoveProblem
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
+    from quietarm.metaheuristics.quality import Reference
 
 FRONTS = Path(__file__).parent / "fronts"
-"""The exact fronts, in a folder for each plant, where a problem with several has one of its own."""
+"""The reference fronts, in a folder for each plant, where a problem with several has one of its
+own."""
 _FILE_NAME = re.compile(r"[^\W_][\w .+=-]*")
+_POINTS, _STARTS, _LIMITED_STEPS = 300, 12, 192
+"""Of a reference front that is found when it is first asked for: points, starts of its ends, and
+steps with limits, as a peak between coarser ones costs up to 3e-4."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +60,12 @@ class NamedProblem:
     peak : str
         Quantity whose peak is the third objective; empty where there are two.
     peaks : tuple of float
-        Limits on that peak under which the exact fronts of the other two were found.
+        Limits on that peak under which the reference fronts of the other two were found.
     version : int
         Of move, profile, box and front; a change of any of them is another version.
+    given : Front, optional
+        The reference front; of a problem of your own it is found by the gradient where none is
+        given.
     """
 
     name: str
@@ -61,6 +75,7 @@ class NamedProblem:
     peak: str = ""
     peaks: tuple[float, ...] = ()
     version: int = 1
+    given: Front | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if not _FILE_NAME.fullmatch(self.name):
@@ -69,19 +84,38 @@ class NamedProblem:
                 "and . + = - _ with a letter or digit first: files are called by it"
             )
 
+    @classmethod
+    def of_front(cls, name: str, front: Front) -> NamedProblem:
+        """The problem that a front solves, which becomes its reference front.
+
+        ValueError when the front states no bound, or has fewer than two points.
+        """
+        bound = front.settings.get("bound", front.profile.default_bound)
+        if not isinstance(bound, int | float):
+            raise ValueError(f"{name} states no bound; give a front that was found within one")
+        if len(front.points) < 2:
+            raise ValueError(f"{name} has {len(front.points)} points; give two or more")
+        return cls(name, front.task, front.profile, float(bound), given=front)
+
+    def __reduce__(self) -> Any:
+        """By its name where that says all."""
+        if self.named:
+            return problem_of, (self.name,)
+        return type(self), tuple(vars(self).values())
+
     def function(self, **settings: Any) -> MoveFunction:
         """It as a function of arrays; settings as for `MoveFunction`: steps and threads."""
         peaks = (self.peak,) if self.peak else ()
         return MoveFunction(self.task, self.profile, bound=self.bound, peaks=peaks, **settings)
 
-    def pymoo(self, **settings: Any) -> ExactProblem:
-        """It as a pymoo problem with its exact front; settings as for `function`."""
-        from quietarm.metaheuristics.problems.pymoo_problem import ExactProblem
+    def pymoo(self, **settings: Any) -> MoveProblem:
+        """It as a pymoo problem with its reference front; settings as for `function`."""
+        from quietarm.metaheuristics.problems.pymoo_problem import MoveProblem
 
-        return ExactProblem(self.function(**settings), *self.exact())
+        return MoveProblem(self.function(**settings), *self.optimum())
 
     def tasks(self) -> dict[str, PointToPoint]:
-        """The tasks of the exact fronts by the names of their files.
+        """The tasks of the reference fronts by the names of their files.
 
         The problem's own; for a third objective the same under each limit of its peak.
         """
@@ -92,43 +126,42 @@ class NamedProblem:
         return {f"{self.name}-{most:g}": replace(self.task, **given) for most, given in limited}
 
     def fronts(self) -> tuple[Front, ...]:
-        """The exact fronts: one, or for a third objective one for each limit.
-
-        Of a named problem from their files; else found by the gradient's sweep, some seconds.
-        """
+        """The reference fronts: one, or for a third objective one for each limit."""
+        if self.given is not None:
+            return (self.given,)
         return tuple(
             _loaded(self._folder / f"{name}.json") if self.named
-            else _swept(task, self.profile, self.bound)
+            else found_front(task, self.profile, self.bound)
             for name, task in self.tasks().items()
         )  # fmt: skip
+
+    def reference(self) -> Reference:
+        """The reference front as a scale; ValueError where there is a third objective."""
+        if self.peak:
+            raise ValueError(
+                f"{self.name} has a third objective, and methods are measured by residual and "
+                "energy alone; give another problem"
+            )
+        return _scale(*self.fronts())
 
     @property
     def named(self) -> bool:
         """Whether it is one of `PROBLEMS`."""
-        return PROBLEMS.get(self.name) == self
+        return self.given is None and PROBLEMS.get(self.name) == self
 
-    def recorded(self, **settings: Any) -> RecordedFunction:
-        """It as a function of arrays that keeps what it is asked; settings as for `function`."""
+    def recorded(self) -> RecordedFunction:
+        """It as a function of arrays that keeps what it is asked."""
         from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
-        return RecordedFunction(self, **settings)
+        return RecordedFunction(self)
 
     @property
     def _folder(self) -> Path:
         plant = FRONTS / self.task.plant.name
         return plant / self.name if self.peak else plant
 
-    def certificates(self) -> tuple[Certificate, ...]:
-        """What is known of its exact fronts; ValueError where it is none of `PROBLEMS`."""
-        from quietarm.metaheuristics.problems.certificate import Certificates
-
-        if not self.named:
-            raise ValueError(f"{self.name} comes without a certificate: it is no named problem")
-        kept = Certificates.kept()
-        return tuple(kept[name] for name in self.tasks())
-
-    def exact(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Coefficients and objectives of the exact front.
+    def optimum(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Coefficients and objectives of the reference front.
 
         Returns
         -------
@@ -139,35 +172,13 @@ class NamedProblem:
         """
         import moocore  # not at the top: it takes long to load
 
-        points = [point for front in self.fronts() for point in front.points]
-        X = np.array([point.coefficients for point in points])
-        F = np.array([(point.residual, point.energy) for point in points])
+        X = np.vstack([front.coefficients for front in self.fronts()])
+        F = np.vstack([np.c_[front.residuals, front.energies] for front in self.fronts()])
         if self.peak:
             objectives, _ = self.function()(X)
             F = np.column_stack([F, objectives[:, 2:]])
         kept = moocore.is_nondominated(F)
         return X[kept], F[kept]
-
-    def find_again(self, report: Callable[[str], None] = lambda name: None) -> dict[str, Front]:
-        """Find the exact fronts anew, by the gradient; the motions of the old ones are starts.
-
-        Parameters
-        ----------
-        report : callable, optional
-            Called with the name of each when it begins.
-
-        Returns
-        -------
-        dict of str to Front
-            By the names of their files.
-        """
-        found: dict[str, Front] = {}
-        for name, task in self.tasks().items():
-            report(name)
-            path = self._folder / f"{name}.json"
-            known = _loaded(path).points if path.exists() else ()
-            found[name] = exact_front(task, self.profile, self.bound, known)
-        return found
 
 
 @cache
@@ -176,12 +187,19 @@ def _loaded(path: Path) -> Front:
 
 
 @lru_cache(maxsize=64)
-def _swept(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
-    """The whole front; after Ctrl-C none, as others would be measured against a part of it."""
-    front = swept_front(task, profile, bound)
-    if not front.complete:
-        raise KeyboardInterrupt
-    return front
+def _scale(front: Front) -> Reference:
+    from quietarm.metaheuristics.quality import Reference
+
+    return Reference(front)
+
+
+@lru_cache(maxsize=64)
+def found_front(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
+    """A reference front by the gradient; on named problems within 6e-6 of their hypervolume."""
+    return epsilon_front(
+        task, profile, bound=bound, points=_POINTS, at=LEVELS, starts=_STARTS,
+        steps=_LIMITED_STEPS if task.limits else None,
+    )  # fmt: skip
 
 
 def problem_of(name: str) -> NamedProblem:

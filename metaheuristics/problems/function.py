@@ -12,7 +12,6 @@ from quietarm.metaheuristics.objective.population import PopulationObjective, re
 from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.record import coefficient_bound
-from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
@@ -34,7 +33,7 @@ class MoveFunction:
     peaks : sequence of str
         Quantities whose largest absolute value on the way is an objective, too, as ``"torque"``.
     steps : int, optional
-        Steps of the simulation; as many as fronts are verified with by default.
+        Steps of the simulation; those of every search by default, as of `search_steps`.
     threads : int
         Blocks of candidates that are evaluated at the same time.
 
@@ -90,7 +89,7 @@ class MoveFunction:
                 )
         measured: Any = replace(task, **limits)
         self._objective = PopulationObjective(
-            measured, profile, steps=default_steps(task) if steps is None else steps,
+            measured, profile, steps=steps,
             threads=threads,
         )  # fmt: skip
         measures = [limit.name for limit in measured.limits]

@@ -1,4 +1,4 @@
-"""A move as a pymoo problem that knows its exact front."""
+"""A move as a pymoo problem, which knows its reference front."""
 
 from __future__ import annotations
 
@@ -7,23 +7,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
+from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.ocp.checks import whole
 
 
-class ExactProblem(Problem):
+class MoveProblem(Problem):
     """A move for any algorithm or indicator of pymoo.
 
-    ``pareto_front()`` and ``pareto_set()`` give the exact front where one is known, else None.
+    ``pareto_front()`` and ``pareto_set()`` give the reference front where one is known, else None.
 
     Parameters
     ----------
     function : MoveFunction
         What is minimised.
     pareto_set : ndarray, shape (points, variables), optional
-        Coefficients of the exact front.
+        Coefficients of the reference front.
     pareto_front : ndarray, shape (points, objectives), optional
         Its objectives.
+
+    Attributes
+    ----------
+    failed, infeasible : int
+        Candidates so far whose figures were not finite, and that broke a limit.
     """
 
     def __init__(
@@ -40,9 +46,13 @@ class ExactProblem(Problem):
             xu=function.upper,
         )
         self.function, self._set, self._front = function, pareto_set, pareto_front
+        self.failed, self.infeasible = 0, 0
 
     def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
         objectives, violations = self.function(x)
+        failed = (objectives >= UNUSABLE).any(axis=1)
+        self.failed += int(failed.sum())
+        self.infeasible += int((violations[~failed] > 0).any(axis=1).sum())
         out["F"] = objectives
         if violations.shape[1]:
             out["G"] = violations
@@ -50,7 +60,7 @@ class ExactProblem(Problem):
     # pymoo's own keep what they gave first, whatever number is asked for next
 
     def pareto_front(self, n_points: int | None = None) -> Any:
-        """The exact front, all of its points or so many."""
+        """The reference front, all of its points or so many."""
         return _evenly(self._front, n_points)
 
     def pareto_set(self, n_points: int | None = None) -> Any:
@@ -62,5 +72,5 @@ def _evenly(rows: NDArray[np.float64] | None, count: int | None) -> NDArray[np.f
     """So many rows at even distances in their order; all where no number is given."""
     if rows is None or count is None:
         return rows
-    count = whole("n_points", count, 2, len(rows), "the exact front has no more")
+    count = whole("n_points", count, 2, len(rows), "the reference front has no more")
     return rows[np.linspace(0, len(rows) - 1, count).round().astype(int)]

@@ -16,7 +16,7 @@ from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import (
     FailedPoint,
     FrontPoint,
-    Generation,
+    Mark,
     evaluated,
     non_dominated,
     table_of,
@@ -69,8 +69,8 @@ class Front(Saved):
         Points of a sweep that could not be found, with the reason.
     gaps : tuple of (float, float)
         Ranges of the residual [m] in which a weighted sum has no point, whatever the weight.
-    history : tuple of Generation
-        Hypervolume by generation.
+    history : tuple of Mark
+        What it had found on the way, the end last.
     complete : bool
         Whether the method ran to its end.
     versions : dict of str to str
@@ -101,7 +101,7 @@ class Front(Saved):
     infeasible: Count = 0
     failures: tuple[FailedPoint, ...] = ()
     gaps: tuple[tuple[NotNegative, NotNegative], ...] = ()
-    history: tuple[Generation, ...] = ()
+    history: tuple[Mark, ...] = ()
     complete: bool = True
     versions: Mapping[str, str] = field(default_factory=versions, hash=False)
     seconds: NotNegative = field(default=0.0, compare=False)
@@ -250,6 +250,17 @@ class Front(Saved):
                 f"least that of the stillest, {points[0].residual:.3g} m"
             )
         return still[-1]
+
+    def least_energy(self, residual: float) -> float:
+        """Least energy [J] of the points within a residual [m]; NaN where there is none."""
+        within = self.energies[self.residuals <= residual]
+        return float(within.min()) if within.size else float("nan")
+
+    @property
+    def coefficients(self) -> NDArray[np.float64]:
+        """Coefficients of every point, shape (points, profile.size)."""
+        rows = [point.coefficients for point in self.points]
+        return np.array(rows, dtype=float).reshape(len(rows), self.profile.size)
 
     def knee(self) -> FrontPoint:
         """The point farthest below the straight line between the ends, both objectives scaled."""

@@ -62,19 +62,54 @@ class FailedPoint:
 
 
 @dataclass(frozen=True)
-class Generation:
-    """The state of a search after one generation.
+class Quality:
+    """How near points come to the reference front of their problem.
+
+    All are scaled: 0 is the reference front's least and 1 its largest value of each objective.
+
+    Attributes
+    ----------
+    hypervolume : float
+        Share of the reference front's hypervolume.
+    igd_plus, epsilon : float
+        IGD+ and additive epsilon from the reference front's points.
+    energies : tuple of float or None
+        Least energy [J] within each of `LEVELS`; None where no point is within it.
+    """
+
+    hypervolume: NotNegative
+    igd_plus: NotNegative
+    epsilon: float
+    energies: tuple[float | None, ...]
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What a method had found at one moment, and what that had cost.
 
     Attributes
     ----------
     evaluations : int
-        Candidates evaluated so far.
+        Candidates simulated so far.
     hypervolume : float
         Share of the reference box (`Front.reference`) that the points found dominate.
+    seconds : float
+        Processor time so far, without first builds and without checks [s].
+    gradients, hessians : int
+        Motions simulated with first and with second derivatives.
+    quality : Quality or None
+        Of the points; None without a reference front, or without a point.
+    between : Quality or None
+        Once more with the motions between neighbouring points; at the end alone.
     """
 
     evaluations: Count
     hypervolume: Share
+    seconds: NotNegative = field(default=0.0, compare=False)
+    gradients: Count = 0
+    hessians: Count = 0
+    quality: Quality | None = None
+    between: Quality | None = None
 
 
 def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
@@ -162,12 +197,13 @@ def evaluated(
     refuse_beyond_box(profile, table, bound)
     for coefficients in rows:
         try:
-            motion = Candidate.of_profile(task, profile, coefficients).motion
+            motion = Candidate.of_profile(task, profile, coefficients)
+            figures = motion.residual, motion.energy
         except SolverFailedError:
             failed += 1
             continue
         if not motion.exceeded(task.limits, _KEPT):
-            points.append(FrontPoint(coefficients, motion.residual, motion.energy))
+            points.append(FrontPoint(coefficients, *figures))
         else:
             infeasible += 1
     return Evaluated(non_dominated(points), failed, infeasible)

@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
+from quietarm.ocp.cost import COST
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time, silent_errors
@@ -60,7 +61,7 @@ def integrate(
     energy: Energy,
 ) -> Run:
     """Follow a motion on a plant with errors, by so many steps of the quadrature on a piece."""
-    with _refusing(path.remedy):
+    with COST.checking(), _refusing(path.remedy):
         figures = _figures(plant, path.law, path.given.shape, steps, tuple(errors), energy)
         given = path.given.T, [list(errors.values())], [initial]
         outputs, arrival, spent, net_work = (value.T.copy() for value in figures(*given))

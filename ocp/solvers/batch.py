@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
+from quietarm.ocp.cost import COST
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import Quantity
@@ -220,6 +221,7 @@ class Batch:
         Arguments as for `derivatives`; the energy takes in what neighbouring steps say, and is a
         little more exact.
         """
+        COST.candidates += len(coefficients)
         energy, arrival, limited = self._values((coefficients, move, errors), threads)
         return Values(energy[:, 0], arrival, limited)
 
@@ -247,6 +249,8 @@ class Batch:
             Of the sum whose Hessian is asked for; zeros by default.
         """
         rows, states = len(coefficients), 2 * self.kind.plant.modes
+        COST.gradients += rows
+        COST.hessians += rows if multipliers is not None else 0
         width = np.zeros(rows) if width is None else width
         weights = multipliers or Multipliers(
             np.zeros(rows), np.zeros((rows, states)), np.zeros((rows, self.limited))

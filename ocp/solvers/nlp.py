@@ -10,6 +10,7 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.cost import COST
 from quietarm.ocp.interrupts import keep_interrupts, silent_errors
 
 Options = Mapping[str, str | int | float]
@@ -85,4 +86,7 @@ def run_ipopt(
         )  # fmt: skip
     x, of_constraints = (result[name].full().ravel() for name in ("x", "lam_g"))
     stats = solver.stats()
+    COST.candidates += int(stats.get("n_call_nlp_f", 0))
+    COST.gradients += int(stats.get("n_call_nlp_grad_f", 0))
+    COST.hessians += int(stats.get("n_call_nlp_hess_l", 0))
     return Stop(x, of_constraints, str(stats["return_status"]), int(stats["iter_count"]))

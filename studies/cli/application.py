@@ -34,10 +34,6 @@ COMMANDS = {
 }
 """What each command does. `NAME` is the function `NAME` of `commands.NAME`, and `list` is `list_`
 of `commands.list_`."""
-del COMMANDS["bench"]  # until it is here
-COMMANDS |= {  # until their heirs are here
-    "contest": "",
-}  # fmt: skip
 HEIRS = {
     "floor": "plan --profile free", "lookup": "plan --from moves.zarr",
     "import": "evaluate --coefficients results.csv", "polish": "front --polish front.json",

@@ -210,9 +210,9 @@ workers_options = options(workers_option, scheduler_option)
 def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
     """Warn where more workers start than there are cores; no more start than pieces of work."""
     # a plan by the gradient needs no workers
-    from quietarm.metaheuristics.sharing.workers import Workers, cores_here
+    from joblib import cpu_count
 
-    cores, workers = cores_here(), Workers(workers).local(pieces)
+    cores, workers = cpu_count(), min(workers, pieces)
     if workers > cores:
         words = f"{workers} workers will share {cores} core{'s' * (cores > 1)}"
         console.print(words, highlight=False)

@@ -17,9 +17,9 @@ from quietarm.ocp import (
     evaluate_robustness,
     task_difference,
 )
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.robustness.perturbed import worst_case, worst_of
-from quietarm.ocp.task import QUANTITIES
 
 
 @dataclass(frozen=True)
@@ -60,21 +60,21 @@ def judge(
     name: str,
     moved: Plan | Floor | Candidate,
     ranges: Mapping[str, float],
-    limits: PointToPoint,
+    task: PointToPoint,
     samples: int = 0,
 ) -> Judged:
-    """Judge a motion within ranges of parameter errors, and by the limits of a task.
+    """Judge a motion of a task's move within ranges of parameter errors, and by its limits.
 
     With samples, the insensitivity and the percentiles of so many random plants as well.
     """
     candidate = moved if isinstance(moved, Candidate) else moved.candidate
-    nominal = candidate.perturbed({})
+    nominal = Candidate(task.certain, candidate.path)
     own = Judged(
-        name, nominal.motion, exceeded=tuple(nominal.motion.exceeded(limits.limits, OVERRUN))
+        name, nominal.motion, exceeded=tuple(nominal.motion.exceeded(task.limits, OVERRUN))
     )
     if isinstance(moved, Plan):
-        task = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)
-        path = task, moved.profile, moved.coefficients
+        uncertain = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)
+        path = uncertain, moved.profile, moved.coefficients
         own = replace(
             own,
             worst=worst_of(*path),
@@ -100,7 +100,8 @@ def refuse_other_moves(tasks: Mapping[str, PointToPoint]) -> None:
 
 
 def _bare(task: PointToPoint) -> PointToPoint:
-    without = dict.fromkeys(quantity.limit for quantity in QUANTITIES.values())
+    limits = [quantity.limit for quantity in QUANTITIES.values()]
+    without = dict.fromkeys([*limits, "torque_speed"])
     return replace(task.certain, **without)  # pyright: ignore[reportArgumentType]
 
 

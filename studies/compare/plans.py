@@ -96,9 +96,15 @@ def _cells(one: Judged) -> Iterator[tuple[str, float | str | None]]:
 
 
 def shown(table: pd.DataFrame) -> pd.DataFrame:
-    """The table with residuals in whole thousandths of a millimetre: below that they are rest."""
+    """What a page has room for; residuals in whole thousandths of a millimetre: 0 is rest."""
     lengths = [column for column in table if str(column).endswith("[mm]")]
-    return table.round(dict.fromkeys(lengths, 3))
+    rounded = table.round(dict.fromkeys(lengths, 3))
+    return rounded.drop(columns=["parameters", "time [s]"], errors="ignore").rename(
+        columns={
+            "peak torque [N m]": "torque [N m]",
+            "peak acceleration [rad/s^2]": "accel. [1/s^2]",
+        }
+    )
 
 
 def remarks(motions: Sequence[Judged]) -> list[str]:

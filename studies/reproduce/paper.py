@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from math import pi
 
-from quietarm.metaheuristics import PAPER_BOX
+from quietarm.metaheuristics import PAPER_BOX, PRESETS
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL
 from quietarm.models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients, task_difference
@@ -34,6 +34,11 @@ class Case:
     def search(self) -> str:
         """The paper's search for its plant: sections 3.1 and 3.2."""
         return {SINGLE_LINK.name: "vepso", ARM.name: "nsga2"}[self.task.plant.name]
+
+    @property
+    def search_label(self) -> str:
+        """What texts call it."""
+        return PRESETS[self.search].label
 
     @property
     def earlier(self) -> tuple[int, str]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import joblib
@@ -23,7 +25,9 @@ from quietarm.ocp import (
     epsilon_front,
     evaluate_coefficients,
     plan_move,
+    task_difference,
 )
+from quietarm.ocp.record import versions
 from quietarm.ocp.robustness.measures import tolerated_residual
 from quietarm.studies.compare.judged import Judged, judge
 from quietarm.studies.compare.plans import compare_plans
@@ -136,6 +140,7 @@ def recompute_paper(
     effort: Effort | None = None,
     workers: int = 1,
     begin: Callable[[str], object] = lambda name: None,
+    folder: Path | None = None,
 ) -> Reproduction:
     """Recompute the paper's tables and figures; with full effort what its claims need, too.
 
@@ -147,9 +152,12 @@ def recompute_paper(
         Processes that share the work.
     begin : callable, optional
         Is told what is done, piece by piece; there are `number_of_pieces`.
+    folder : path, optional
+        Where the fronts of the searches are kept, each as soon as it is done. Those that are there
+        are not searched again.
     """
     effort = Effort() if effort is None else effort
-    fronts = _in_parallel(_searches(effort), workers, begin)
+    fronts = _in_parallel(_searches(effort, folder), workers, begin)
     answers = _in_parallel(_solves(effort), workers, begin)
     found = {
         of: Searched(*of[:2], tuple(fronts[*of, seed] for seed in range(effort.seeds)))
@@ -166,26 +174,50 @@ def recompute_paper(
 
 def number_of_pieces(effort: Effort) -> int:
     """How many pieces of work there are."""
-    return len(_searches(effort)) + len(_solves(effort)) + len(CONDITIONS) * effort.full
+    return len(_searches(effort, None)) + len(_solves(effort)) + len(CONDITIONS) * effort.full
 
 
 _Calls = dict[Hashable, tuple[str, Callable[[], Any]]]
 
 
-def _searches(effort: Effort) -> dict[Any, tuple[str, Callable[[], Front]]]:
+def _searches(effort: Effort, folder: Path | None) -> dict[Any, tuple[str, Callable[[], Front]]]:
     """Every search; the long ones first, so that in the end no worker waits long for another."""
     calls: dict[Any, tuple[str, Callable[[], Front]]] = {}
     ordered = sorted(effort.searched, key=lambda of: of[0].search)
     for (case, which, old), seed in product(ordered, range(effort.seeds)):
-        bound = case.bound if isinstance(which, int) else None  # other inputs have their own
         words = f"N = {which}" if isinstance(which, int) else which
-        name = f"{case.search}{' with the constants of 2002' * old}: {case.name}, {words}"
-        call = partial(
-            search, case.task, case.search, profile=profile_with(which), bound=bound, seed=seed,
-            settings=VEPSO_2002 if old else None, **effort.searches.get(case.search, {}),
-        )  # fmt: skip
-        calls[case, which, old, seed] = f"{name}, seed {seed}", call
+        own = f"{case.search}{' with the constants of 2002' * old}"
+        name = f"{own}: {case.name}, {words}, seed {seed}"
+        asked = {
+            "profile": profile_with(which), "seed": seed,
+            "bound": case.bound if isinstance(which, int) else None,  # others have their own
+            "settings": VEPSO_2002 if old else {}, **effort.searches.get(case.search, {}),
+        }  # fmt: skip
+        kept = folder and folder / f"{re.sub(r'[^a-z0-9.-]+', '-', name.lower())}.json"
+        calls[case, which, old, seed] = name, partial(_search, case, asked, kept)
     return calls
+
+
+def _search(case: Case, asked: Mapping[str, Any], kept: Path | None) -> Front:
+    """A front that is kept already, if it is of the same search, or found now and kept."""
+    if kept is not None and kept.exists():
+        front = Front.load(kept)
+        sizes = {name: asked[name] for name in ("population", "generations") if name in asked}
+        same = (
+            not task_difference(front.task, case.task),
+            (front.profile, front.seed) == (asked["profile"], asked["seed"]),
+            front.settings.items() >= {**asked["settings"], **sizes}.items(),
+            front.versions.items() >= versions().items(),
+        )
+        if all(same):
+            return front
+    front = search(case.task, case.search, **asked)
+    if not front.complete:
+        raise KeyboardInterrupt
+    if kept is not None:
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        front.save(kept)
+    return front
 
 
 def _solves(effort: Effort) -> _Calls:
@@ -238,7 +270,7 @@ def _systems(found: Reproduction, case: Case, begin: Callable[[str], object]) ->
     moved: dict[str, Plan | Floor | str] = {
         "paper": plan or f"prints {printed.energy:.4g} J, and no coefficients",
         **{name: found.answers["other", case, name] for name in (case.earlier[1], "spline")},
-        case.search: middle or "the middle seed has no such small residual",
+        case.search_label: middle or "the middle seed has no such small residual",
         "gradient, in the box": found.in_box(case, SIX_TERMS),
         "gradient": found.free(case, SIX_TERMS),
         "robust plan": robust,

@@ -61,7 +61,7 @@ def _cells(result: Reproduction, row: Row) -> Iterator[tuple[str, object]]:
     if (case, terms) in MENDED and mended:
         yield "a_5 mended [J]", mended.energy
         yield "  residual of it [mm]", 1e3 * mended.residual
-    yield f"{case.search} [J]", spread_words(found.energies, ".4g")
+    yield f"{case.search_label} [J]", spread_words(found.energies, ".4g")
     yield "  within [mm]", 1e3 * found.level
     yield "  time of a run [s]", found.seconds
     yield "gradient, in the box [J]", result.in_box(case, terms).energy
@@ -81,7 +81,7 @@ def six_table(result: Reproduction) -> pd.DataFrame:
         floor = result.floor(case)
         rows.append({
             "condition": case.name,
-            "search": case.search,
+            "search": case.search_label,
             "within [mm]": 1e3 * six.level,
             "earlier study": f"{name}, ref. [{reference}]",
             "printed there [J]": row.earlier_energy,
@@ -166,7 +166,7 @@ def _against_earlier(result: Reproduction, case: Case, title: str) -> Figure:
 def _by_search(result: Reproduction, case: Case, which: Input, colour: str) -> list[Line]:
     """The middle seed of the paper's search; none where that did not come near enough."""
     found: Searched | None = result.searched.get((case, which))
-    label = f"{f'N = {which}' if isinstance(which, int) else which}, {case.search}"
+    label = f"{f'N = {which}' if isinstance(which, int) else which}, {case.search_label}"
     return (
         [] if found is None or found.middle is None else [Line(found.middle, label, colour, "--")]
     )

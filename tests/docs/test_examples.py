@@ -6,15 +6,12 @@ import runpy
 import shlex
 import subprocess
 import sys
-from functools import partial
 from pathlib import Path
 
 import pytest
-import quietarm.studies.reports.comparison
-import quietarm.studies.study.work
 from pages import COMMAND_BLOCKS, PAGES, blocks
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import Front, Plan, PointToPoint, energy_floor, evaluate_coefficients, plan_move
+from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients, plan_move
 from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
 
@@ -148,9 +145,7 @@ SEARCH = ["--population", "20", "--generations", "5"]
 SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of its own
     "front": ["--points", "5"],
     "search": SEARCH,
-    "study": [*SEARCH, "--runs", "1", "--points", "4"],
     "contest": ["--runs", "1", "--evaluations", "150", "--methods", "nsga2,vepso"],
-    "versus": ["--terms", "4"],
 }
 
 
@@ -165,10 +160,7 @@ def shortened(words):
 
 @pytest.fixture
 def follow(tmp_path, capfd, monkeypatch, quick_pictures):
-    """Run the commands of a block in this process, with rough floors; what each of them prints."""
-    rough = partial(energy_floor, starts=1, tolerance=0.05)
-    monkeypatch.setattr(quietarm.studies.reports.comparison, "energy_floor", rough)
-    monkeypatch.setattr(quietarm.studies.study.work, "energy_floor", rough)
+    """Run the commands of a block in this process, on coarse grids; what each of them prints."""
     monkeypatch.setattr(floor_search, "FIRST_INTERVALS", 24)
     monkeypatch.chdir(tmp_path)
     asked = set()

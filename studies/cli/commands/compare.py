@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.options import command, quiet_option, refuse_typed
+from quietarm.studies.cli.files import FOLDER, output_option, report_files
+from quietarm.studies.cli.options import command, quiet, refuse_typed
 from quietarm.studies.cli.quantities import once
-from quietarm.studies.cli.task import plant_file_option
-from quietarm.studies.cli.types import ERROR, FOLDER, INPUT, WHOLE, Parsed
+from quietarm.studies.cli.types import ERROR, INPUT, WHOLE, Parsed
 from quietarm.studies.display.progress import working
 from quietarm.studies.report import Report
 from rich.console import Console
@@ -39,21 +37,25 @@ def _names(text: str) -> tuple[str, ...]:
 
 @command()
 @click.argument("files", nargs=-1, type=INPUT, metavar="FILE...")
-@click.option("--baselines", type=Parsed("names", _names), default=(),
-              help="Plans: add these for the same move, as zvd,ruckig,zvd-ruckig; or all.",
+@click.option(
+    "--baselines", type=Parsed("names", _names), default=(),
+    help="Plans: add these for the same move, as zvd,ruckig,zvd-ruckig; or all.",
 )  # fmt: skip
-@click.option("--error", "errors", type=ERROR, multiple=True, metavar="NAME=SHARE",
-              help="Plans: largest error of the frequency, the damping or a parameter, as "
-              "frequency=8%; may be repeated. [default: what the plans are made for]")  # fmt: skip
-@click.option("--samples", type=WHOLE, default=2000, show_default=True,
-              help="Plans: random plants for the percentiles.")  # fmt: skip
+@click.option(
+    "--error", "errors", type=ERROR, multiple=True, metavar="NAME=SHARE",
+    help="Plans: by how much the frequency, the damping or a parameter may be wrong, as "
+    "frequency=8%; may be repeated. [default: what the plans are made for]",
+)  # fmt: skip
+@click.option(
+    "--samples", type=WHOLE, default=2000, show_default=True,
+    help="Plans: random plants for the percentiles.",
+)  # fmt: skip
 @click.option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one.")
-@click.option("--free/--no-free", default=True, show_default=True,
-              help="Fronts: find the least energy over all joint motions as well; some seconds.",
+@click.option(
+    "--free/--no-free", default=True, show_default=True,
+    help="Fronts: find the least energy over all joint motions as well; some seconds.",
 )  # fmt: skip
-@click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
-@plant_file_option(expose_value=False)
-@quiet_option
+@output_option({FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"})
 def compare(
     files: tuple[Path, ...],
     baselines: tuple[str, ...],
@@ -61,8 +63,7 @@ def compare(
     samples: int,
     reference: Path | None,
     free: bool,
-    output: Path | None,
-    quiet: bool,
+    output: Sequence[Path],
 ) -> None:
     """Compare fronts of one task, or plans of one move.
 
@@ -81,40 +82,29 @@ def compare(
     from quietarm.ocp import Front, Plan
     from quietarm.studies.compare.opening import open_answers
 
-    wait = partial(working, console=Console(stderr=True), quiet=quiet)
-    with wait("reading"):
+    with working("comparing", Console(stderr=True), quiet=quiet()):
         answers = open_answers(files)
-    plans = {name: one for name, one in answers.items() if isinstance(one, Plan)}
-    fronts = {name: one for name, one in answers.items() if isinstance(one, Front)}
-    if plans:
-        refuse_typed(_OF_FRONTS, "is for fronts; leave it out")
-        report = _of_plans(plans, baselines, once(errors, "--error "), samples, wait)
-    else:
-        refuse_typed(_OF_PLANS, "is for plans; leave it out")
-        report = _of_fronts(fronts, reference, free, wait)
-    finish(report.files(output), report, quiet=quiet)
+        plans = {name: one for name, one in answers.items() if isinstance(one, Plan)}
+        fronts = {name: one for name, one in answers.items() if isinstance(one, Front)}
+        if plans:
+            refuse_typed(_OF_FRONTS, "is for fronts; leave it out")
+            report = _of_plans(plans, baselines, once(errors, "--error "), samples)
+        else:
+            refuse_typed(_OF_PLANS, "is for plans; leave it out")
+            report = _of_fronts(fronts, reference, free)
+    finish(report_files(output, report), report)
 
 
 def _of_plans(
-    plans: dict[str, Plan],
-    baselines: Sequence[str],
-    ranges: dict[str, float],
-    samples: int,
-    wait: Callable[[str], AbstractContextManager[None]],
+    plans: Mapping[str, Plan], baselines: Sequence[str], ranges: Mapping[str, float], samples: int
 ) -> Report:
     from quietarm.studies.compare.plans import compare_plans, plans_report
 
-    with wait("judging"):
-        judged = compare_plans(plans, baselines, ranges, samples)
+    judged = compare_plans(plans, baselines, ranges, samples)
     return plans_report(next(iter(plans.values())).task, judged)
 
 
-def _of_fronts(
-    fronts: dict[str, Front],
-    reference: Path | None,
-    free: bool,
-    wait: Callable[[str], AbstractContextManager[None]],
-) -> Report:
+def _of_fronts(fronts: dict[str, Front], reference: Path | None, free: bool) -> Report:
     from quietarm.studies.compare.front_report import by_task, fronts_report
     from quietarm.studies.compare.fronts import compare_fronts
     from quietarm.studies.reading.saved import load_front
@@ -132,9 +122,7 @@ def _of_fronts(
         )
         for one in tasks
     ]
-    if free:
-        with wait("finding free motions"):
-            found = list(map(_with_floor, found))
+    found = list(map(_with_floor, found)) if free else found
     terms = [{run.front.profile.size for run in one.runs} for one in found]
     return fronts_report(
         found, [paper_points(one.task, sizes) for one, sizes in zip(found, terms, strict=True)]

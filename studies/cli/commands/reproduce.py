@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.options import command, quiet_option
-from quietarm.studies.cli.types import FOLDER, WHOLE
+from quietarm.studies.cli.files import FOLDER, ending_of, output_option, report_files
+from quietarm.studies.cli.options import command, quiet
+from quietarm.studies.cli.types import WHOLE
 from rich.console import Console
 
 
@@ -14,12 +16,12 @@ from rich.console import Console
 @click.option("--full", is_flag=True, help="Judge every claim as well, with several seeds.")
 @click.option("--seeds", type=WHOLE, help="Seeds of VEPSO and NSGA-II. [default: 1; --full: 9]")
 @click.option("--workers", type=WHOLE, help="Processes that share the work. [default: one a core]")
-@click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
-@quiet_option
-def reproduce(
-    full: bool, seeds: int | None, workers: int | None, output: Path | None, quiet: bool
-) -> None:
+@output_option({FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"})
+def reproduce(full: bool, seeds: int | None, workers: int | None, output: Sequence[Path]) -> None:
     """Recompute the paper's Tables 2, 3, 5 and 6 and its figures; --full also judges its claims.
+
+    Fronts are kept in the folder's `fronts` as they are found: the same line goes on after an
+    interruption.
 
     \b
     Examples:
@@ -36,6 +38,7 @@ def reproduce(
     number = (9 if full else 1) if seeds is None else whole("seeds", seeds, 1)
     effort = Effort(full=full, seeds=number)
     processes = joblib.cpu_count() if workers is None else whole("workers", workers, 1)
-    with progress(number_of_pieces(effort), Console(stderr=True), quiet=quiet) as begin:
-        report = reproduction_report(recompute_paper(effort, processes, begin))
-    finish(report.files(output), report, quiet=quiet)
+    with progress(number_of_pieces(effort), Console(stderr=True), quiet=quiet()) as begin:
+        folder = next((path / "fronts" for path in output if ending_of(path) == FOLDER), None)
+        report = reproduction_report(recompute_paper(effort, processes, begin, folder))
+    finish(report_files(output, report), report)

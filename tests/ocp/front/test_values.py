@@ -95,7 +95,7 @@ figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energ
 )
 def test_a_front_comes_back_as_it_was(tmp_path_factory, figures, seed, share, complete):
     path = tmp_path_factory.mktemp("front") / "front.json"
-    history = (qa.Generation(20, share),)
+    history = (qa.Mark(20, share),)
     points = qa.non_dominated(_points(*figures))
     front = _front(points, seed=seed, complete=complete, history=history)
     front.save(path)

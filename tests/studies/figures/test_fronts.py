@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from quietarm.ocp import Generation
+from quietarm.ocp import Mark
 from quietarm.studies.figures import front_figure
 
 
 def history(*shares):
-    return tuple(Generation(10 * (i + 1), share) for i, share in enumerate(shares))
+    return tuple(Mark(10 * (i + 1), share) for i, share in enumerate(shares))
 
 
 @pytest.fixture

@@ -1,19 +1,8 @@
 """The paper recomputed once for all tests, with short searches and few starts."""
 
 import pytest
-from quietarm.studies.reproduce.recompute import Effort, recompute_paper
-
-SHORT = Effort(
-    full=True,
-    searches={
-        "vepso": {"population": 20, "generations": 40},
-        "nsga2": {"population": 20, "generations": 3},
-    },
-    starts=1,
-    other_starts=1,
-    points=3,
-    free_motion={"starts": 1, "tolerance": 0.05},
-)
+from quietarm.studies.reproduce.recompute import recompute_paper
+from short_paper import SHORT
 
 
 @pytest.fixture(scope="session")

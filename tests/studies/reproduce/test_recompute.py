@@ -20,8 +20,9 @@ from quietarm.studies.reproduce.paper import (
     condition_of,
     paper_points,
 )
-from quietarm.studies.reproduce.recompute import Effort, Reproduction
+from quietarm.studies.reproduce.recompute import Effort, Reproduction, recompute_paper
 from quietarm.studies.reproduce.report import TITLES, reproduction_report
+from short_paper import SHORT
 
 ROUNDED = 1 + 1e-6
 """Room for two solves of one problem to end at the same optimum."""
@@ -94,6 +95,26 @@ def test_every_system_stands_on_every_condition_with_its_worst_case(reproduction
         if found["robust plan"].motion:
             assert found["robust plan"].worst.residual < 0.055 * cycloid.motion.residual
         assert bool(found["paper"].why) == ((case, 6) not in COEFFICIENTS)
+
+
+def test_after_an_interruption_the_fronts_that_are_there_are_kept(tmp_path):
+    effort = replace(SHORT, full=False)
+    told = list[str]()
+
+    def interrupt(name):
+        told.append(name)
+        if len(told) == 2 or name.startswith("gradient"):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        recompute_paper(effort, 1, interrupt, tmp_path)
+    kept = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    assert len(kept) in (2, 3)  # the third may be done before the second is told
+    with pytest.raises(KeyboardInterrupt):
+        recompute_paper(effort, 1, interrupt, tmp_path)
+    after = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    assert len(after) == len(effort.searched)
+    assert {name: after[name] for name in kept} == kept
 
 
 # Claims

@@ -1,0 +1,179 @@
+"""The runs behind docs/results, and its page: methods of both kinds on independent moves.
+
+    python benchmarks/results_page.py FOLDER [--workers N] [--page docs/results]
+
+Goes on where it stopped; some 25 minutes of one core. Seven named moves that share nothing but
+their plants, and three on which the gradient should have a hard time: Gaussians and a network as
+profiles, whose coefficients enter nonlinearly, and an energy in stages, flat in many places. Their
+reference fronts are the best of long runs of both kinds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import dataclass
+from functools import partial
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from quietarm.metaheuristics.gradient import multistart_front
+from scipy.optimize import minimize
+
+import quietarm as qa
+
+MOVES = (
+    "single-link-30deg-0.8s", "single-link-90deg-1s", "single-link-90deg-1.1s",
+    "arm-on-flexible-link-90deg-0.8s", "arm-on-flexible-link-135deg-1s",
+    "arm-on-flexible-link-180deg-1.2s", "dual-link-90deg-0.9s",
+)  # fmt: skip
+SEARCHES = (
+    "nsga2", "nsga2-paper", "vepso", "smsemoa", "spea2", "gde3", "mopso-cd", "cmopso", "agemoea2",
+    "nsga3", "random",
+)  # fmt: skip
+SEEDS, FEW = 9, 3
+BUDGET, LARGE = 5_000, 50_000
+
+
+@dataclass(frozen=True)
+class Stages(qa.Energy):
+    """Power from a supply that rises in stages: a smooth staircase, flat at every whole stage."""
+
+    name = "stages"
+    stage: float = 0.1
+
+    def smooth(self, torque: Any, speed: Any) -> Any:
+        """The power [W] with ripple: no slope where it is a whole number of stages."""
+        x = ca.sqrt((torque * speed / self.stage) ** 2 + 1e-6)
+        return self.stage * (x - ca.sin(2 * pi * x) / (2 * pi))
+
+
+def hard_tasks() -> dict[str, tuple[qa.PointToPoint, Any, float]]:
+    """Task, profile and bound of the moves that are hard for the gradient, by name."""
+    link, arm = qa.SingleLinkManipulator(), qa.ArmOnFlexibleLink()
+    gaussians, network = qa.CycloidGaussians(3), qa.CycloidNetwork(3)
+    return {
+        "link-60deg-0.9s-gaussians": (
+            qa.PointToPoint(link, pi / 3, 0.9), gaussians, gaussians.default_bound,
+        ),
+        "arm-60deg-0.7s-network": (
+            qa.PointToPoint(arm, pi / 3, 0.7), network, network.default_bound,
+        ),
+        "link-45deg-0.85s-stages": (
+            qa.PointToPoint(link, pi / 4, 0.85, energy=Stages()), qa.CycloidPolynomial(6), 0.2,
+        ),
+    }  # fmt: skip
+
+
+def hard_problem(name: str, folder: Path) -> qa.NamedProblem:
+    """A hard move with its reference front, which is found once: the best of both kinds."""
+    path = folder / "references" / f"{name}.json"
+    task, profile, bound = hard_tasks()[name]
+    if not path.exists():
+        fronts = [
+            qa.search(task, method, profile=profile, bound=bound, evaluations=30_000, seed=seed)
+            for method in ("gde3", "cmopso") for seed in (1000,)
+        ]  # fmt: skip
+        for find in (partial(qa.epsilon_front, points=60, starts=12), multistart_front):
+            try:
+                fronts.append(find(task, profile, bound=bound, seed=1000))
+            except qa.QuietarmError as error:
+                print(f"{name}: {error}", flush=True)
+        fronts += [qa.polish_front(front).front for front in fronts[:2]]
+        table = np.vstack([front.coefficients for front in fronts])
+        lower, upper = profile.box(bound)
+        best = qa.Front.from_coefficients(
+            task, np.clip(table, lower, upper), method="the best of both kinds", profile=profile,
+            settings={"bound": bound},
+        )  # fmt: skip
+        for front in fronts:
+            print(name, front.method, len(front.points), front.least_energy(1e-3), flush=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        best.save(path)
+    return qa.NamedProblem.of_front(name, qa.Front.load(path))
+
+
+def differences(function: Any, seed: int, budget: int) -> None:
+    """SLSQP with differences, on the energy within one residual limit after another.
+
+    What is left of the gradient where an energy is a black box; a limit is a share of what the
+    cheapest motion leaves, drawn at random, and so are starts.
+    """
+    random, reach = np.random.default_rng(seed), np.inf
+    box = list(zip(function.lower, function.upper, strict=True))
+
+    def at(x: Any) -> Any:
+        return function(np.clip(x, function.lower, function.upper)[None])[0][0]
+
+    def slopes(x: Any, column: int) -> Any:
+        step = 1e-6
+        rows = np.vstack([x, x + step * np.eye(len(x))])
+        values = function(rows)[0][:, column]
+        return (values[1:] - values[0]) / step
+
+    while True:
+        limit = random.uniform(0.0, reach) if np.isfinite(reach) else None
+        within = [] if limit is None else [
+            {"type": "ineq", "fun": lambda x, limit=limit: 1e2 * (limit - at(x)[0]),
+             "jac": lambda x: -1e2 * slopes(x, 0)}
+        ]  # fmt: skip
+        start = random.uniform(function.lower, function.upper)
+        scale = 1.0 / max(at(start)[1], 1e-12)
+        found = minimize(
+            lambda x, scale=scale: scale * at(x)[1], start, bounds=box, method="SLSQP",
+            jac=lambda x, scale=scale: scale * slopes(x, 1), constraints=within,
+        )  # fmt: skip
+        if limit is None:
+            reach = float(at(found.x)[0])
+
+
+def jobs_of(problems: list[Any]) -> list[qa.Job]:
+    """Every job, one seed after another."""
+    searches = (*SEARCHES, "nsga2+polish", "gde3+polish", differences)
+    ipopt = ("epsilon:ipopt", "weighted:ipopt")
+    jobs = list[qa.Job]()
+    for seed in range(SEEDS):
+        for problem in problems:
+            own = partial(qa.Job, problem, seed=seed)
+            jobs += [own(name, budget=BUDGET) for name in searches]
+            jobs += [own(name) for name in ("epsilon", "weighted", "multistart")]
+        for problem in problems if FEW <= seed < 2 * FEW else []:  # what takes long, after some
+            own = partial(qa.Job, problem, seed=seed - FEW)
+            jobs += [own(name, budget=LARGE) for name in ("nsga2", "gde3")]
+            jobs += [own(name, settings={"points": 20}) for name in ipopt]
+    return jobs
+
+
+def main() -> None:
+    """Run what is missing, then write the page."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--page", type=Path)
+    given = parser.parse_args()
+    hard = [hard_problem(name, given.folder) for name in hard_tasks()]
+    jobs = jobs_of([*(qa.problem_of(name) for name in MOVES), *hard])
+
+    def report(job: qa.Job, front: qa.Front, done: int, total: int) -> None:
+        print(f"{done}/{total} {job.name} {front.seconds:.2f} s", flush=True)
+
+    try:
+        fronts = qa.run_jobs(jobs, given.folder, workers=given.workers, report=report)
+    except qa.LostJobsError as error:
+        print(error)
+        fronts = error.fronts
+    if given.page:
+        from quietarm.studies.bench import Results, bench_report
+
+        line = f"python {' '.join(sys.argv)}"
+        template = Path(__file__).with_name("results_page.md")
+        for path, write in bench_report(Results.of_jobs(fronts), line, template).files(given.page):
+            if path is not None:
+                write(path)
+
+
+if __name__ == "__main__":
+    main()

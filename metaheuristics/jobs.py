@@ -1,0 +1,371 @@
+"""Jobs: one method on one problem from one seed gives one front, and one file of a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
+from quietarm.metaheuristics.gradient import GRADIENT, gradient_front, polished
+from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
+from quietarm.metaheuristics.quality import measured
+from quietarm.metaheuristics.search import MOST_EVALUATIONS, search
+from quietarm.ocp import Front, QuietarmError
+from quietarm.ocp.checks import install, unknown, whole
+from quietarm.ocp.record import Setting
+
+if TYPE_CHECKING:
+    from pymoo.core.algorithm import Algorithm
+
+Method: TypeAlias = "str | Algorithm | Callable[..., Any]"
+POLISH = "+polish"
+_REHEARSAL = 3
+"""Generations, or points, that are found and forgotten before the first job of its kind in a
+process: what is compiled and loaded then is no part of a method's time."""
+_rehearsed: set[tuple[NamedProblem, str]] = set()
+
+
+@dataclass(frozen=True)
+class Job:
+    """One method on one problem from one seed.
+
+    Attributes
+    ----------
+    problem : NamedProblem
+        The problem, or the name of one of `PROBLEMS`.
+    method : str, pymoo Algorithm or callable
+        A search of `PRESETS`, as it is or polished by the gradient (``"nsga2+polish"``); a method
+        of `GRADIENT`, as ``"epsilon"`` or ``"weighted:ipopt"``; an algorithm of pymoo that was not
+        run yet; or a function of your own, called with the problem's recorded function, seed and
+        budget, of whose candidates the first `budget` count.
+    seed : int
+        Seed of the random numbers.
+    budget : int, optional
+        Evaluations of a search; those of its preset by default. The gradient's methods end by
+        themselves and have none.
+    settings : mapping, optional
+        Of the method: what `search` takes, ``population`` too; ``points`` of a front by the
+        gradient, ``starts`` of multistart.
+
+    Raises
+    ------
+    ValueError
+        When a name is not known, a number is out of range, or settings do not fit the method.
+    """
+
+    problem: NamedProblem
+    method: Method
+    seed: int = 0
+    budget: int | None = None
+    settings: Mapping[str, Setting] = field(default_factory=dict, hash=False)
+
+    def __init__(
+        self,
+        problem: NamedProblem | str,
+        method: Method,
+        seed: int = 0,
+        budget: int | None = None,
+        settings: Mapping[str, Setting] | None = None,
+    ) -> None:
+        problem = problem_of(problem) if isinstance(problem, str) else problem
+        given = {
+            "problem": problem, "method": method, "seed": whole("seed", seed, 0),
+            "budget": _budget(method, budget, settings or {}), "settings": dict(settings or {}),
+        }  # fmt: skip
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def label(self) -> str:
+        """The method with its settings, as it stands in files and tables."""
+        words = [f"{name}={value}" for name, value in sorted(self.settings.items())]
+        return f"{method_name(self.method)}{'(' + ','.join(words) + ')' if words else ''}"
+
+    @property
+    def name(self) -> str:
+        """Its place in a folder, without the ending."""
+        spent = "" if self.budget is None else f"{self.budget}-evaluations-"
+        return f"{self.problem.name}/{self.label.replace(':', '-by-')}/{spent}seed{self.seed}"
+
+    def run(self) -> Front:
+        """Find the front, with its quality on the way; points by CVODES.
+
+        Its ``settings`` name the problem; its last mark has cost and quality at the end.
+        """
+        reference = self.problem.reference()
+        if (self.problem, self.label) not in _rehearsed:
+            self._find(rehearse=True)
+            _rehearsed.add((self.problem, self.label))
+        found = measured(self._find(), reference)
+        stated = {"problem": self.problem.name, **found.settings}
+        if self.budget is not None:
+            stated["budget"] = self.budget
+        return replace(found, settings=stated)
+
+    def _find(self, rehearse: bool = False) -> Front:
+        problem, budget, settings = self.problem, self.budget, dict(self.settings)
+        asked: Any = {"profile": problem.profile, "bound": problem.bound, "seed": self.seed}
+        if self.method in GRADIENT:
+            if rehearse:
+                settings = {"starts" if "multistart" in self.label else "points": _REHEARSAL}
+            return gradient_front(problem.task, method=self.method, settings=settings, **asked)
+        assert budget is not None
+        if callable(self.method) and not _is_algorithm(self.method):
+            return self._own(budget)
+        method: Any = self.method
+        population: Any = settings.pop("population", None)
+        polish = isinstance(method, str) and method.endswith(POLISH)
+        if isinstance(method, str):
+            method = method.removesuffix(POLISH)
+            preset = PRESETS[method]
+            size = preset.evaluations(population or preset.population, 1)
+        else:
+            size = 100
+        front = search(
+            problem.task, method, population=population, settings=settings,
+            evaluations=min(budget, _REHEARSAL * size) if rehearse else budget,
+            reference=problem.reference(), **asked,
+        )  # fmt: skip
+        return polished(front) if polish else front
+
+    def _own(self, budget: int) -> Front:
+        """What a function of one's own asks for, up to the budget."""
+        function: Any = self.problem.recorded()
+        within, method = _Afforded(function, budget), self.method
+        assert callable(method)
+        with suppress(_SpentError):
+            method(within, self.seed, budget)
+        return function.front(self.label, self.seed)
+
+
+class _SpentError(Exception):
+    """A function of one's own has had all of its evaluations."""
+
+
+class _Afforded:
+    """A recorded function that is over after its budget."""
+
+    def __init__(self, function: Any, budget: int) -> None:
+        self._function, self._budget = function, budget
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.__dict__["_function"], name)
+
+    def __call__(self, candidates: Any) -> Any:
+        left = self._budget - self._function.record.evaluations
+        if len(candidates) > left:
+            if left:
+                self._function(candidates[:left])
+            raise _SpentError
+        return self._function(candidates)
+
+
+def method_name(method: Method) -> str:
+    """What a method is called."""
+    if isinstance(method, str):
+        return method
+    return getattr(method, "__name__", type(method).__name__)
+
+
+def _is_algorithm(method: Method) -> bool:
+    return hasattr(method, "infill")
+
+
+def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting]) -> int | None:
+    """The evaluations of a method; ValueError where method, settings and budget do not fit."""
+    if isinstance(method, str) and method in GRADIENT:
+        if budget is not None:
+            raise ValueError(f"{method} ends by itself; leave its budget out")
+        return None
+    if isinstance(method, str):
+        search_name = method.removesuffix(POLISH)
+        if search_name not in PRESETS:
+            raise ValueError(unknown("method", method, [*PRESETS, *GRADIENT], f", NAME{POLISH}"))
+        preset, own = preset_of(search_name), dict(settings)
+        population: Any = own.pop("population", preset.population)
+        preset.checked(population, own)
+        if budget is None:
+            return preset.evaluations(population, preset.generations)
+        preset.generations_for(budget, population)
+    elif budget is None:
+        raise ValueError(f"give a budget for {method_name(method)}, in evaluations")
+    return whole("budget", budget, 1, MOST_EVALUATIONS)
+
+
+class LostJobsError(QuietarmError):
+    """Some jobs failed, or their workers died; `fronts` has those that are done."""
+
+    def __init__(self, failures: Mapping[str, str], fronts: Mapping[Job, Front]) -> None:
+        self.fronts = fronts
+        (name, why), more = next(iter(failures.items())), len(failures) - 1
+        super().__init__(
+            f"{name}: {why}{f'; and {more} more' if more else ''}; {len(fronts)} jobs are done, "
+            "run the others again, with fewer workers where memory ran short"
+        )
+
+
+Report = Callable[[Job, Front, int, int], None]
+"""Called with a job, its front, and how many of how many are done."""
+
+
+def run_jobs(
+    jobs: Sequence[Job],
+    folder: str | Path,
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    part: tuple[int, int] = (1, 1),
+    report: Report = lambda job, front, done, total: None,
+) -> dict[Job, Front]:
+    """Run jobs whose files are not there yet.
+
+    Each is a file of its own, written whole as soon as it is done: after any stop the same call
+    goes on, and what is lost are the jobs that were under way.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+        No job twice.
+    folder : path
+        Where their files are.
+    workers : int
+        Processes of this machine, of one thread each; 1 runs in this one.
+    scheduler : str, optional
+        Address of a dask scheduler whose workers run them instead, as ``tcp://host:8786``.
+    part : (int, int)
+        Which of how many equal parts of the jobs, as ``(2, 8)`` for every eighth from the second.
+    report : callable, optional
+        Called after each job that is run.
+
+    Returns
+    -------
+    dict of Job to Front
+        All jobs that are done, in the order given.
+
+    Raises
+    ------
+    ValueError
+        When a job is given twice, a file is of another problem or other versions, a number is out
+        of range, or no scheduler answers.
+    LostJobsError
+        At the end, when jobs failed, or their workers died twice.
+    """
+    workers = whole("workers", workers, 1, 1024)
+    index, parts = whole("part", part[0], 1, part[1]), whole("parts", part[1], 1)
+    _refuse_twice(jobs)
+    done, failures = finished_jobs(jobs, folder), dict[str, str]()
+    mine = [job for job in jobs[index - 1 :: parts] if job not in done]
+    total, count = len(mine), 0
+    for _ in range(2):  # once again what a killed worker left
+        missing = [job for job in mine if job not in done and job.name not in failures]
+        for job, outcome in _outcomes(missing, Path(folder), workers, scheduler):
+            if isinstance(outcome, Front):
+                done[job], count = outcome, count + 1
+                report(job, outcome, count, total)
+            else:
+                failures[job.name] = outcome
+    failures |= {
+        job.name: "its worker died twice"
+        for job in mine
+        if job not in done and job.name not in failures
+    }
+    ordered = {job: done[job] for job in jobs if job in done}
+    if failures:
+        raise LostJobsError(failures, ordered)
+    return ordered
+
+
+def finished_jobs(jobs: Sequence[Job], folder: str | Path) -> dict[Job, Front]:
+    """The fronts of those jobs whose files are in a folder, which may be missing."""
+    paths = {job: Path(folder, f"{job.name}.json") for job in jobs}
+    return {job: _load(job, path) for job, path in paths.items() if path.exists()}
+
+
+def _load(job: Job, path: Path) -> Front:
+    """A job's file; ValueError where it holds something else."""
+    from quietarm.metaheuristics.record import search_versions
+
+    front, problem = Front.load(path), job.problem
+    same = (front.task, front.profile, front.settings.get("bound"))
+    if same != (problem.task, problem.profile, problem.bound):
+        raise ValueError(f"{path} is of another problem than {problem.name}; give another folder")
+    now = search_versions()
+    for name in ("quietarm", "pymoo"):
+        if front.versions.get(name) != now[name]:
+            raise ValueError(
+                f"{path} is by {name} {front.versions.get(name)}, and here is {now[name]}; give "
+                "another folder"
+            )
+    return front
+
+
+def _refuse_twice(jobs: Sequence[Job]) -> None:
+    seen = set[str]()
+    for job in jobs:
+        if job.name in seen:
+            raise ValueError(f"the job {job.name} is given twice; give it once")
+        seen.add(job.name)
+
+
+def _outcomes(jobs: Sequence[Job], folder: Path, workers: int, scheduler: str | None) -> Any:
+    """Each job with its front, or why there is none, as they end; fewer where a worker dies."""
+    for job, found in side_by_side(_run, jobs, workers, scheduler):
+        if isinstance(found, Front):
+            path = folder / f"{job.name}.json"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            found.save(path)
+        yield job, found
+
+
+def side_by_side(
+    function: Callable[[Any], Any], items: Sequence[Any], workers: int, scheduler: str | None
+) -> Iterator[Any]:
+    """What a function gives for each item, as they end; no more where a worker dies.
+
+    In this process with one worker, else in so many of joblib's, or dask's of a scheduler.
+    """
+    if not items:
+        return
+    if workers == 1 and scheduler is None:
+        yield from map(function, items)
+        return
+    from joblib import Parallel, delayed, parallel_config
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
+
+    client = None if scheduler is None else _client(scheduler)
+    here: Any = {"backend": "loky", "n_jobs": workers, "inner_max_num_threads": 1}
+    try:
+        with parallel_config(**(here if client is None else {"backend": "dask", "n_jobs": -1})):
+            running: Any = Parallel(return_as="generator_unordered", batch_size=1)
+            yield from running(delayed(function)(item) for item in items)
+    except TerminatedWorkerError:
+        return
+    finally:
+        if client is not None:
+            client.close()
+
+
+def _client(scheduler: str) -> Any:
+    """A client of a dask scheduler; ValueError where none answers."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ValueError(f"a scheduler needs dask; {install('cluster')}") from None
+    try:
+        return Client(scheduler, timeout=10)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise ValueError(
+            f"no scheduler answers at {scheduler} ({error}); start one with dask scheduler, or "
+            "leave --scheduler out"
+        ) from None
+
+
+def _run(job: Job) -> tuple[Job, Front | str]:
+    """A job in a worker; what is wrong with it is an outcome and ends no other job."""
+    try:
+        return job, job.run()
+    except (QuietarmError, ValueError, ArithmeticError) as error:
+        return job, str(error)

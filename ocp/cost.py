@@ -1,0 +1,49 @@
+"""What was computed so far in this process: the work that methods are compared by."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+
+@dataclass
+class Cost:
+    """Work of this process.
+
+    Attributes
+    ----------
+    candidates : int
+        Motions simulated for their values alone.
+    gradients, hessians : int
+        Motions simulated with first, and with second derivatives.
+    checks : float
+        Processor seconds of the independent integrator.
+    """
+
+    candidates: int = 0
+    gradients: int = 0
+    hessians: int = 0
+    checks: float = 0.0
+
+    def since(self, earlier: Cost) -> Cost:
+        """What came after an earlier `copy`."""
+        return Cost(**{name: now - getattr(earlier, name) for name, now in vars(self).items()})
+
+    def copy(self) -> Cost:
+        """It as it is now."""
+        return replace(self)
+
+    @contextmanager
+    def checking(self) -> Iterator[None]:
+        """Count the block's processor time as a check."""
+        began = time.thread_time()
+        try:
+            yield
+        finally:
+            self.checks += time.thread_time() - began
+
+
+COST = Cost()
+"""Of this process; every batch, every run of IPOPT and every run of CVODES adds to it."""

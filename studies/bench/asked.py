@@ -1,0 +1,71 @@
+"""What a bench is asked for, as its jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from quietarm.metaheuristics import PRESETS, PROBLEMS, Job, NamedProblem, problem_of
+from quietarm.metaheuristics.gradient import GRADIENT
+from quietarm.ocp import Front
+from quietarm.ocp.checks import whole
+
+ALL = "all"
+
+
+def problems_of(given: Sequence[str]) -> list[NamedProblem]:
+    """Problems by name, or by the file of a front; `all` are those with two objectives."""
+    found = list[NamedProblem]()
+    for name in given:
+        if name == ALL:
+            found += [one for one in PROBLEMS.values() if not one.peak]
+        elif name in PROBLEMS or not Path(name).exists():
+            found.append(problem_of(name))
+        else:
+            found.append(NamedProblem.of_front(Path(name).stem, Front.load(name)))
+    names = [one.name for one in found]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"the problem {name} is given twice; give it once")
+    for one in found:
+        one.reference()  # refuses a third objective
+    return found
+
+
+def jobs_of(
+    problems: Sequence[NamedProblem],
+    methods: Sequence[str],
+    runs: int,
+    evaluations: int,
+    seed: int = 0,
+    settings: Mapping[str, Mapping[str, Any]] | None = None,
+) -> tuple[list[Job], list[str]]:
+    """The jobs, each method on each problem from one seed before the next; and what is left out.
+
+    Methods that know no limits are left out where a problem has some.
+    """
+    for name in methods:
+        if methods.count(name) > 1:
+            raise ValueError(f"the method {name} is given twice; give it once")
+    runs, given = whole("runs", runs, 1, 10_000), settings or {}
+    jobs, left_out = list[Job](), dict[str, None]()
+    for one in range(seed, seed + runs):
+        for problem in problems:
+            for name in methods:
+                preset = PRESETS.get(name.partition("+")[0])
+                if problem.task.limits and preset is not None and not preset.keeps_limits:
+                    left_out[f"{name} knows no limits: left out on {problem.name}"] = None
+                    continue
+                budget = None if name in GRADIENT else evaluations
+                jobs.append(Job(problem, name, one, budget, given.get(name)))
+    return jobs, list(left_out)
+
+
+def write_references(problems: Sequence[NamedProblem], folder: Path) -> None:
+    """Put the reference fronts into the folder, so that its files alone say everything."""
+    for problem in problems:
+        path = folder / "references" / f"{problem.name}.json"
+        if not path.exists():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            problem.reference().front.save(path)

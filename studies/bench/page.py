@@ -1,0 +1,131 @@
+"""The report of a bench: tables, sentences and pictures."""
+
+from __future__ import annotations
+
+import platform
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from quietarm.metaheuristics.objective.population import ACCURACY
+from quietarm.metaheuristics.quality import CORNER
+from quietarm.studies.bench.figures import curves_figure, profiles_figure, ranks_figure
+from quietarm.studies.bench.results import AT_REST, Results, label_of, quartiles
+from quietarm.studies.bench.statistics import (
+    kruskal_on,
+    moves_of,
+    pairs_on,
+    ranking_over,
+    say_power,
+    values_on,
+    verdict_on,
+)
+from quietarm.studies.report import Report
+
+_COST = ("evaluations", "gradients", "hessians", "seconds")
+
+
+def bench_report(results: Results, line: str, template: str | Path = "bench/report.md") -> Report:
+    """The report of a bench that a line made.
+
+    Every picture and table is worked out from the runs alone.
+    """
+    problems = [problem.name for problem in results.problems]
+    ranking, at_rest = ranking_over(results), ranking_over(results, "energy_1mm")
+    runs = min(
+        (len(own) for name in problems for own in values_on(results, name, "missing").values()),
+        default=1,
+    )
+    counts = [len(values_on(results, name, "missing")) for name in problems]
+    tables = {
+        "summary": summary_table(results),
+        **{f"problem_{name}": problem_table(results, name) for name in problems},
+        "runs": results.table.assign(method=results.table["method"].map(label_of)),
+        "pairs": pd.concat([pairs_on(results, name) for name in problems], ignore_index=True),
+        "running_times": results.running_times,
+    }
+    if ranking is not None:
+        tables["ranks"] = ranks_table(ranking)
+    figures: Any = {
+        "curves.png": partial(curves_figure, results),
+        "evaluations.png": partial(curves_figure, results, "evaluations"),
+        "profiles.png": partial(profiles_figure, results),
+    }
+    if ranking is not None:
+        figures["ranks.png"] = partial(ranks_figure, ranking)
+    versions = results.runs[0].front.versions
+    values = {
+        "line": line, "problems": problems, "methods": [label_of(m) for m in results.methods],
+        "power": say_power(runs, max(counts)), "ranking": ranking, "ranking_energy": at_rest,
+        "label_of": label_of, "corner": CORNER, "accuracy": ACCURACY, "at_rest": 1e3 * AT_REST,
+        "moves": len(moves_of(results.problems)),
+        "verdicts": {name: verdict_on(results, name) for name in problems},
+        "kruskal": {name: kruskal_on(results, name) for name in problems},
+        "machine": f"{platform.machine()}, {platform.system()}",
+        "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
+    }  # fmt: skip
+    return Report(template, values, tables, figures)
+
+
+def brief_report(results: Results) -> Report:
+    """What a terminal shows: a narrow table and a verdict for each problem."""
+    columns = ["method", "runs", "missing [%]", "at rest", "seconds"]
+    names = [problem.name for problem in results.problems]
+    tables = {name: problem_table(results, name)[columns].map(_rounded) for name in names}
+    verdicts = {name: verdict_on(results, name) for name in names}
+    return Report("bench/brief.md", {"verdicts": verdicts}, tables)
+
+
+def _rounded(cell: Any) -> Any:
+    return f"{cell:.3g}" if isinstance(cell, float) else cell
+
+
+def problem_table(results: Results, problem: str) -> pd.DataFrame:
+    """Medians over the runs of every method on a problem, best first."""
+    rows = []
+    table = results.table[results.table["problem"] == problem]
+    for method, own in table.groupby("method"):
+        low, middle, high = (100 * one for one in quartiles(own["missing"]))
+        spent = {name: quartiles(own[name])[1] for name in _COST}
+        rows.append({
+            "method": label_of(str(method)), "runs": len(own),
+            "missing [%]": middle, "quartiles [%]": f"{low:.3g} to {high:.3g}",
+            "with motions between [%]": 100 * quartiles(own["missing_between"])[1],
+            "IGD+": quartiles(own["igd_plus"])[1], "epsilon": quartiles(own["epsilon"])[1],
+            "energy above at 1 mm [%]": 100 * quartiles(own["energy_1mm"])[1],
+            "at rest": f"{int(own['at_rest'].sum())} of {len(own)}",
+            "candidates": spent["evaluations"], "gradients": spent["gradients"],
+            "Hessians": spent["hessians"], "seconds": spent["seconds"],
+        })  # fmt: skip
+    found = pd.DataFrame(rows).sort_values("missing [%]", ignore_index=True)
+    return found.replace(np.inf, np.nan)
+
+
+def summary_table(results: Results) -> pd.DataFrame:
+    """Every method over all problems: medians over problems of the medians over runs."""
+    rows = []
+    for method, own in results.table.groupby("method"):
+        by_problem = own.groupby("problem")
+
+        def median(column: str, by_problem: Any = by_problem) -> float:
+            return quartiles([quartiles(one[column])[1] for _, one in by_problem])[1]
+
+        rows.append({
+            "method": label_of(str(method)), "problems": len(by_problem),
+            "runs": len(own), "missing [%]": 100 * median("missing"),
+            "with motions between [%]": 100 * median("missing_between"),
+            "energy above at 1 mm [%]": 100 * median("energy_1mm"),
+            "at rest [%]": 100 * float(own["at_rest"].mean()), "candidates": median("evaluations"),
+            "gradients": median("gradients"), "seconds": median("seconds"),
+        })  # fmt: skip
+    found = pd.DataFrame(rows).sort_values("missing [%]", ignore_index=True)
+    return found.replace(np.inf, np.nan)
+
+
+def ranks_table(ranking: Any) -> pd.DataFrame:
+    """Methods and their mean ranks over independent moves."""
+    return pd.DataFrame(
+        {"method": [label_of(one) for one in ranking.methods], "mean rank": ranking.ranks}
+    )

@@ -1,0 +1,214 @@
+"""Which differences between methods are more than chance: ranks, exact tests, effect sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from math import comb, sqrt
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from quietarm.metaheuristics import NamedProblem
+from quietarm.studies.bench.results import Results, label_of, quartiles
+
+Array = NDArray[np.float64]
+ALPHA = 0.05
+_EXACT = 12
+"""Runs of each method up to which Mann-Whitney's test is exact, where no values are equal."""
+
+
+def attainable_p(runs: int, others: int, pairs: int) -> float:
+    """The least p value that Mann-Whitney's exact test can give so many runs, times the pairs."""
+    return min(1.0, 2 * pairs / comb(runs + others, runs))
+
+
+def say_power(runs: int, methods: int) -> str:
+    """What so many runs of so many methods can show, said before they are done."""
+    pairs = comb(methods, 2)
+    if pairs == 0:
+        return "one method alone is compared with none"
+    least = attainable_p(runs, runs, pairs)
+    if least < ALPHA:
+        return (
+            f"with {runs} runs of each of {methods} methods ({pairs} pairs) the least p that a "
+            f"pair can have is {least:.2g}"
+        )
+    needed = next(n for n in range(runs, 1000) if attainable_p(n, n, pairs) < ALPHA)
+    return (
+        f"with {runs} runs and {pairs} pairs no p can fall below {ALPHA}: {needed} runs are "
+        "needed for a verdict"
+    )
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Mean ranks of methods over independent moves, best first.
+
+    Attributes
+    ----------
+    methods, ranks : tuple
+        Names and mean ranks.
+    moves : int
+        How many independent moves were ranked.
+    p_value : float
+        Of Friedman's test.
+    critical : float
+        Nemenyi's critical difference of two mean ranks at 5 %.
+    left_out : tuple of str
+        Methods that are not ranked, with the reason.
+    """
+
+    methods: tuple[str, ...]
+    ranks: tuple[float, ...]
+    moves: int
+    p_value: float
+    critical: float
+    left_out: tuple[str, ...]
+
+    @property
+    def has_power(self) -> bool:
+        """Whether any two mean ranks could differ by the critical difference."""
+        return self.critical < len(self.methods) - 1
+
+    @property
+    def best(self) -> tuple[str, ...]:
+        """The first method and those that are not told apart from it."""
+        near = (rank - self.ranks[0] <= self.critical for rank in self.ranks)
+        return tuple(name for name, one in zip(self.methods, near, strict=True) if one)
+
+
+def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.DataFrame:
+    """Every pair of methods on a problem: effect size, exact p and p by Holm.
+
+    The effect is the share of pairs of runs in which the first is better (Vargha and Delaney's A;
+    0.5 is no difference). Runs without a value come last.
+    """
+    from scipy import stats
+
+    values = values_on(results, problem, column)
+    rows = []
+    for one, other in combinations(values, 2):
+        mine, theirs = (np.nan_to_num(values[name], nan=np.inf) for name in (one, other))
+        both = np.concatenate([mine, theirs])
+        exact = len(set(both.tolist())) == len(both) and max(len(mine), len(theirs)) <= _EXACT
+        ranks = stats.rankdata(both)  # infinities are ranked, which scipy's test may refuse
+        first, second = ranks[: len(mine)], ranks[len(mine) :]
+        found = stats.mannwhitneyu(first, second, method="exact" if exact else "asymptotic")
+        rows.append({
+            "problem": problem, "one": label_of(one), "other": label_of(other),
+            "effect": 1 - float(found.statistic) / (len(mine) * len(theirs)),
+            "p": float(found.pvalue),
+        })  # fmt: skip
+    table = pd.DataFrame(rows, columns=["problem", "one", "other", "effect", "p"])
+    return table.assign(p_holm=holm(table["p"].to_numpy(dtype=float)))
+
+
+def kruskal_on(results: Results, problem: str, column: str = "missing") -> float:
+    """The p value of Kruskal and Wallis' test that all methods on a problem are alike."""
+    from scipy import stats
+
+    values = [np.nan_to_num(v, nan=1e300) for v in values_on(results, problem, column).values()]
+    together = np.concatenate(values) if values else np.zeros(1)
+    if len(values) < 2 or np.ptp(together) == 0:
+        return 1.0
+    return float(stats.kruskal(*values).pvalue)
+
+
+def holm(p_values: Array) -> Array:
+    """P values of several tests, corrected by Holm's step-down method."""
+    order = np.argsort(p_values)
+    steps = np.minimum(1.0, np.arange(len(order), 0, -1) * p_values[order])
+    adjusted = np.maximum.accumulate(steps) if len(steps) else steps
+    return adjusted[np.argsort(order)]
+
+
+def values_on(results: Results, problem: str, column: str) -> Mapping[str, Array]:
+    """A column of the table of runs by method, of one problem; methods with two runs or more."""
+    table = results.table
+    here = table[table["problem"] == problem]
+    grouped = {str(name): own[column].to_numpy(dtype=float) for name, own in here.groupby("method")}
+    return {name: own for name, own in grouped.items() if len(own) > 1}
+
+
+def moves_of(problems: Sequence[NamedProblem]) -> list[list[NamedProblem]]:
+    """Problems by move: those of one plant, angle and duration are not independent."""
+    moves: dict[object, list[NamedProblem]] = {}
+    for problem in problems:
+        task = problem.task
+        key = task.plant, round(task.start, 9), round(task.target, 9), round(task.duration, 9)
+        moves.setdefault(key, []).append(problem)
+    return list(moves.values())
+
+
+def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
+    """Rank methods by their medians on each independent move; None with less than 3 of either.
+
+    Ranked are methods that have runs on every problem; problems of one move count once, with the
+    mean of their ranks. Of methods with the same values throughout, as a search and the same that
+    is yet to be polished, one is ranked.
+    """
+    from scipy import stats
+
+    names = [problem.name for problem in results.problems]
+    known = {name: values_on(results, name, column) for name in names}
+    left_out = [
+        f"{label_of(method)} (not on all problems, or one run alone)"
+        for method in results.methods
+        if any(method not in known[name] for name in names)
+    ]
+    methods = [m for m in results.methods if all(m in known[name] for name in names)]
+    kept = list[str]()
+    for method in methods:
+        twin = next((one for one in kept if _same(known, one, method)), None)
+        if twin is None:
+            kept.append(method)
+        else:
+            left_out.append(f"{label_of(method)} (the same as {label_of(twin)})")
+    moves = moves_of(results.problems)
+    if len(kept) < 3 or len(moves) < 3:
+        return None
+    rows = list[Array]()
+    for move in moves:
+        medians = [[quartiles(known[one.name][m])[1] for m in kept] for one in move]
+        rows.append(np.mean([stats.rankdata(row) for row in medians], axis=0))
+    ranks = np.array([stats.rankdata(row) for row in rows])
+    means, count = ranks.mean(axis=0), len(kept)
+    quantile = stats.studentized_range.ppf(1 - ALPHA, count, np.inf) / sqrt(2)
+    order = np.argsort(means, kind="stable").tolist()
+    return Ranking(
+        methods=tuple(kept[i] for i in order),
+        ranks=tuple(means[order].tolist()),
+        moves=len(moves),
+        p_value=float(np.nan_to_num(stats.friedmanchisquare(*ranks.T).pvalue, nan=1.0)),
+        critical=float(quantile * sqrt(count * (count + 1) / (6 * len(moves)))),
+        left_out=tuple(left_out),
+    )
+
+
+def _same(known: Mapping[str, Mapping[str, Array]], one: str, other: str) -> bool:
+    """Whether two methods have the same values on all problems."""
+    return all(np.array_equal(own[one], own[other], equal_nan=True) for own in known.values())
+
+
+def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
+    """Which methods end nearest on a problem, in a sentence; none without power to say so."""
+    values = values_on(results, problem, column)
+    if len(values) < 2:
+        return "fewer than two methods have two runs: no test"
+    runs = min(map(len, values.values()))
+    pairs = comb(len(values), 2)
+    medians = {name: quartiles(own)[1] for name, own in values.items()}
+    best = min(medians, key=lambda name: medians[name])
+    if attainable_p(runs, max(map(len, values.values())), pairs) >= ALPHA:
+        return f"no verdict: {say_power(runs, len(values))}"
+    table = pairs_on(results, problem, column)
+    near = [best]
+    for _, row in table[table["p_holm"] >= ALPHA].iterrows():
+        both = {row["one"], row["other"]}
+        if label_of(best) in both:
+            near += [name for name in values if label_of(name) in both - {label_of(best)}]
+    others = [label_of(name) for name in sorted(near[1:], key=lambda name: medians[name])]
+    alike = f"; not told apart from it: {', '.join(others)}" if others else ""
+    return f"{label_of(best)} ends nearest{alike}"
