@@ -11,7 +11,6 @@ from functools import partial
 import numpy as np
 import pytest
 from lines import COARSELY
-from quietarm.metaheuristics import ensemble
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidGaussians,
@@ -28,7 +27,6 @@ from quietarm.ocp import (
 from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
 from quietarm.studies.registry.methods import METHODS
-from quietarm.studies.reproduction import recompute
 
 
 @pytest.fixture(scope="session")
@@ -39,6 +37,9 @@ def reproduction():
     where they are. The earlier studies' profiles are solved where the paper names them (Tables 3
     and 6), the first also on the third plant; on other moves they are the plain cycloid.
     """
+    from quietarm.metaheuristics import ensemble
+    from quietarm.studies.reproduction import recompute
+
     search = ensemble.search
     short_as = {
         "vepso": {"population": 20, "generations": 40},
