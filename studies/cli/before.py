@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial, wraps
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
 import click
 from quietarm.ocp.files import check_writable
-from quietarm.ocp.planning.plan import ticks_of_move
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
-from quietarm.studies import figures
 from quietarm.studies.cli.folders import check_folder
 from quietarm.studies.cli.options import (
-    options,
     plant_file,
     profile_options,
     quiet,
@@ -25,8 +22,7 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import LENGTH, SETTING, Parsed
-from quietarm.studies.display.pictures import check_figure
-from quietarm.studies.display.saving import STDOUT, File, drawing
+from quietarm.studies.display.saving import STDOUT
 from quietarm.studies.registry.profiles import FAMILIES
 
 RESIDUAL, METHOD_SETTING = LENGTH, SETTING
@@ -36,19 +32,8 @@ def _file(check: Callable[[str], Path]) -> Parsed:
     return Parsed("file", lambda text: STDOUT if text == "-" else check(text))
 
 
-def _ending(endings: tuple[str, ...], text: str) -> Path:
-    path = check_writable(text)
-    if path.suffix.lower() not in endings:
-        raise ValueError(f"{text} is not for this; end its name in {endings[0]}")
-    return path
-
-
 OUTPUT = STATE = _file(check_writable)
-JSON_FILE = _file(partial(_ending, (".json", "")))
-CSV_FILE = _file(partial(_ending, (".csv", ".txt", "")))
-PAGE = _file(partial(_ending, (".html", ".htm")))
-PICTURE = _file(check_figure)
-DATASET = FOLDER = Parsed("folder", check_folder)
+FOLDER = Parsed("folder", check_folder)
 
 
 def _passing(**values: Callable[[], Any]) -> Callable[[Any], Any]:
@@ -93,19 +78,6 @@ def _moving(make: Callable[[TypedMove, dict[str, Any]], dict[str, Any]]) -> Call
     return add
 
 
-def _with_axes(grid: Any) -> Any:
-    if not grid.axes:
-        raise click.UsageError(
-            "no axis is given; give one as --target 10deg:90deg:5deg, or quietarm plan"
-        )
-    return grid
-
-
-old_task_options = _moving(lambda move, _: {"task": move.task()})
-task_grid_options = _moving(lambda move, _: {"grid": _with_axes(move.grid())})
-own_task_options = _moving(lambda move, _: {"task": move.task() if move.typed else None})
-
-
 def _grid_or_problems(move: TypedMove, named: dict[str, Any]) -> dict[str, Any]:
     problems = named.pop("problems")
     if not move.typed:
@@ -129,32 +101,6 @@ def own_grid_options(command: Any) -> Any:
         return made(plant=None, **named)
 
     return without_plant
-
-
-def plan_file_options(command: Any) -> Any:
-    @wraps(command)
-    def with_files(**named: Any) -> Any:
-        output, csv_file, rate, figure = map(
-            named.pop, ("output", "csv_file", "sample_rate", "figure")
-        )
-        if csv_file is not None and named.get("duration") is not None:
-            ticks_of_move(named["duration"], rate)
-
-        def files_of(plan: Any) -> list[File]:
-            return [
-                (output, plan.save),
-                (csv_file, partial(plan.save_csv, sample_rate=rate)),
-                (figure, drawing(lambda: figures.motion_figure(plan))),
-            ]
-
-        return command(files_of=files_of, **named)
-
-    return options(
-        click.option("--output", type=JSON_FILE),
-        click.option("--csv", "csv_file", type=CSV_FILE),
-        click.option("--sample-rate", type=float, default=1000.0),
-        click.option("--figure", type=PICTURE),
-    )(with_files)
 
 
 __all__ = ["FAMILIES"]

@@ -37,7 +37,8 @@ def read_path(path: Path) -> RecordedPath:
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
     table = read_table(path)
-    time, angle = (table.in_si(table.first(one), one) for one in ("time", "angle"))
+    names = {one: table.first(one) for one in ("time", "angle")}
+    time, angle = (table.in_si(name, one) for one, name in names.items())
     _check(path, time, angle)
     turns = np.abs(angle).max() > 2 * np.pi
     if turns and "_" not in names["angle"]:

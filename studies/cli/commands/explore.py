@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import click
-from quietarm.models import Plant, known_plants
+from quietarm.models import known_plants
 from quietarm.ocp.checks import install
-from quietarm.studies.cli.options import command
+from quietarm.studies.cli.options import command, plant_file
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
-from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import SETTING
 
 _USUAL = "single-link"
@@ -19,16 +17,10 @@ _USUAL = "single-link"
 
 @command()
 @click.argument("what", required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]")
-@plant_file_option()
 @click.option("--set", "parameters", type=SETTING, multiple=True,
               help="Set a parameter of the PLANT, as omega=9; may be repeated.")  # fmt: skip
 @click.option("--no-browser", is_flag=True, help="Print the page's address alone.")
-def explore(
-    what: str | None,
-    plant_file: Mapping[str, type[Plant]] | None,
-    parameters: tuple[tuple[str, str], ...],
-    no_browser: bool,
-) -> None:
+def explore(what: str | None, parameters: tuple[tuple[str, str], ...], no_browser: bool) -> None:
     """Show a page on which a move is changed by hand, and its figures and motion at once.
 
     It begins with the plain cycloid of a PLANT, single-link by default, with a saved plan or front,
@@ -52,6 +44,6 @@ def explore(
             raise ValueError(f"--set is for a PLANT, and {what} has its own; leave it out")
         explored = open_file(Path(what))
     else:
-        kind = parse_plant(what or _USUAL) if what or plant_file is None else None
-        explored = open_plant(chosen_plant(kind, plant_file, parameters))
+        kind = parse_plant(what or _USUAL) if what or plant_file() is None else None
+        explored = open_plant(chosen_plant(kind, plant_file(), parameters))
     serve(explored, menu(explored.task.plant, known_plants()), click.echo, not no_browser)

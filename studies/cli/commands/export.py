@@ -7,8 +7,7 @@ from typing import Any
 
 import click
 from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.options import command, quiet_option, typed
-from quietarm.studies.cli.task import plant_file_option
+from quietarm.studies.cli.options import command, quiet, typed
 from quietarm.studies.cli.types import INPUT, SHARE, STATE, WHOLE, Named
 from quietarm.studies.display.progress import count
 from quietarm.studies.document.blocks import Document, Lines
@@ -45,11 +44,7 @@ from rich.console import Console
               help="Draw deflections so many times larger than they are. [default: the largest "
               "becomes up to a fifth of the structure]")  # fmt: skip
 @click.option("--width", type=WHOLE, default=800, show_default=True, help="Of a film, in pixels.")
-@plant_file_option(expose_value=False)
-@quiet_option
-def export(
-    plans: tuple[Path, ...], output: Path, form: str | None, quiet: bool, **settings: Any
-) -> None:
+def export(plans: tuple[Path, ...], output: Path, form: str | None, **settings: Any) -> None:
     """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB) or as a film (gif, mp4, html).
 
     The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
@@ -83,21 +78,19 @@ def export(
             raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
         written, size = export_moves(plans[0], output), []
     elif known.is_film:
-        written, size = [output], [_write_film(plans, output, name, quiet, settings)]
+        written, size = [output], [_write_film(plans, output, name, settings)]
     else:
         (plan,) = load_plans(plans).values()
         written, size = export_plan(plan, output, name, **settings), []
     finish([], Document("", [Lines([*size, *(f"wrote {path}" for path in written)])]))
 
 
-def _write_film(
-    plans: tuple[Path, ...], output: Path, form: str, quiet: bool, settings: dict[str, Any]
-) -> str:
+def _write_film(plans: tuple[Path, ...], output: Path, form: str, settings: dict[str, Any]) -> str:
     """Write a film of plans; how long and how large it is."""
     from quietarm.studies.export.film import animate
 
     lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
     film = animate(lines if len(lines) > 1 else lines[0].plan, **settings)
-    with count(film.frames, "frames", Console(stderr=True), quiet=quiet) as report:
+    with count(film.frames, "frames", Console(stderr=True), quiet=quiet()) as report:
         film.save(output, form, report)
     return f"{film.frames} frames, {film.seconds:.1f} s, {output.stat().st_size / 1e3:.0f} kB"

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX
-from quietarm.metaheuristics.ensemble import LostSeedsError, search_many, seeds_of
+from quietarm.metaheuristics.ensemble import search_many
 from quietarm.ocp import Front, QuietarmError, SolverFailedError
 from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
@@ -25,9 +25,10 @@ from quietarm.studies.cli.options import (
     workers_option,
 )
 from quietarm.studies.cli.task import TypedMove, task_options
-from quietarm.studies.cli.types import WHOLE, Named
+from quietarm.studies.cli.types import INPUT, WHOLE, Named
 from quietarm.studies.display.saving import STDOUT, File, drawing
 from quietarm.studies.display.search_progress import search_display
+from quietarm.studies.reading.saved import load_front
 from quietarm.studies.registry.methods import NSGA2, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.report.fronts import search_lines
@@ -56,6 +57,9 @@ _GRADIENT = {
     "--runs", type=WHOLE, default=1, show_default=True,
     help="Seeds, from --seed on; each has a file: front.json becomes front-seed0.json, ...",
 )  # fmt: skip
+@click.option(
+    "--from", "given", type=INPUT, help="A front whose points are in the first population."
+)
 @workers_option
 @output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"})
 def search(
@@ -65,6 +69,7 @@ def search(
     terms: int | None,
     setting: Sequence[tuple[str, str]],
     runs: int,
+    given: Path | None,
     output: Sequence[Path],
     **settings: Any,
 ) -> None:
@@ -79,7 +84,7 @@ def search(
       quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
           --population 100 --generations 200 --setting crossover=0.7
     """  # noqa: D301  # \b is click's: do not rewrap
-    several = len(seeds_of(settings["seed"], runs)) > 1
+    several = runs > 1
     if several and STDOUT in output:
         raise ValueError("--output - is for one run; with --runs give the name of a file")
     task, errors = move.task(), Console(stderr=True)
@@ -91,22 +96,29 @@ def search(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )
     warn_of_workers(errors, settings["workers"], runs)
-    lost: LostSeedsError | None = None
+    if given is not None:
+        settings["start"] = load_front(given)
+    fronts, trouble = list[Front](), None
+
+    def keep(front: Front) -> None:
+        fronts.append(front)
+        display.finish(front)
+
     with search_display(errors, quiet=quiet()) as display:
+        if not several and settings["workers"] == 1:
+            settings["report"] = display
         try:
-            fronts = search_many(
-                task, method, runs, report=display, done=display.finish, **settings
-            )
-        except LostSeedsError as error:
-            fronts, lost = error.fronts, error
-    fronts = [front for front in fronts if front.complete]
+            search_many(task, method, runs, done=keep, **settings)
+        except KeyboardInterrupt:
+            if not fronts:
+                raise
+            kept = f"{len(fronts)} of {runs} seeds are done and kept"
+            trouble = QuietarmError(f"interrupted: {kept}")
+    fronts.sort(key=lambda front: front.seed or 0)
     if not any(front.points for front in fronts):
-        if lost or not fronts:
-            raise lost or KeyboardInterrupt
         raise SolverFailedError(f"{method}: {fronts[0].why_empty()}")
-    trouble = lost
-    if len(fronts) < runs and not lost:
-        trouble = QuietarmError(f"interrupted: {len(fronts)} of {runs} seeds are done and kept")
+    if len(fronts) < runs and trouble is None:
+        trouble = QuietarmError(f"a worker died: {len(fronts)} of {runs} seeds are done and kept")
     finish(_files(output, fronts, several), search_lines(fronts), trouble=trouble)
 
 
