@@ -52,7 +52,7 @@ def _names(text: str) -> tuple[str, ...]:
 )  # fmt: skip
 @click.option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one.")
 @click.option(
-    "--free/--no-free", default=True, show_default=True,
+    "--free-motion/--no-free-motion", "free", default=True, show_default=True,
     help="Fronts: find the least energy over all joint motions as well; some seconds.",
 )  # fmt: skip
 @output_option({FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"})

@@ -8,7 +8,8 @@ from typing import Any
 
 import click
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX
-from quietarm.metaheuristics.ensemble import LostSeedsError, search_many, seeds_of
+from quietarm.metaheuristics.ensemble import search_many
+from quietarm.metaheuristics.search import search as search_once
 from quietarm.ocp import Front, QuietarmError, SolverFailedError
 from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
@@ -25,9 +26,10 @@ from quietarm.studies.cli.options import (
     workers_option,
 )
 from quietarm.studies.cli.task import TypedMove, task_options
-from quietarm.studies.cli.types import WHOLE, Named
+from quietarm.studies.cli.types import INPUT, WHOLE, Named
 from quietarm.studies.display.saving import STDOUT, File, drawing
 from quietarm.studies.display.search_progress import search_display
+from quietarm.studies.reading.saved import load_front
 from quietarm.studies.registry.methods import NSGA2, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.report.fronts import search_lines
@@ -53,6 +55,10 @@ _GRADIENT = {
 @settings_option("another setting of the method, as crossover=0.7")
 @seed_option
 @click.option(
+    "--from", "source", type=INPUT,
+    help="Put the points of this front into the first population.",
+)  # fmt: skip
+@click.option(
     "--runs", type=WHOLE, default=1, show_default=True,
     help="Seeds, from --seed on; each has a file: front.json becomes front-seed0.json, ...",
 )  # fmt: skip
@@ -64,14 +70,16 @@ def search(
     profile: str,
     terms: int | None,
     setting: Sequence[tuple[str, str]],
+    source: Path | None,
     runs: int,
+    workers: int,
     output: Sequence[Path],
     **settings: Any,
 ) -> None:
     """Find the trade-off of residual and energy with a metaheuristic, without derivatives.
 
     \b
-    Examples; NSGA-II and VEPSO have the paper's settings:
+    Examples; nsga2-paper and vepso have the paper's settings:
       quietarm search arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 \\
           --output front.json --output front.png
       quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \\
@@ -79,34 +87,44 @@ def search(
       quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
           --population 100 --generations 200 --setting crossover=0.7
     """  # noqa: D301  # \b is click's: do not rewrap
-    several = len(seeds_of(settings["seed"], runs)) > 1
+    several = runs != 1
     if several and STDOUT in output:
         raise ValueError("--output - is for one run; with --runs give the name of a file")
-    task, errors = move.task(), Console(stderr=True)
+    task, errors, trouble = move.task(), Console(stderr=True), None
     settings["profile"] = profile_of(profile, task, terms)
     settings["settings"] = settings_given(setting)
+    if source is not None:
+        settings["start"] = load_front(source)
     if settings["bound"] is None and settings["profile"].default_bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )
-    warn_of_workers(errors, settings["workers"], runs)
-    lost: LostSeedsError | None = None
+    warn_of_workers(errors, workers, runs)
+    fronts = list[Front]()
     with search_display(errors, quiet=quiet()) as display:
+
+        def done(front: Front) -> None:
+            display.finish(front)
+            fronts.append(front)
+
         try:
-            fronts = search_many(
-                task, method, runs, report=display, done=display.finish, **settings
-            )
-        except LostSeedsError as error:
-            fronts, lost = error.fronts, error
-    fronts = [front for front in fronts if front.complete]
+            if several:
+                search_many(task, method, runs, workers=workers, done=done, **settings)
+            else:
+                fronts.append(search_once(task, method, report=display, **settings))
+        except KeyboardInterrupt:
+            if not fronts:
+                raise
+            trouble = QuietarmError(f"interrupted: {len(fronts)} of {runs} seeds are done and kept")
+    if len(fronts) < runs and trouble is None:
+        trouble = QuietarmError(
+            f"{len(fronts)} of {runs} seeds are done: a worker died; where memory ran short, give "
+            "fewer workers or a smaller population"
+        )
     if not any(front.points for front in fronts):
-        if lost or not fronts:
-            raise lost or KeyboardInterrupt
-        raise SolverFailedError(f"{method}: {fronts[0].why_empty()}")
-    trouble = lost
-    if len(fronts) < runs and not lost:
-        trouble = QuietarmError(f"interrupted: {len(fronts)} of {runs} seeds are done and kept")
+        raise trouble or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
+    fronts.sort(key=lambda front: front.seed or 0)
     finish(_files(output, fronts, several), search_lines(fronts), trouble=trouble)
 
 

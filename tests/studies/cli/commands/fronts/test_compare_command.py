@@ -19,7 +19,7 @@ def files(good, poor, tmp_path, monkeypatch):
 
 
 def test_fronts_fill_a_folder(call, files):
-    code, out, err = call("compare good.json poor.json --no-free --output compared")
+    code, out, err = call("compare good.json poor.json --no-free-motion --output compared")
     assert (code, err) == (0, "")
     names = {"report.md", "methods.csv", "runs.csv", "fronts.png"}
     assert {path.name for path in (files / "compared").iterdir()} == names
@@ -35,7 +35,7 @@ def test_a_folder_is_compared_move_by_move(call, files, front_of, task):
     (files / "good.json").rename(files / "bench" / "good.json")
     (files / "poor.json").rename(files / "bench" / "deep" / "poor.json")
     front_of([(1, 0.5)], task=replace(task, duration=1.0)).save("bench/other.json")
-    code, out, _ = call("compare bench --no-free --output compared")
+    code, out, _ = call("compare bench --no-free-motion --output compared")
     assert code == 0
     assert "0 to 30 deg in 0.8 s" in out
     assert "0 to 30 deg in 1 s" in out
