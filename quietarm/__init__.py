@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     from quietarm.metaheuristics import *  # noqa: F403
     from quietarm.models import *  # noqa: F403
     from quietarm.ocp import *  # noqa: F403
+    from quietarm.studies.bench import *  # noqa: F403
     from quietarm.studies.compare import *  # noqa: F403
-    from quietarm.studies.contest import *  # noqa: F403
     from quietarm.studies.figures import *  # noqa: F403
     from quietarm.studies.identify import *  # noqa: F403
     from quietarm.studies.sweep import *  # noqa: F403
 
 _PACKAGES = (
     "models", "ocp", "metaheuristics",
-    "studies.figures", "studies.compare", "studies.identify", "studies.contest", "studies.sweep",
+    "studies.figures", "studies.compare", "studies.identify", "studies.bench", "studies.sweep",
 )  # fmt: skip
 
 

@@ -86,8 +86,8 @@ def _cells(one: Judged) -> Iterator[tuple[str, float | str | None]]:
     if one.robustness is not None:
         yield "95 % of samples [mm]", 1e3 * one.robustness.percentile("residual", 95)
         for sweep in one.robustness.sweeps:
-            low, high = sweep.insensitivity or (None, None)
-            words = "none" if low is None else f"{100 * low:.2g} to {100 * high:.2g} %"
+            ends = sweep.insensitivity
+            words = "none" if ends is None else f"{100 * ends[0]:.2g} to {100 * ends[1]:.2g} %"
             yield f"{sweep.name} within {100 * TOLERATED:g} %", words
     yield "peak torque [N m]", motion.peak_torque
     yield "peak acceleration [rad/s^2]", motion.peak_acceleration

@@ -366,10 +366,10 @@ def _draw_compared(
         shown = _up_to(group.runs[0].between if line else group.median, right)
         draw_front(ax, *shown.T, exact=line, width=1.2 + wider, **style)
         if len(group.runs) > 1:
-            residuals, *ends = group.band
+            residuals, best, worst = group.band
             shown = residuals <= right
             ax.fill_between(
-                residuals[shown] * 1e3, *(end[shown] for end in ends), step="post",
+                residuals[shown] * 1e3, best[shown], worst[shown], step="post",
                 color=own.colour, alpha=0.2, linewidth=0,
             )  # fmt: skip
     for point, mark in zip(known, cycle("*Pv"), strict=False):

@@ -121,14 +121,11 @@ def _environment() -> Environment:
         loader=PackageLoader("quietarm.studies", ""), trim_blocks=True, lstrip_blocks=True,
         undefined=StrictUndefined,
     )  # fmt: skip
-    found.filters.update(
-        table=table_in_markdown,
-        turned=turned,
-        mm=millimetres,
-        percents=percents,
-        listed=listed,
-        counted=counted,
-    )
+    filters: dict[str, Any] = {
+        "table": table_in_markdown, "turned": turned, "mm": millimetres, "percents": percents,
+        "listed": listed, "counted": counted,
+    }  # fmt: skip
+    found.filters.update(filters)
     return found
 
 

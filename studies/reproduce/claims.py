@@ -267,7 +267,7 @@ def _does_not_hang_on_choices(result: Reproduction) -> Verdict:
     if len(energies) > 1:
         first = Searched(case, SIX_TERMS, found.fronts[: (len(energies) + 1) // 2])
         finite = np.where(np.isfinite(energies), energies, 10 * printed)
-        p = wilcoxon(finite - printed).pvalue
+        _, p = wilcoxon(finite - printed)
         figures.append(
             f"the first {len(first.fronts)} seeds alone: {_found(first)}; Wilcoxon's p that "
             f"the median is the printed energy: {p:.2g}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from itertools import product
@@ -223,8 +223,10 @@ def _search(case: Case, asked: Mapping[str, Any], kept: Path | None) -> Front:
 def _solves(effort: Effort) -> _Calls:
     """Everything by gradient."""
     calls: _Calls = {}
-    numbers = product(CONDITIONS, TERMS) if effort.full else effort.searched
-    for case, terms, *_ in numbers:
+    rows = {(row.condition, row.terms) for row in ROWS}
+    for case, terms in product(CONDITIONS, TERMS):
+        if not effort.full and (case, terms) not in rows:
+            continue
         profile = CycloidPolynomial(terms)
         for where, bound in (("in box", case.bound), ("no box", None)):
             solve = partial(plan_move, case.task, profile, bound=bound, starts=effort.starts)
@@ -293,9 +295,8 @@ def _in_parallel(
 ) -> dict[Any, Any]:
     """What calls give, by their keys."""
     parallel = joblib.Parallel(n_jobs=workers, return_as="generator_unordered")
-    done: Iterable[Any] = parallel(
-        joblib.delayed(_keyed)(i, call) for i, (_, call) in enumerate(calls.values())
-    )
+    jobs = (joblib.delayed(_keyed)(i, call) for i, (_, call) in enumerate(calls.values()))
+    done: Any = parallel(jobs)
     keys, found = list(calls), dict[Any, Any]()
     for i, answer in done:
         found[keys[i]] = answer

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 from quietarm.metaheuristics import PRESETS
+from quietarm.metaheuristics.problems.card import card_of
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant, known_plants
 from quietarm.ocp.checks import unknown
@@ -80,7 +81,7 @@ def _rows(name: str, plants: Mapping[str, type[Plant]]) -> list[list[Row] | str]
         rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
         return [*_titled(f"{name}: --set NAME=VALUE, in SI or as 2Hz, 600mm, 200g", rows)]
     if name in PROBLEMS:
-        return [[(name, _problem(PROBLEMS[name]))]]
+        return [[(name, _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]]
     if name not in PRESETS:
         return [[(name, f"{METHODS[name].label}, by quietarm front")]]
     preset = PRESETS[name]
@@ -108,6 +109,21 @@ def _parameter(entry: Field[Any]) -> str:
     meaning = f": {of['meaning']}" if of.get("meaning") else ""
     source = f"  ({of['source']})" if of.get("source") else ""
     return f"{value}{unit}{meaning}{source}"
+
+
+def _card(problem: NamedProblem) -> list[Row]:
+    """What the reference front says of a problem of two objectives."""
+    if problem.peak:
+        return []
+    card = card_of(problem.fronts()[0])
+    ranges = (f"{1e3 * begin:.3g} to {1e3 * end:.3g} mm" for begin, end in card.nonconvex)
+    where = f": {', '.join(ranges)}" if card.nonconvex else ""
+    active = ", ".join(f"a_{i}" for i in card.active) or "none"
+    return [
+        ("not convex over", f"{card.nonconvex_share:.0%} of the residuals{where}"),
+        ("at the bound", active),
+        ("slope at its end", f"{card.still_falls:.2g} of the mean slope"),
+    ]
 
 
 def _problem(problem: NamedProblem) -> str:

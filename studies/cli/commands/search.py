@@ -9,7 +9,6 @@ from typing import Any
 import click
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX
 from quietarm.metaheuristics.ensemble import search_many
-from quietarm.metaheuristics.search import search as search_once
 from quietarm.ocp import Front, QuietarmError, SolverFailedError
 from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
@@ -55,13 +54,12 @@ _GRADIENT = {
 @settings_option("another setting of the method, as crossover=0.7")
 @seed_option
 @click.option(
-    "--from", "source", type=INPUT,
-    help="Put the points of this front into the first population.",
-)  # fmt: skip
-@click.option(
     "--runs", type=WHOLE, default=1, show_default=True,
     help="Seeds, from --seed on; each has a file: front.json becomes front-seed0.json, ...",
 )  # fmt: skip
+@click.option(
+    "--from", "given", type=INPUT, help="A front whose points are in the first population."
+)
 @workers_option
 @output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"})
 def search(
@@ -70,9 +68,8 @@ def search(
     profile: str,
     terms: int | None,
     setting: Sequence[tuple[str, str]],
-    source: Path | None,
     runs: int,
-    workers: int,
+    given: Path | None,
     output: Sequence[Path],
     **settings: Any,
 ) -> None:
@@ -87,44 +84,41 @@ def search(
       quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
           --population 100 --generations 200 --setting crossover=0.7
     """  # noqa: D301  # \b is click's: do not rewrap
-    several = runs != 1
+    several = runs > 1
     if several and STDOUT in output:
         raise ValueError("--output - is for one run; with --runs give the name of a file")
-    task, errors, trouble = move.task(), Console(stderr=True), None
+    task, errors = move.task(), Console(stderr=True)
     settings["profile"] = profile_of(profile, task, terms)
     settings["settings"] = settings_given(setting)
-    if source is not None:
-        settings["start"] = load_front(source)
     if settings["bound"] is None and settings["profile"].default_bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )
-    warn_of_workers(errors, workers, runs)
-    fronts = list[Front]()
+    warn_of_workers(errors, settings["workers"], runs)
+    if given is not None:
+        settings["start"] = load_front(given)
+    fronts, trouble = list[Front](), None
+
+    def keep(front: Front) -> None:
+        fronts.append(front)
+        display.finish(front)
+
     with search_display(errors, quiet=quiet()) as display:
-
-        def done(front: Front) -> None:
-            display.finish(front)
-            fronts.append(front)
-
+        if not several and settings["workers"] == 1:
+            settings["report"] = display
         try:
-            if several:
-                search_many(task, method, runs, workers=workers, done=done, **settings)
-            else:
-                fronts.append(search_once(task, method, report=display, **settings))
+            search_many(task, method, runs, done=keep, **settings)
         except KeyboardInterrupt:
             if not fronts:
                 raise
-            trouble = QuietarmError(f"interrupted: {len(fronts)} of {runs} seeds are done and kept")
+            kept = f"{len(fronts)} of {runs} seeds are done and kept"
+            trouble = QuietarmError(f"interrupted: {kept}")
+    fronts.sort(key=lambda front: front.seed or 0)
     if len(fronts) < runs and trouble is None:
-        trouble = QuietarmError(
-            f"{len(fronts)} of {runs} seeds are done: a worker died; where memory ran short, give "
-            "fewer workers or a smaller population"
-        )
+        trouble = QuietarmError(f"a worker died: {len(fronts)} of {runs} seeds are done and kept")
     if not any(front.points for front in fronts):
         raise trouble or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
-    fronts.sort(key=lambda front: front.seed or 0)
     finish(_files(output, fronts, several), search_lines(fronts), trouble=trouble)
 
 

@@ -1,0 +1,37 @@
+"""Cards of problems: nonconvex ranges and active bounds, by hand and of a reference front."""
+
+from math import pi
+
+import pytest
+from quietarm.metaheuristics import problem_of
+from quietarm.metaheuristics.problems.card import card_of
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, PointToPoint, weighted_front
+
+
+def front_of(points, coefficients=(0.1, 0.1)):
+    return Front(
+        task=PointToPoint(SingleLinkManipulator(), pi / 6, 0.8),
+        profile=CycloidPolynomial(2),
+        points=tuple(FrontPoint(coefficients, 1e-3 * r, energy) for r, energy in points),
+        method="by hand", settings={"bound": 0.2}, seed=None, reference=(0.01, 1.0),
+    )  # fmt: skip
+
+
+def test_a_front_that_rises_above_its_hull_is_nonconvex_there():
+    # convex from 0 to 2 mm; at 3 mm it is above the line from (2, 0.4) to (6, 0.2)
+    card = card_of(front_of([(0, 1.0), (2, 0.4), (3, 0.38), (6, 0.2), (8, 0.15)]))
+    assert card.nonconvex == (pytest.approx((2e-3, 6e-3)),)
+    assert card.nonconvex_share == pytest.approx(0.5)
+    assert card.still_falls == pytest.approx(0.05 / 2 / (0.85 / 8))
+    assert card.active == ()
+    assert card_of(front_of([(0, 1.0), (1, 0.5)], (0.1, -0.2))).active == (2,)
+
+
+def test_no_weighted_sum_has_points_where_the_reference_front_is_not_convex():
+    problem = problem_of("single-link-30deg-0.8s-2-terms")
+    (begin, end), *others = card_of(problem.fronts()[0]).nonconvex
+    assert others == []
+    found = weighted_front(problem.task, problem.profile, bound=problem.bound, points=8)
+    inside = [p for p in found.points if 1.1 * begin + 1e-4 < p.residual < 0.95 * end]
+    assert inside == []
