@@ -10,8 +10,8 @@ from operator import attrgetter
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.budget.record import CORNER
 from quietarm.metaheuristics.ensemble import Spread
+from quietarm.metaheuristics.quality import CORNER
 from quietarm.ocp import Front, PointToPoint, task_difference
 from quietarm.ocp.checks import not_negative, positive, whole
 from quietarm.ocp.front.points import LEVELS
