@@ -44,6 +44,7 @@ HEIRS = {
     "plan --method": "quietarm search", "plan --polish": "quietarm search and then front --polish",
     "front --runs": "quietarm search --runs", "front --population": "quietarm search",
     "front --generations": "quietarm search", "front --setting": "quietarm search",
+    "export --format": "--output with the ending of the format",
     "sweep --refine": "--limit-margin, or a finer grid",
     "--checkpoint": "quietarm search --from front.json",
     "--resume": "quietarm search --from front.json",

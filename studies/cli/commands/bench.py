@@ -6,10 +6,11 @@ from pathlib import Path
 
 import click
 from quietarm.studies.cli.options import (
-    method_settings_option,
+    command,
     part_option,
-    quiet_option,
+    quiet,
     settings_by_method,
+    settings_option,
     typed_line,
     warn_of_workers,
     workers_options,
@@ -18,7 +19,7 @@ from quietarm.studies.cli.types import FOLDER, INPUT, WHOLE
 from rich.console import Console
 
 
-@click.command()
+@command()
 @click.argument("problems", nargs=-1, required=True, metavar="PROBLEM...")
 @click.option(
     "--methods", default="nsga2,vepso,epsilon", show_default=True, metavar="NAME,NAME,...",
@@ -31,9 +32,7 @@ from rich.console import Console
     help="Candidates of each run of a search.",
 )  # fmt: skip
 @click.option("--seed", type=WHOLE, default=0, show_default=True, help="First seed.")
-@method_settings_option(
-    "as in --setting nsga2.crossover=0.7, nsga2.population=50 or epsilon.points=20"
-)
+@settings_option("a setting of a method, as nsga2.crossover=0.7 or epsilon.points=20")
 @click.option(
     "--import", "imported", multiple=True, type=INPUT,
     help="A run of another library that a recorded function wrote; may be repeated.",
@@ -44,7 +43,6 @@ from rich.console import Console
 )  # fmt: skip
 @part_option("run")
 @workers_options
-@quiet_option
 def bench(
     problems: tuple[str, ...],
     methods: str,
@@ -57,7 +55,6 @@ def bench(
     part: tuple[int, int],
     workers: int,
     scheduler: str | None,
-    quiet: bool,
 ) -> None:
     """Hold methods against the reference front of each PROBLEM, from several seeds.
 
@@ -89,12 +86,12 @@ def bench(
         chosen, names, runs, evaluations, seed, settings_by_method(setting, names)
     )
     given = [Front.load(path) for path in imported]
-    if not quiet:
+    if not quiet():
         print_lines(errors, *left_out, say_power(runs, len(names)))
         warn_of_workers(errors, workers, len(jobs))
     write_references(chosen, output)
     trouble: QuietarmError | None = None
-    with progress(len(jobs), errors, quiet=quiet) as begin:
+    with progress(len(jobs), errors, quiet=quiet()) as begin:
         try:
             fronts = run_jobs(
                 jobs, output, workers=workers, scheduler=scheduler, part=part,

@@ -8,7 +8,7 @@ from typing import Any
 import click
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import command, quiet, typed
-from quietarm.studies.cli.types import INPUT, SHARE, STATE, WHOLE, Named
+from quietarm.studies.cli.types import INPUT, SHARE, STATE, WHOLE
 from quietarm.studies.display.progress import count
 from quietarm.studies.document.blocks import Document, Lines
 from quietarm.studies.export.formats import (
@@ -28,9 +28,12 @@ from rich.console import Console
 
 @command()
 @click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
-@click.option("--output", type=STATE, required=True, help="The file; move.c has move.h beside it.")
-@click.option("--format", "form", type=Named("format", FORMATS),
-              help="The form. [default: by the file's ending]")  # fmt: skip
+@click.option(
+    "--output",
+    type=STATE,
+    required=True,
+    help="The file, whose ending is the format; move.c has move.h beside it.",
+)
 @click.option("--columns", default=COLUMNS, show_default=True,
               help="Of csv and mat, with units: time:ms,angle:deg,speed,acceleration,jerk,tip:mm,"
               "torque,power.")  # fmt: skip
@@ -44,7 +47,7 @@ from rich.console import Console
               help="Draw deflections so many times larger than they are. [default: the largest "
               "becomes up to a fifth of the structure]")  # fmt: skip
 @click.option("--width", type=WHOLE, default=800, show_default=True, help="Of a film, in pixels.")
-def export(plans: tuple[Path, ...], output: Path, form: str | None, **settings: Any) -> None:
+def export(plans: tuple[Path, ...], output: Path, **settings: Any) -> None:
     """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB) or as a film (gif, mp4, html).
 
     The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
@@ -63,7 +66,7 @@ def export(plans: tuple[Path, ...], output: Path, form: str | None, **settings: 
       quietarm export moves.zarr --output moves.c
       quietarm export plan.json zvd.json --output move.gif --speed 25%
     """  # noqa: D301  # \b is click's: do not rewrap
-    name = format_of(output, form)
+    name = format_of(output)
     known = FORMATS[name]
     for option in settings:
         if typed(option) and option not in known.takes:

@@ -76,7 +76,7 @@ def search(
     """Find the trade-off of residual and energy with a metaheuristic, without derivatives.
 
     \b
-    Examples; NSGA-II and VEPSO have the paper's settings:
+    Examples; nsga2-paper and vepso have the paper's settings:
       quietarm search arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 \\
           --output front.json --output front.png
       quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \\
@@ -115,10 +115,10 @@ def search(
             kept = f"{len(fronts)} of {runs} seeds are done and kept"
             trouble = QuietarmError(f"interrupted: {kept}")
     fronts.sort(key=lambda front: front.seed or 0)
-    if not any(front.points for front in fronts):
-        raise SolverFailedError(f"{method}: {fronts[0].why_empty()}")
     if len(fronts) < runs and trouble is None:
         trouble = QuietarmError(f"a worker died: {len(fronts)} of {runs} seeds are done and kept")
+    if not any(front.points for front in fronts):
+        raise trouble or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
     finish(_files(output, fronts, several), search_lines(fronts), trouble=trouble)
 
 
