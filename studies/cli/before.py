@@ -22,8 +22,8 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import LENGTH, SETTING, Parsed
-from quietarm.studies.display.saving import STDOUT
 from quietarm.studies.registry.profiles import FAMILIES
+from quietarm.studies.report.saving import STDOUT
 
 RESIDUAL, METHOD_SETTING = LENGTH, SETTING
 

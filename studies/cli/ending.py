@@ -13,12 +13,10 @@ from quietarm.ocp import QuietarmError
 from quietarm.ocp.files import unwritable
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies.cli.options import quiet
-from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import STDOUT, File
-from quietarm.studies.display.words import print_lines
-from quietarm.studies.document.blocks import Document
-from quietarm.studies.document.terminal import show as show_document
+from quietarm.studies.report.progress import working
+from quietarm.studies.report.saving import STDOUT, File
 from quietarm.studies.report.terminal import show, show_facts
+from quietarm.studies.report.words import print_lines
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -75,8 +73,6 @@ def _show(console: Console, part: Report | Facts | str) -> None:
         print_lines(console, part)
     elif isinstance(part, Sequence):
         show_facts(console, part)
-    elif isinstance(part, Document):  # of commands that do not write a Report yet
-        show_document(console, part)
     else:
         show(console, part)
 

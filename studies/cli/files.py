@@ -11,8 +11,8 @@ import click
 from quietarm.ocp.files import check_writable, write_whole
 from quietarm.studies.cli.folders import check_folder
 from quietarm.studies.cli.types import Parsed
-from quietarm.studies.display.pictures import SUFFIXES
-from quietarm.studies.display.saving import STDOUT, File
+from quietarm.studies.report.pictures import SUFFIXES
+from quietarm.studies.report.saving import STDOUT, File
 
 if TYPE_CHECKING:
     from quietarm.studies.report import Report

@@ -10,8 +10,8 @@ from quietarm.models import FlexibleBeam, Plant, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import is_number, once, parse_pair, parse_quantity
-from quietarm.studies.display.words import print_lines
 from quietarm.studies.identify import Identified
+from quietarm.studies.report.words import print_lines
 from rich.console import Console
 
 Kind = type[Plant] | Identified | None

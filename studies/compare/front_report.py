@@ -12,9 +12,9 @@ from quietarm.metaheuristics.quality import BETWEEN
 from quietarm.ocp import Front, task_difference
 from quietarm.studies import figures
 from quietarm.studies.compare.fronts import Comparison, Group
-from quietarm.studies.display.words import millimetres, title_of
 from quietarm.studies.figures.fronts import KnownPoint
 from quietarm.studies.report import Report
+from quietarm.studies.report.words import millimetres, title_of
 
 _INDICATORS = {"hypervolume": ".4f", "igd_plus": ".2g", "epsilon": ".2g"}
 _HEADINGS = {"hypervolume": "hypervolume", "igd_plus": "IGD+", "epsilon": "epsilon"}

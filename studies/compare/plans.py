@@ -11,8 +11,8 @@ from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies import figures
 from quietarm.studies.compare.baselines import baseline
 from quietarm.studies.compare.judged import Judged, judge, merged_ranges, refuse_other_moves
-from quietarm.studies.display.words import title_of
 from quietarm.studies.report import Report
+from quietarm.studies.report.words import title_of
 
 SAMPLES = 2000
 _TURNED = 1e-4

@@ -11,9 +11,9 @@ from pathlib import Path
 from quietarm.models import Plant
 from quietarm.ocp import CycloidPolynomial, PointToPoint, evaluate_coefficients
 from quietarm.ocp.files import read_bytes
-from quietarm.studies.display.words import plant_words
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.reading.saved import load_front, load_plans
+from quietarm.studies.report.words import plant_words
 from quietarm.studies.sweep.library import MoveLibrary
 
 _TARGET, _DURATION = pi / 6, 0.8

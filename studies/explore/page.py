@@ -16,13 +16,12 @@ from bokeh.models import Button, ColumnDataSource, CustomJS, Div, Select, Slider
 from jinja2 import Environment, PackageLoader
 from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
-from quietarm.studies.display.words import moved
-from quietarm.studies.document.blocks import Facts
 from quietarm.studies.explore.move import FILES, Dial, Explored
 from quietarm.studies.explore.plots import GREY, PANELS, Plots
 from quietarm.studies.figures.looks import RED
 from quietarm.studies.registry.profiles import FAMILIES
-from quietarm.studies.reports.plan import HARD_REMEDY, plan_document
+from quietarm.studies.report.moves import HARD_REMEDY, plan_rows
+from quietarm.studies.report.words import moved
 
 _WAIT = 5
 """Milliseconds in which changes are gathered: a slider sends more of them than are drawn."""
@@ -232,12 +231,11 @@ class Page:
 
 def _facts(explored: Explored) -> list[tuple[str, str]]:
     """The figures of `quietarm plan`, in the words of the page."""
-    facts = next(one for one in plan_document(explored.plan).blocks if isinstance(one, Facts))
     of_front = {"status": "a point of the front"} if explored.of_front else {}
     return [
         ("computed in" if name == "time" else name, of_front.get(name, value).replace(
             HARD_REMEDY, "enter what the drive can do under Limits"))
-        for name, value in facts.rows
+        for name, value in plan_rows(explored.plan)
     ]  # fmt: skip
 
 

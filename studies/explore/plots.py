@@ -14,11 +14,11 @@ from bokeh.plotting import figure
 from numpy.typing import NDArray
 from quietarm.ocp import Plan
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.display.words import residual_words
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading
 from quietarm.studies.figures.structure import INK, structures_of
+from quietarm.studies.report.words import residual_words
 
 GREY = "#9e9e9e"
 PANELS = ("deflection", "angle", "torque", "speed", "acceleration", "jerk")

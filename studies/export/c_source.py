@@ -10,8 +10,8 @@ import casadi as ca
 import numpy as np
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.studies.display.templates import templates
-from quietarm.studies.display.words import move_of, moved
+from quietarm.studies.report.templates import templates
+from quietarm.studies.report.words import move_of, moved
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.interpolation import ORDERS
 from quietarm.studies.sweep.library import MoveLibrary

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 from PIL import Image
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import write_whole
-from quietarm.studies.display.pictures import as_written
-from quietarm.studies.display.words import move_of, moved, residual_words, title_of
 from quietarm.studies.export.formats import FORMATS, FRAMES, format_of
 from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
 from quietarm.studies.figures.motion import Motions, draw_lines, lines_of
 from quietarm.studies.figures.structure import Structure, structures_of
+from quietarm.studies.report.pictures import as_written
+from quietarm.studies.report.words import move_of, moved, residual_words, title_of
 
 _MOST_MOTIONS, _MOST_FRAMES = 6, 500
 """More could not be seen side by side, or would take minutes."""

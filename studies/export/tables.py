@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.planning.plan import ticks_of_move
-from quietarm.studies.display.templates import templates
+from quietarm.studies.report.templates import templates
 
 Array = NDArray[np.float64]
 _ANGLE = {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi}

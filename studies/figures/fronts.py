@@ -15,7 +15,6 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.typing import NDArray
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energy_at, hypervolumes
 from quietarm.ocp import Front, task_difference
-from quietarm.studies.display.words import REST, millimetres, title_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -30,6 +29,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.looks import BLUE, Look, look
 from quietarm.studies.registry.methods import Kind, method_of
+from quietarm.studies.report.words import REST, millimetres, title_of
 
 if TYPE_CHECKING:
     from quietarm.studies.compare.fronts import Comparison, Group

@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.display.words import raised, title_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -23,6 +22,7 @@ from quietarm.studies.figures.axes import (
     new_figure,
 )
 from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
+from quietarm.studies.report.words import raised, title_of
 
 _SHOWN, _ABOVE = 0.99, 1.15
 """A panel with jolts ends at this multiple of the 99 % quantile."""

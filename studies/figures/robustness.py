@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from quietarm.ocp import Robustness
 from quietarm.ocp.checks import has_no
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
-from quietarm.studies.display.words import REST
 from quietarm.studies.figures.axes import (
     axes_or_new,
     legend_of,
@@ -19,6 +18,7 @@ from quietarm.studies.figures.axes import (
     side_by_side,
 )
 from quietarm.studies.figures.looks import look
+from quietarm.studies.report.words import REST
 
 if TYPE_CHECKING:
     from quietarm.studies.compare.judged import Judged

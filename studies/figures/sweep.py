@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from quietarm.ocp import Front, Polish
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
-from quietarm.studies.display.words import millimetres, title_of
 from quietarm.studies.figures.axes import (
     axes_or_new,
     draw_front,
@@ -17,6 +16,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.registry.methods import method_of
+from quietarm.studies.report.words import millimetres, title_of
 
 
 def draw_sweep(front: Front, ax: Axes | None = None) -> Axes:

@@ -17,8 +17,8 @@ from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness.perturbed import worst_of
-from quietarm.studies.display.words import counted, energy_words, millimetres, residual_words
 from quietarm.studies.report.moves import worst_in_words
+from quietarm.studies.report.words import counted, energy_words, millimetres, residual_words
 
 _ROWS = 10
 """Points that the list of gains shows."""

@@ -15,7 +15,7 @@ from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.planning.terms import CHOSEN, OF_SIX
 from quietarm.ocp.record import AGREEMENT
-from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
+from quietarm.studies.report.words import REST, millimetres, move_of, moved, state_words
 
 if TYPE_CHECKING:
     from quietarm.studies.reading.path import RecordedPath

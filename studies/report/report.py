@@ -10,12 +10,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from quietarm.ocp.files import write_whole
-from quietarm.studies.display.saving import File, drawing, inside
-from quietarm.studies.display.words import counted, millimetres
+from quietarm.studies.report.saving import File, drawing, inside
+from quietarm.studies.report.templates import templates
+from quietarm.studies.report.words import counted, millimetres
 
 if TYPE_CHECKING:
+    from jinja2 import Environment
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
@@ -117,10 +118,7 @@ def listed(words: Sequence[str]) -> str:
 
 
 def _environment() -> Environment:
-    found = Environment(
-        loader=PackageLoader("quietarm.studies", ""), trim_blocks=True, lstrip_blocks=True,
-        undefined=StrictUndefined,
-    )  # fmt: skip
+    found = templates()
     filters: dict[str, Any] = {
         "table": table_in_markdown, "turned": turned, "mm": millimetres, "percents": percents,
         "listed": listed, "counted": counted,
@@ -131,7 +129,7 @@ def _environment() -> Environment:
 
 def _svg(figure: Figure) -> str:
     """A picture as an address that holds it."""
-    from quietarm.studies.display.pictures import as_written
+    from quietarm.studies.report.pictures import as_written
 
     content = io.BytesIO()
     with as_written(figure):

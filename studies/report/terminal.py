@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from quietarm.studies.display.words import print_lines
 from quietarm.studies.report.report import Report
+from quietarm.studies.report.words import print_lines
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text

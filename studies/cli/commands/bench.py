@@ -76,9 +76,9 @@ def bench(
     from quietarm.studies.bench.page import bench_report, brief_report
     from quietarm.studies.bench.results import Results
     from quietarm.studies.bench.statistics import say_power
-    from quietarm.studies.display.progress import progress
-    from quietarm.studies.display.words import print_lines
     from quietarm.studies.report import show
+    from quietarm.studies.report.progress import progress
+    from quietarm.studies.report.words import print_lines
 
     names = [name.strip() for name in methods.split(",")]
     chosen, errors = problems_of(problems), Console(stderr=True)

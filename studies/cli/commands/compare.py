@@ -13,8 +13,8 @@ from quietarm.studies.cli.files import FOLDER, output_option, report_files
 from quietarm.studies.cli.options import command, quiet, refuse_typed
 from quietarm.studies.cli.quantities import once
 from quietarm.studies.cli.types import ERROR, INPUT, WHOLE, Parsed
-from quietarm.studies.display.progress import working
 from quietarm.studies.report import Report
+from quietarm.studies.report.progress import working
 from rich.console import Console
 
 if TYPE_CHECKING:

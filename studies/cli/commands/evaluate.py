@@ -22,11 +22,11 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import COEFFICIENTS, INPUT, WHOLE
-from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import drawing
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.moves import path_rows, plan_rows, sensitivity_rows
+from quietarm.studies.report.progress import working
+from quietarm.studies.report.saving import drawing
 from rich.console import Console
 
 _OF_TABLES = ("bound", "evaluations")

@@ -9,8 +9,6 @@ import click
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import command, quiet, typed
 from quietarm.studies.cli.types import INPUT, SHARE, STATE, WHOLE
-from quietarm.studies.display.progress import count
-from quietarm.studies.document.blocks import Document, Lines
 from quietarm.studies.export.formats import (
     COLUMNS,
     FORMATS,
@@ -23,6 +21,7 @@ from quietarm.studies.export.formats import (
 )
 from quietarm.studies.figures.motion import Line
 from quietarm.studies.reading.saved import load_plans
+from quietarm.studies.report.progress import count
 from rich.console import Console
 
 
@@ -85,7 +84,7 @@ def export(plans: tuple[Path, ...], output: Path, **settings: Any) -> None:
     else:
         (plan,) = load_plans(plans).values()
         written, size = export_plan(plan, output, name, **settings), []
-    finish([], Document("", [Lines([*size, *(f"wrote {path}" for path in written)])]))
+    finish([], *size, *(f"wrote {path}" for path in written))
 
 
 def _write_film(plans: tuple[Path, ...], output: Path, form: str, settings: dict[str, Any]) -> str:

@@ -24,12 +24,12 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import INPUT, WEIGHTS, WHOLE, Named
-from quietarm.studies.display.progress import count, working
-from quietarm.studies.display.saving import drawing
 from quietarm.studies.reading.saved import load_front
 from quietarm.studies.registry.methods import EPSILON, METHODS, WEIGHTED, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.report.fronts import failure_lines, gradient_lines, polish_lines
+from quietarm.studies.report.progress import count, working
+from quietarm.studies.report.saving import drawing
 from rich.console import Console
 
 _GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]

@@ -14,10 +14,10 @@ from quietarm.studies.cli.files import PICTURE, files_of, output_option
 from quietarm.studies.cli.options import command, plant_file, quiet
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
 from quietarm.studies.cli.types import INPUT, SETTING, Parsed
-from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import drawing
 from quietarm.studies.reading.recording import part_of, read_recording, scale_of, units_of
-from quietarm.studies.reports.identify import identified_document, prediction_document
+from quietarm.studies.report.machines import machine_notes, machine_rows, prediction_rows
+from quietarm.studies.report.progress import working
+from quietarm.studies.report.saving import drawing
 from rich.console import Console
 
 
@@ -97,9 +97,11 @@ def identify(
     if check:
         if output or parts or free:
             raise click.UsageError("--check fits nothing: leave --output, --part and --free out")
-        finish([], prediction_document(known, identification.predict(known, read)))
+        note = "The state is taken from two periods, and the five after them are predicted."
+        finish([], prediction_rows(known, identification.predict(known, read)), note)
         return
     with working("fitting", Console(stderr=True), quiet=quiet()):
         found = identification.identify(read, known, free, parts)
     picture = drawing(lambda: figures.identification_figure(found, read))
-    finish(files_of(output, {".json": found.save, PICTURE: picture}), identified_document(found))
+    files = files_of(output, {".json": found.save, PICTURE: picture})
+    finish(files, machine_rows(found), *machine_notes(found))

@@ -16,9 +16,9 @@ from quietarm.ocp.checks import unknown
 from quietarm.studies.cli.ending import Together, finish
 from quietarm.studies.cli.files import FOLDER, output_option
 from quietarm.studies.cli.options import command, plant_file
-from quietarm.studies.display.saving import inside
-from quietarm.studies.display.words import counted, error_words
 from quietarm.studies.registry.methods import METHODS
+from quietarm.studies.report.saving import inside
+from quietarm.studies.report.words import counted, error_words
 
 Row = tuple[str, str]
 KINDS = ("plants", "problems", "methods")

@@ -34,10 +34,10 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.plants import values_of_plant
 from quietarm.studies.cli.task import NAMES, TypedMove, task_options
 from quietarm.studies.cli.types import INPUT
-from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import File, drawing
 from quietarm.studies.registry.profiles import FAMILIES, chooses_terms, profile_of
 from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
+from quietarm.studies.report.progress import working
+from quietarm.studies.report.saving import File, drawing
 from quietarm.studies.sweep.grid import OF_MOVES
 from rich.console import Console
 

@@ -31,7 +31,7 @@ def reproduce(full: bool, seeds: int | None, workers: int | None, output: Sequen
     import joblib
     from quietarm.ocp.checks import whole
     from quietarm.studies.cli.ending import finish
-    from quietarm.studies.display.progress import progress
+    from quietarm.studies.report.progress import progress
     from quietarm.studies.reproduce.recompute import Effort, number_of_pieces, recompute_paper
     from quietarm.studies.reproduce.report import reproduction_report
 

@@ -26,12 +26,12 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import INPUT, WHOLE, Named
-from quietarm.studies.display.saving import STDOUT, File, drawing
-from quietarm.studies.display.search_progress import search_display
 from quietarm.studies.reading.saved import load_front
 from quietarm.studies.registry.methods import NSGA2, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.report.fronts import search_lines
+from quietarm.studies.report.saving import STDOUT, File, drawing
+from quietarm.studies.report.search_progress import search_display
 from rich.console import Console
 
 _SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]

@@ -23,9 +23,9 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import SHARE
-from quietarm.studies.display.progress import count
-from quietarm.studies.display.saving import drawing
 from quietarm.studies.registry.profiles import chooses_terms, profile_of
+from quietarm.studies.report.progress import count
+from quietarm.studies.report.saving import drawing
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def sweep(
       quietarm sweep flexible-beam --set tip_mass=0,100g,200g --target 60deg \\
           --duration 600ms:1s:20ms --torque-limit 1.5 --output payload.zarr --output payload.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.studies.reports.sweep import sweep_document
+    from quietarm.studies.report.sweeps import cells_along, sweep_rows
     from quietarm.studies.sweep.definition import Definition
     from quietarm.studies.sweep.run import run_sweep
     from quietarm.studies.sweep.store import Store
@@ -126,4 +126,5 @@ def sweep(
         return fronts_figure(store) if front else grid_figure(store)
 
     pictures = [path for path in output if path not in datasets]
-    finish(files_of(pictures, {PICTURE: drawing(picture)}), sweep_document(store), trouble=trouble)
+    files = files_of(pictures, {PICTURE: drawing(picture)})
+    finish(files, sweep_rows(store), cells_along(store), trouble=trouble)

@@ -3,7 +3,7 @@
 import signal
 
 import pytest
-from quietarm.studies.display.search_progress import SearchDisplay
+from quietarm.studies.report.search_progress import SearchDisplay
 
 
 @pytest.fixture(autouse=True)

@@ -20,7 +20,7 @@ def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
     """A function that writes a picture, and imports the drawing library only then."""
 
     def write(path: Path) -> None:
-        from quietarm.studies.display.pictures import save_figure
+        from quietarm.studies.report.pictures import save_figure
 
         save_figure(draw(), path)
 

@@ -8,9 +8,9 @@ from math import floor, log10, pi
 from typing import Any
 
 from quietarm.models import Plant
-from quietarm.studies.document.blocks import Document, Facts, Lines
 from quietarm.studies.identify import Estimate, Identified, Part, Prediction
 
+Row = tuple[str, str]
 _HUB = {
     "": "",
     "creeps": ", with the hub's motion",
@@ -19,7 +19,7 @@ _HUB = {
 }
 
 
-def identified_document(found: Identified) -> Document:
+def machine_rows(found: Identified) -> list[Row]:
     """The parameters with their intervals, then each part of the recordings."""
     rows = [("plant", found.plant.name)]
     rows += [
@@ -29,16 +29,20 @@ def identified_document(found: Identified) -> Document:
         (name, f"not identifiable: {why}; {getattr(found.plant, name):.4g} as given")
         for name, why in found.not_identifiable.items()
     ]
-    known = {one.parameter for one in found.estimates} | found.not_identifiable.keys()
-    given = [name for name in found.plant.measured if name not in known]
+    given = _as_given(found)
     if given:
         rows.append(("as given", ", ".join(_with_unit(found.plant, name) for name in given)))
     rows += [(part.recording, _part(found.plant, part)) for part in found.parts]
-    rows += [(name, f"left out: {why}") for name, why in found.left_out.items()]
-    return Document("", [Facts(rows), Lines(_notes(found, given))])
+    return rows + [(name, f"left out: {why}") for name, why in found.left_out.items()]
 
 
-def prediction_document(plant: Plant, predictions: Sequence[Prediction]) -> Document:
+def _as_given(found: Identified) -> list[str]:
+    """The parameters that no recording tells."""
+    known = {one.parameter for one in found.estimates} | found.not_identifiable.keys()
+    return [name for name in found.plant.measured if name not in known]
+
+
+def prediction_rows(plant: Plant, predictions: Sequence[Prediction]) -> list[Row]:
     """How much of each ring-down a machine predicts."""
     rows = [("plant", plant.name)]
     for one in predictions:
@@ -46,12 +50,12 @@ def prediction_document(plant: Plant, predictions: Sequence[Prediction]) -> Docu
         rows.append((one.recording, f"{one.begin:.3g} to {one.end:.3g} s: {one.share:.1%} of the "
                      f"swing predicted over five periods, {worst}; by itself {one.frequency:.4g} Hz"
         ))  # fmt: skip
-    notes = ["The state is taken from two periods, and the five after them are predicted."]
-    return Document("", [Facts(rows), Lines(notes)])
+    return rows
 
 
-def _notes(found: Identified, given: Sequence[str]) -> list[str]:
+def machine_notes(found: Identified) -> list[str]:
     """What is to be known before the intervals are believed."""
+    given = _as_given(found)
     notes = [
         "Left: root mean square of what the fit leaves, as a share of the swing's; and the noise's."
     ]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from quietarm.studies.display.words import print_lines
+from quietarm.studies.report.words import print_lines
 from rich.console import Console
 from rich.progress import (
     BarColumn,

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from math import isfinite
-
 import numpy as np
 from quietarm.ocp import SolveStatus
-from quietarm.studies.display.words import REST, moved
-from quietarm.studies.document.blocks import Document, Facts
-from quietarm.studies.document.table import Cell, Column, Table
+from quietarm.studies.report.words import REST, moved
 from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
 
@@ -16,7 +12,7 @@ _MOST_LINES = 30
 """Cells along one axis that are listed."""
 
 
-def sweep_document(store: Store) -> Document:
+def sweep_rows(store: Store) -> list[tuple[str, str]]:
     """Axes, then how many cells ended how."""
     grid, status, energy = store.definition.grid, store.read(STATUS), store.read("energy")
     rows = [("plant", moved(grid.task))]
@@ -43,22 +39,23 @@ def sweep_document(store: Store) -> Document:
              f"in {checked.sum()} cells"),
         ]  # fmt: skip
         rows += [("jumps", f"after {jumps} cells, to another motion")] * bool(jumps)
-    return Document("", [Facts(rows), *_along_one_axis(store)])
+    return rows
 
 
-def _along_one_axis(store: Store) -> list[Table]:
-    """The trade-off along the only axis, a line a cell; nothing where there are more or many."""
+def cells_along(store: Store) -> str:
+    """The trade-off along the only axis, a line a cell; empty where there are more or many."""
+    import pandas  # not at the top: it takes long to load
+
     axis, *others = store.definition.grid.axes
     if others or len(axis.values) > _MOST_LINES:
-        return []
-    heads = f"{axis.name} [{axis.unit}]", "energy [J]", "residual [mm]", "how it ended"
-    status, energy, residual = (
-        store.read(name).tolist() for name in (STATUS, "energy", "residual")
-    )
-    rows: list[list[Cell]] = []
-    for k, value in enumerate(axis.values):
-        known = isfinite(energy[k])
-        left: Cell = "rest" if residual[k] < REST else 1e3 * residual[k]
-        state = STATES[status[k]]
-        rows.append([f"{value:.6g}", *((energy[k], left) if known else (None, None)), state])
-    return [Table("cells", [Column(head) for head in heads], rows).turned()]
+        return ""
+    status, energy, residual = (store.read(name) for name in (STATUS, "energy", "residual"))
+    left = [f"{1e3 * one:.4g}" if one >= REST else "rest" for one in residual.tolist()]
+    known = np.isfinite(energy)
+    cells = {
+        f"{axis.name} [{axis.unit}]": [f"{value:.6g}" for value in axis.values],
+        "energy [J]": np.where(known, [f"{one:.4g}" for one in energy.tolist()], "-"),
+        "residual [mm]": np.where(known, left, "-"),
+        "status": [STATES[k] for k in status.tolist()],
+    }
+    return "\n" + pandas.DataFrame(cells).to_string(index=False)

@@ -2,7 +2,7 @@
 
 import io
 
-from quietarm.studies.display.progress import progress
+from quietarm.studies.report.progress import progress
 from rich.console import Console
 
 

@@ -8,8 +8,8 @@ from math import isnan
 
 from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Front
-from quietarm.studies.display.progress import Lines, bars
-from quietarm.studies.display.words import millimetres, print_lines
+from quietarm.studies.report.progress import Lines, bars
+from quietarm.studies.report.words import millimetres, print_lines
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
