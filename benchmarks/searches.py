@@ -19,7 +19,7 @@ from time import perf_counter, process_time
 import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.metaheuristics import PRESETS, PopulationObjective, search, search_many
-from quietarm.metaheuristics.ensemble import energies_at, energy_at
+from quietarm.metaheuristics.spread import energies_at, energy_at
 from quietarm.ocp import evaluate_coefficients
 from quietarm.studies.reproduce.paper import (
     ARM_HALF,

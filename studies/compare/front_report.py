@@ -7,8 +7,8 @@ from functools import partial
 from math import isfinite
 
 import pandas as pd
-from quietarm.metaheuristics.ensemble import Spread
 from quietarm.metaheuristics.quality import BETWEEN
+from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.studies import figures
 from quietarm.studies.compare.fronts import Comparison, Group

@@ -10,8 +10,8 @@ from operator import attrgetter
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.ensemble import Spread
 from quietarm.metaheuristics.quality import CORNER, objectives
+from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
 from quietarm.ocp.checks import not_negative, positive
 from quietarm.ocp.front.points import LEVELS

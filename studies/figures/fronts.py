@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.typing import NDArray
-from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energy_at, hypervolumes
+from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, energy_at, hypervolumes
 from quietarm.ocp import Front, task_difference
 from quietarm.studies.figures.axes import (
     TITLE,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import isfinite
 
 import numpy as np
-from quietarm.metaheuristics.ensemble import (
+from quietarm.metaheuristics.spread import (
     SEARCH_RESIDUAL,
     Spread,
     energies_at,

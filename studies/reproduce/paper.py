@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import pi
 
 from quietarm.metaheuristics import PAPER_BOX, PRESETS
-from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL
+from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients, task_difference
 from quietarm.studies.figures import KnownPoint

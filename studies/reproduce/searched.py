@@ -7,7 +7,7 @@ from functools import cached_property
 from statistics import median
 
 import numpy as np
-from quietarm.metaheuristics.ensemble import Spread, energies_at, energy_at
+from quietarm.metaheuristics.spread import Spread, energies_at, energy_at
 from quietarm.ocp import (
     CycloidGaussians,
     CycloidNetwork,

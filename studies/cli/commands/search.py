@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX
-from quietarm.metaheuristics.ensemble import search_many
 from quietarm.ocp import Front, QuietarmError, SolverFailedError
 from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
@@ -87,6 +86,8 @@ def search(
     several = runs > 1
     if several and STDOUT in output:
         raise ValueError("--output - is for one run; with --runs give the name of a file")
+    from quietarm.metaheuristics.jobs import search_many  # not at the top: --help needs it not
+
     task, errors = move.task(), Console(stderr=True)
     settings["profile"] = profile_of(profile, task, terms)
     settings["settings"] = settings_given(setting)

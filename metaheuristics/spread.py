@@ -1,17 +1,13 @@
-"""Many seeds of one search, and the spread of what they find."""
+"""The spread of what several seeds of one method find."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Any
 
 import numpy as np
-from quietarm.metaheuristics.jobs import side_by_side
-from quietarm.metaheuristics.search import SEARCH_RESIDUAL, search
-from quietarm.ocp import Front, PointToPoint
-from quietarm.ocp.checks import whole
+from quietarm.metaheuristics.search import SEARCH_RESIDUAL
+from quietarm.ocp import Front
 
 
 @dataclass(frozen=True)
@@ -53,27 +49,3 @@ def energies_at(fronts: Sequence[Front], residual_limit: float = SEARCH_RESIDUAL
 def energy_at(front: Front, residual_limit: float = SEARCH_RESIDUAL) -> float:
     """Least energy [J] of a front with a residual within the limit [m]; NaN where none is."""
     return front.least_energy(residual_limit)
-
-
-def search_many(
-    task: PointToPoint,
-    method: str,
-    runs: int,
-    *,
-    workers: int = 1,
-    scheduler: str | None = None,
-    seed: int = 0,
-    done: Callable[[Front], None] = lambda front: None,
-    **settings: Any,
-) -> list[Front]:
-    """The fronts of so many seeds from one on, as of `search`; `done` is called as each ends."""
-    seeds = range(whole("seed", seed, 0), seed + whole("runs", runs, 1, 10_000))
-    one, fronts = partial(_search, task, method, settings), list[Front]()
-    for front in side_by_side(one, seeds, whole("workers", workers, 1), scheduler):
-        done(front)
-        fronts.append(front)
-    return sorted(fronts, key=lambda front: front.seed or 0)
-
-
-def _search(task: PointToPoint, method: str, settings: dict[str, Any], seed: int) -> Front:
-    return search(task, method, seed=seed, **settings)
