@@ -32,9 +32,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.metaheuristics import SearchProgress, search
+from quietarm.metaheuristics.quality import objectives
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, epsilon_front, plan_move
-from quietarm.studies.compare.staircase import filled, objectives
+from quietarm.studies.compare.staircase import filled
 from rich.table import Table
 
 PROFILE = CycloidPolynomial(6)
@@ -113,7 +114,7 @@ def hypervolume_by_time(
         forget_compiled()
         seconds, front = timed(lambda: epsilon_front(task, PROFILE, bound=bound, points=size))  # noqa: B023
         fronts.append(front)
-        filling, cloud = timed(lambda: filled(front, FILLED))  # noqa: B023
+        filling, cloud = timed(lambda: filled(front))  # noqa: B023
         clouds.append(cloud)
         gradient.append((seconds, share(objectives(front), front)))
         dense.append((seconds + filling, share(cloud, front)))

@@ -188,9 +188,10 @@ def _run(
         if infills is None:
             algorithm.advance()
             continue
-        for individual, row in zip(infills, first, strict=False):
-            individual.X = row.copy()
-        first = first[:0]
+        if len(first):
+            for individual, row in zip(infills, first, strict=False):
+                individual.X = row.copy()
+            first = first[:0]
         algorithm.evaluator.eval(problem, infills, algorithm=algorithm)
         algorithm.advance(infills=infills)
         if after is not None:

@@ -13,7 +13,7 @@ from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Batch, batch
 
-CANDIDATE_STEPS, _STEPS_A_TERM, _WITH_LIMITS = 24, 4, 48
+CANDIDATE_STEPS, _STEPS_A_TERM, _WITH_LIMITS = 24, 4, 64
 """Steps of every search: the least, those for each coefficient, and the least with limits."""
 ACCURACY = 5e-4
 """Residuals and energies of random candidates in the boxes of all named problems are within this

@@ -8,6 +8,7 @@ from math import isfinite
 
 import pandas as pd
 from quietarm.metaheuristics.ensemble import Spread
+from quietarm.metaheuristics.quality import BETWEEN
 from quietarm.ocp import Front, task_difference
 from quietarm.studies import figures
 from quietarm.studies.compare.fronts import Comparison, Group
@@ -113,7 +114,7 @@ def fronts_report(
         {
             "parts": list(zip(comparisons, tables, pictures, strict=True)),
             "title_of": title_of,
-            "fill": comparisons[0].fill,
+            "fill": BETWEEN if comparisons[0].fill else 0,
             "several": any(len(g.runs) > 1 for one in comparisons for g in one.groups),
         },
         {

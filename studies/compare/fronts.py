@@ -11,16 +11,13 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.ensemble import Spread
-from quietarm.metaheuristics.quality import CORNER
+from quietarm.metaheuristics.quality import CORNER, objectives
 from quietarm.ocp import Front, PointToPoint, task_difference
-from quietarm.ocp.checks import not_negative, positive, whole
+from quietarm.ocp.checks import not_negative, positive
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.saved import plain
-from quietarm.studies.compare.staircase import best_of, evenly_spaced, filled, objectives, within
+from quietarm.studies.compare.staircase import best_of, evenly_spaced, filled, within
 from quietarm.studies.registry.methods import Kind, method_of
-
-FILL, MOST_FILL = 1000, 100_000
-"""About how many points a filled front has, and at most."""
 
 Array = NDArray[np.float64]
 
@@ -100,8 +97,8 @@ class Comparison:
         What no filled front dominates: residuals [m], rising, and energies [J].
     best : tuple of float
         Its least energy [J] within each level; NaN where it has none.
-    fill : int
-        About how many points a filled front has; 0 where fronts were left as they were found.
+    fill : bool
+        Whether motions between the points of a front count.
     floor : float or None
         Energy [J] of the best free motion at rest on arrival of the nominal plant, where known.
     """
@@ -114,7 +111,7 @@ class Comparison:
     levels: tuple[float, ...]
     best_front: Array
     best: tuple[float, ...]
-    fill: int
+    fill: bool
     floor: float | None = None
 
     @property
@@ -135,7 +132,7 @@ def compare_fronts(
     reference_name: str = "the reference front",
     floor: float | None = None,
     levels: Sequence[float] = LEVELS,
-    fill: int = FILL,
+    fill: bool = True,
 ) -> Comparison:
     """Measure fronts of one task against each other.
 
@@ -155,8 +152,8 @@ def compare_fronts(
         Energy [J] of the best free motion, for pictures.
     levels : sequence of float
         Residuals [m] at which energies are compared.
-    fill : int
-        About how many points a filled front has; 0 leaves fronts as they were found.
+    fill : bool
+        Whether motions between the points of a front count.
 
     Returns
     -------
@@ -171,14 +168,14 @@ def compare_fronts(
     names = names or [f"front {i}" for i in range(1, len(fronts) + 1)]
     if not fronts or len(names) != len(fronts):
         raise ValueError(f"{len(fronts)} fronts have {len(names)} names; give each front a name")
-    fill = whole("fill", fill, 0, MOST_FILL, "each is a motion")
     levels = [positive("level", level, "m") for level in levels]
     floor = None if floor is None else not_negative("floor", floor, "J")
     given = [*fronts, *([reference] if reference else [])]
     _refuse(given, [*names, reference_name][: len(given)], len(fronts))
-    found, between = [objectives(front) for front in fronts], [filled(f, fill) for f in fronts]
+    found = [objectives(front) for front in fronts]
+    between = [filled(front) for front in fronts] if fill else found
     best_front = best_of(between)
-    known = best_front if reference is None else filled(reference, fill)
+    known = best_front if reference is None else filled(reference)
     ideal, extent = known.min(axis=0), np.ptp(known, axis=0)
     extent = np.where(extent > 0, extent, np.max([front.reference for front in fronts], axis=0))
     corner = ideal + CORNER * extent

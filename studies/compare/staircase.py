@@ -3,43 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil
 
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.objective.claims import objective_of
+from quietarm.metaheuristics.quality import objectives, with_motions_between
 from quietarm.ocp import Front
 
 Array = NDArray[np.float64]
-_KEPT = 1e-6
-"""Share by which a limit may be exceeded, as when a search verifies its points."""
 _STATIONS = 101
 
 
-def objectives(front: Front) -> Array:
-    """Residual [m] and energy [J] of every point, shape (points, 2)."""
-    return np.column_stack([front.residuals, front.energies])
-
-
-def filled(front: Front, points: int) -> Array:
-    """Residual and energy of a front and of motions between its points.
-
-    So that a front is not judged by its number of points. The coefficients of neighbouring points
-    are interpolated and the motions evaluated: each is a motion that can be driven and stays in the
-    box; those that break a limit of the task do not count.
-    """
-    own = objectives(front)
-    between = ceil(points / max(len(own) - 1, 1)) - 1
-    if len(own) < 2 or between < 1:
-        return own
-    corners = np.array([point.coefficients for point in front.points])
-    share = (np.arange(1, between + 1) / (between + 1))[:, None]
-    inner = corners[:-1, None] * (1 - share) + corners[1:, None] * share
-    values = objective_of(front.task, front.profile)(inner.reshape(-1, front.profile.size))
-    table = np.column_stack([values.residual, values.energy])
-    kept = np.isfinite(table).all(axis=1) & (values.violations <= _KEPT).all(axis=1)
-    return best_of([own, table[kept]])
+def filled(front: Front) -> Array:
+    """Residual and energy of a front and of motions between its points, rising in residual."""
+    points, coefficients = objectives(front), np.array([p.coefficients for p in front.points])
+    return best_of([with_motions_between(front.task, front.profile, coefficients, points)])
 
 
 def best_of(fronts: list[Array]) -> Array:

@@ -138,7 +138,7 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     length = min(map(len, histories))
     evaluations = [generation.evaluations for generation in histories[0][:length]]
     table = np.array([[g.hypervolume for g in history[:length]] for history in histories])
-    low, middle, high = np.quantile(table, [0.25, 0.5, 0.75], axis=0)
+    low, middle, high = np.quantile(table, [0.25, 0.5, 0.75], axis=0, method="inverted_cdf")
     mark = "o" if length == 1 else ""  # one generation makes no line
     ax.plot(evaluations, middle, color=BLUE, marker=mark, label="median")
     spread = hypervolumes(fronts)
@@ -362,7 +362,7 @@ def _draw_compared(
     """
     for group, own, wider in _drawn(comparison):
         style: dict[str, Any] = {"color": own.colour, "linestyle": own.dash, "label": group.label}
-        line = group.by_gradient and len(group.runs) == 1 and comparison.fill > 0
+        line = group.by_gradient and len(group.runs) == 1 and comparison.fill
         shown = _up_to(group.runs[0].between if line else group.median, right)
         draw_front(ax, *shown.T, exact=line, width=1.2 + wider, **style)
         if len(group.runs) > 1:

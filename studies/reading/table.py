@@ -286,7 +286,7 @@ def _numbers(
     found: list[Array | None] = []
     for k in range(width):
         text = table[k] if separator == "," else table[k].str.replace(",", ".", regex=False)
-        numbers = pd.to_numeric(text, errors="coerce")
+        numbers: Any = pd.to_numeric(text, errors="coerce")
         wrong = np.flatnonzero((text.notna() & numbers.isna()).to_numpy())
         if len(wrong) > len(rows) / 2:
             found.append(None)

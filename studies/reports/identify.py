@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import fields
 from math import floor, log10, pi
+from typing import Any
 
 from quietarm.models import Plant
 from quietarm.studies.document.blocks import Document, Facts, Lines
@@ -88,7 +89,8 @@ def _by_amplitude(found: Identified, one: Estimate) -> str:
     if max(sizes) < 1.3 * min(sizes):
         return ""
     values = [part.values[one.parameter] for part in found.parts]
-    rank, chance = spearmanr(sizes, values)
+    found_rank: Any = spearmanr(sizes, values)
+    rank, chance = found_rank
     if chance > 0.05:
         return ""
     return f", and {'grows' if rank > 0 else 'falls'} with the amplitude"

@@ -33,7 +33,7 @@ class Case:
     @property
     def search(self) -> str:
         """The paper's search for its plant: sections 3.1 and 3.2."""
-        return {SINGLE_LINK.name: "vepso", ARM.name: "nsga2"}[self.task.plant.name]
+        return {SINGLE_LINK.name: "vepso", ARM.name: "nsga2-paper"}[self.task.plant.name]
 
     @property
     def search_label(self) -> str:

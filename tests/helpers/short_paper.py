@@ -6,7 +6,7 @@ SHORT = Effort(
     full=True,
     searches={
         "vepso": {"population": 20, "generations": 40},
-        "nsga2": {"population": 20, "generations": 3},
+        "nsga2-paper": {"population": 20, "generations": 3},
     },
     starts=1,
     other_starts=1,

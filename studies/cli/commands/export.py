@@ -8,7 +8,7 @@ from typing import Any
 import click
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import command, quiet, typed
-from quietarm.studies.cli.types import INPUT, SHARE, STATE, WHOLE
+from quietarm.studies.cli.types import FILE, INPUT, SHARE, WHOLE
 from quietarm.studies.display.progress import count
 from quietarm.studies.document.blocks import Document, Lines
 from quietarm.studies.export.formats import (
@@ -30,7 +30,7 @@ from rich.console import Console
 @click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
 @click.option(
     "--output",
-    type=STATE,
+    type=FILE,
     required=True,
     help="The file, whose ending is the format; move.c has move.h beside it.",
 )

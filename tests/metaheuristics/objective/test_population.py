@@ -62,19 +62,19 @@ def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):
 def test_violations_are_the_rollouts_peaks_over_the_limits(tasks, name):
     task, bound = tasks[name]
     X = candidates(30, bound)
-    steps = PopulationObjective(task, PROFILE).steps
+    steps = 40
     motions = [rollout(task, PROFILE, x, steps).motion for x in X]
     peaks = np.array([[motion.peak(limit) for limit in LIMITS] for motion in motions])
     limits = np.median(peaks, axis=0)  # half of the candidates break each
     limited = dataclasses.replace(
         task, **{f"{name}_limit": float(v) for name, v in zip(LIMITS, limits, strict=True)}
     )
-    values = PopulationObjective(limited, PROFILE)(X)
+    values = PopulationObjective(limited, PROFILE, steps=steps)(X)
     assert values.violations.shape == (30, len(LIMITS))
     assert values.violations == pytest.approx(peaks / limits - 1, rel=0, abs=1e-12)
     assert np.array_equal(values.violations > 0, peaks > limits)
     assert np.all((values.violations > 0).sum(axis=0) == 15)
-    without = PopulationObjective(task, PROFILE)(X)
+    without = PopulationObjective(task, PROFILE, steps=steps)(X)
     assert without.violations.shape == (30, 0)
     assert values.energy == pytest.approx(without.energy, rel=1e-12, abs=0)
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from quietarm.metaheuristics import PROBLEMS, problem_of
 from quietarm.metaheuristics.objective.claims import check_figures
-from quietarm.metaheuristics.problems import finding
 from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.planning.plan_move import plan_from_starts
 from quietarm.ocp.record import SolveSettings
@@ -73,21 +72,6 @@ def test_no_motion_of_a_fine_grid_is_better_and_the_best_come_near(name):
     assert 0.95 < grid / exact < 1.02  # the motions between the exact front's points count here
 
 
-def test_the_fronts_are_found_again(monkeypatch):
-    # fewer points between, the same at the ends and at the levels
-    monkeypatch.setattr(finding, "POINTS", 2)
-    problem, begun = problem_of(TWO_TERMS[1]), []
-    found = problem.find_again(begun.append)
-    assert begun == [problem.name] == list(found)
-    (front,), (again,) = problem.fronts(), found.values()
-    assert len(again.points) == 2 + len(finding.LEVELS)
-    residuals = [*finding.LEVELS, front.residuals[0] + 1e-9, front.residuals[-1]]
-    wanted = least_energies(front, np.array(residuals) * (1 + 1e-6))
-    assert least_energies(again, np.array(residuals) * (1 + 1e-6)) == pytest.approx(
-        wanted, rel=BETTER
-    )
-
-
 def test_pymoo_has_the_exact_front_and_set():
     problem = problem_of("arm-on-flexible-link-90deg-0.8s-limits")
     made = problem.pymoo()
@@ -106,7 +90,7 @@ def test_pymoo_has_the_exact_front_and_set():
 
 def test_the_third_objective_is_the_peak_torque():
     problem = problem_of(THIRD)
-    X, F = problem.exact()
+    X, F = problem.optimum()
     assert F.shape == (len(X), 3)
     assert moocore.is_nondominated(F).all()
     assert len(F) > 100  # of six fronts of 25 and more

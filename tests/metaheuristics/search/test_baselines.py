@@ -33,13 +33,30 @@ def test_a_latin_hypercube_has_a_candidate_in_every_slice():
         assert len(set(column)) == len(column)
 
 
-def test_evaluations_stand_for_whole_generations():
+@pytest.mark.parametrize("method", ["vepso", "nsga2", "moead", "random"])
+def test_a_search_ends_exactly_at_its_evaluations(method):
+    front = qa.search(TASK, method, bound=0.2, population=20, evaluations=130)
+    assert front.evaluations == front.history[-1].evaluations == 130
+    whole = qa.search(TASK, method, bound=0.2, population=20, evaluations=120)
+    assert whole.history[-1].hypervolume <= front.history[-1].hypervolume
+
+
+def test_evaluations_below_a_generation_are_refused():
     settings = {"bound": 0.2, "population": 20}
-    with pytest.warns(RuntimeWarning, match="130 evaluations are 3 generations of vepso"):
-        front = qa.search(TASK, "vepso", evaluations=130, **settings)
-    assert front.evaluations == 120  # two swarms of 20, three times
-    assert front == qa.search(TASK, "vepso", generations=3, **settings)
     with pytest.raises(ValueError, match="in place of generations"):
         qa.search(TASK, "vepso", evaluations=130, generations=3, **settings)
     with pytest.raises(ValueError, match="30, less than one generation of vepso, 40"):
         qa.search(TASK, "vepso", evaluations=30, **settings)
+
+
+def test_a_search_starts_from_the_points_of_a_front():
+    front = qa.search(TASK, "gde3", bound=0.2, population=20, generations=30, seed=4)
+    further = qa.search(TASK, "nsga2", bound=0.2, population=20, generations=2, start=front)
+    alone = qa.search(TASK, "nsga2", bound=0.2, population=20, generations=2)
+    first = front.history[-1].hypervolume
+    assert further.history[0].hypervolume > 0.9 * first > alone.history[0].hypervolume
+    with pytest.raises(ValueError, match="beyond the bound of 1e-06; give a wider one"):
+        qa.search(TASK, "nsga2", bound=1e-6, generations=2, start=front)
+    with pytest.raises(ValueError, match="another profile"):
+        qa.search(TASK, "nsga2", bound=0.2, generations=2, start=front,
+                  profile=qa.CycloidPolynomial(3))  # fmt: skip

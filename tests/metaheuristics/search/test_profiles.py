@@ -39,9 +39,9 @@ def test_a_search_stays_in_the_profiles_box_and_finds_what_it_says(kind, method,
     for point in found.points:
         assert np.all((lower <= point.coefficients) & (point.coefficients <= upper))
     point = found.cheapest()
-    motion = rollout(task, profile, point.coefficients).motion
+    motion = rollout(task, profile, point.coefficients, 1000).motion  # by other integration
     assert point.energy == pytest.approx(motion.energy, rel=1e-6)
-    assert point.residual == pytest.approx(motion.residual, rel=1e-6)
+    assert point.residual == pytest.approx(motion.residual, rel=1e-4)
 
 
 def test_a_population_is_what_single_rollouts_are(profile):

@@ -1,0 +1,253 @@
+"""A bench: its jobs and files, its measures against moocore, and its tests against scipy."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from math import comb
+
+import moocore
+import numpy as np
+import pytest
+from quietarm.metaheuristics import Job, finished_jobs, run_jobs
+from quietarm.metaheuristics.objective.population import ACCURACY
+from quietarm.metaheuristics.quality import CORNER
+from quietarm.studies.bench.asked import jobs_of, problems_of
+from quietarm.studies.bench.page import bench_report, problem_table
+from quietarm.studies.bench.results import Results, quartiles
+from quietarm.studies.bench.statistics import (
+    attainable_p,
+    moves_of,
+    pairs_on,
+    ranking_over,
+    say_power,
+    verdict_on,
+)
+
+import quietarm as qa
+
+NAME = "single-link-30deg-0.8s-2-terms"
+OTHERS = ["arm-on-flexible-link-90deg-0.8s-2-terms", "single-link-30deg-0.8s-4-terms"]
+METHODS = ["nsga2", "random", "nsga2+polish"]
+SMALL = {"population": 20}
+
+
+@pytest.fixture(scope="module")
+def jobs():
+    searches = [Job(NAME, method, seed, 200, SMALL if "nsga2" in method else None)
+                for seed in range(5) for method in METHODS]  # fmt: skip
+    return [*searches, *(Job(NAME, "epsilon", seed, settings={"points": 8}) for seed in range(5))]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("bench")
+
+
+@pytest.fixture(scope="module")
+def fronts(jobs, folder):
+    return run_jobs(jobs, folder)
+
+
+def test_a_job_is_a_file_and_is_not_done_again(jobs, folder, fronts, monkeypatch):
+    assert list(fronts) == jobs
+    for job, front in fronts.items():
+        assert qa.Front.load(folder / f"{job.name}.json") == front
+        assert front.settings["problem"] == NAME
+    monkeypatch.setattr(Job, "run", lambda job: pytest.fail("it was done"))
+    assert run_jobs(jobs, folder) == fronts == finished_jobs(jobs, folder)
+
+
+def test_a_search_spends_its_budget_and_the_gradient_states_its_own(fronts):
+    for job, front in fronts.items():
+        last = front.history[-1]
+        if job.method in ("nsga2", "random"):
+            assert (last.evaluations, last.gradients, last.hessians) == (200, 0, 0)
+        else:
+            assert last.gradients > 0
+        assert front.seconds >= last.seconds > 0
+
+
+def test_measures_are_moocores_from_the_files_alone(fronts):
+    reference = qa.problem_of(NAME).fronts()[0]
+    best = np.c_[reference.residuals, reference.energies]
+    ideal, extent = best.min(axis=0), np.ptp(best, axis=0)
+    for front in fronts.values():
+        points = (np.c_[front.residuals, front.energies] - ideal) / extent
+        line = (best - ideal) / extent
+        quality = front.history[-1].quality
+        corner = [CORNER, CORNER]
+        # the reference's is of the line through its points, a little more than of the points
+        wanted = moocore.hypervolume(points, ref=corner) / moocore.hypervolume(line, ref=corner)
+        assert quality.hypervolume == pytest.approx(wanted, rel=5e-3)
+        assert quality.igd_plus == pytest.approx(moocore.igd_plus(points, ref=line))
+        assert quality.epsilon == pytest.approx(moocore.epsilon_additive(points, ref=line))
+        assert front.history[-1].between.hypervolume >= quality.hypervolume - 1e-12
+
+
+def test_points_are_by_cvodes_and_searches_see_them_within_the_accuracy_stated(fronts):
+    function = qa.problem_of(NAME).function()
+    for front in fronts.values():
+        seen, _ = function(front.coefficients)
+        assert seen[:, 1] == pytest.approx(front.energies, rel=ACCURACY)
+        plan = qa.evaluate_coefficients(front.task, front.points[-1].coefficients)
+        assert front.points[-1].energy == pytest.approx(plan.energy, rel=1e-12)
+
+
+LONG = ["arm-on-flexible-link-90deg-0.8s-12-terms", "single-link-30deg-0.8s-20-terms"]
+
+
+@pytest.mark.parametrize("name", [*LONG, "dual-link-90deg-0.9s"])
+def test_random_candidates_are_within_the_accuracy_stated(name):
+    problem = qa.problem_of(name)
+    own, fine = problem.function(), problem.function(steps=384)
+    rows = np.random.default_rng(3).uniform(own.lower, own.upper, (100, len(own.lower)))
+    assert own(rows)[0] == pytest.approx(fine(rows)[0], rel=ACCURACY)
+
+
+def test_a_recorded_run_has_the_figures_of_a_job(fronts):
+    job, front = next((j, f) for j, f in fronts.items() if j.method == "random")
+    recorded = qa.problem_of(NAME).recorded()
+    rng = np.random.default_rng(0)
+    for _ in range(2):
+        recorded(rng.uniform(recorded.lower, recorded.upper, (100, 2)))
+    recorded([[9.0, 9.0]])  # beyond the box: it counts, and is not kept
+    found = recorded.front("my tool", seed=7)
+    assert found.evaluations == 201
+    assert all(abs(c) <= 0.2 for point in found.points for c in point.coefficients)
+    results = Results.of_jobs({job: front}, [found])
+    assert set(results.methods) == {"random", "my tool"}
+    elsewhere = qa.problem_of(OTHERS[0]).recorded()
+    elsewhere(rng.uniform(-0.1, 0.1, (50, 2)))
+    with pytest.raises(ValueError, match="give that problem too"):
+        Results.of_jobs({job: front}, [elsewhere.front("my tool")])
+
+
+def test_a_function_of_ones_own_is_a_method():
+    def halton(function, seed, budget):
+        rng = np.random.default_rng(seed)
+        while True:
+            function(rng.uniform(function.lower, function.upper, (30, 2)))
+
+    front = Job(NAME, halton, 1, budget=100).run()
+    assert (front.method, front.evaluations) == ("halton", 100)
+
+
+# -- statistics --
+
+
+def test_tests_are_exact_and_no_verdict_is_given_without_power(fronts):
+    results = Results.of_jobs(fronts)
+    table = pairs_on(results, NAME)
+    assert len(table) == 6
+    # five runs of each: the least p of a pair is 2 / C(10, 5)
+    assert table["p"].min() == pytest.approx(2 / comb(10, 5))
+    assert attainable_p(5, 5, 10) == pytest.approx(10 * 2 / 252)
+    assert "9 are needed" not in say_power(5, 4)
+    assert say_power(5, 5) == (
+        "with 5 runs and 10 pairs no p can fall below 0.05: 6 runs are needed for a verdict"
+    )
+    verdict = verdict_on(results, NAME)
+    assert "ends nearest" in verdict
+    assert "random search" not in verdict
+    few = Results.of_jobs({job: front for job, front in fronts.items() if job.seed < 3})
+    assert "no verdict: with 3 runs" in verdict_on(few, NAME)
+
+
+def test_problems_of_one_move_count_once():
+    groups = moves_of([qa.problem_of(name) for name in (NAME, *OTHERS)])
+    assert sorted(len(group) for group in groups) == [1, 2]
+    sixteen = [one for one in qa.PROBLEMS.values() if not one.peak]
+    assert len(moves_of(sixteen)) == 7
+
+
+def test_missing_values_are_censored(fronts):
+    assert quartiles([1.0, 2.0, np.nan]) == (1.0, 2.0, np.inf)
+    results = Results.of_jobs(fronts)
+    hits = results.hits(NAME, "random", 1e-9)
+    assert np.isinf(hits).all()
+    assert np.isinf(results.expected_running_time(NAME, "random", 1e-9))
+    hits = results.hits(NAME, "random", 0.5, "evaluations")
+    if np.isfinite(hits).any():  # COCO: all that was spent over the runs that reached it
+        spent = np.where(np.isfinite(hits), hits, 200).sum() / np.isfinite(hits).sum()
+        found = results.expected_running_time(NAME, "random", 0.5, "evaluations")
+        assert found == pytest.approx(spent)
+    assert ranking_over(results) is None  # one move
+
+
+def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
+    results = Results.of_jobs(fronts)
+    report = bench_report(results, "quietarm bench")
+    for path, write in report.files(tmp_path):
+        write(path)
+    assert (tmp_path / "curves.png").stat().st_size > 10_000
+    text = (tmp_path / "report.md").read_text()
+    assert "5 runs of each of 4 methods (6 pairs)" in text
+    table = problem_table(results, NAME)
+    assert table["missing [%]"].is_monotonic_increasing
+    assert table["method"].iloc[-1] == "random search"
+
+
+# -- bad input --
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (lambda: Job("no-such", "nsga2"), "unknown problem"),
+        (lambda: Job(NAME, "nsga"), "unknown method 'nsga'"),
+        (lambda: Job(NAME, "nsga2", 0, 0), "less than one generation"),
+        (lambda: Job(NAME, "epsilon", 0, 100), "ends by itself; leave its budget out"),
+        (lambda: Job(NAME, "nsga2", -1), "seed is -1"),
+        (lambda: run_jobs([Job(NAME, "nsga2")] * 2, "x"), "is given twice; give it once"),
+        (lambda: problems_of([NAME, NAME]), "is given twice; give it once"),
+        (lambda: jobs_of(problems_of([NAME]), ["nsga2", "nsga2"], 1, 100), "is given twice"),
+        (lambda: problems_of(["single-link-30deg-0.8s-torque"]), "third objective"),
+        (lambda: Results([]), "no run was done"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(given, words):
+    with pytest.raises(ValueError, match=words) as caught:
+        given()
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_of_another_problem_is_refused(fronts, tmp_path):
+    job, other = Job(NAME, "random", 0, 200), Job(OTHERS[1], "random", 0, 200)
+    path = tmp_path / f"{other.name}.json"
+    path.parent.mkdir(parents=True)
+    fronts[job].save(path)
+    with pytest.raises(ValueError, match="is of another problem than single-link-30deg"):
+        run_jobs([other], tmp_path)
+    old = replace(fronts[job], versions={**fronts[job].versions, "pymoo": "0.1"})
+    (tmp_path / f"{job.name}.json").parent.mkdir(parents=True)
+    old.save(tmp_path / f"{job.name}.json")
+    with pytest.raises(ValueError, match=r"by pymoo 0\.1, and here is"):
+        run_jobs([job], tmp_path)
+
+
+def test_a_job_that_fails_stops_no_other(tmp_path):
+    def broken(function, seed, budget):
+        raise ValueError("it broke")
+
+    jobs = [Job(NAME, broken, 0, 50), Job(NAME, "random", 0, 100)]
+    with pytest.raises(qa.LostJobsError, match="it broke; 1 jobs are done") as caught:
+        run_jobs(jobs, tmp_path)
+    assert list(caught.value.fronts) == [jobs[1]]
+    assert len(list(tmp_path.rglob("*.json"))) == 1
+
+
+def test_workers_find_the_same_and_a_killed_run_goes_on(tmp_path):
+    line = [sys.executable, "-m", "quietarm", "bench", NAME, "--methods", "random,gde3", "--runs",
+            "2", "--evaluations", "200", "--quiet", "--output"]  # fmt: skip
+    subprocess.run([*line, str(tmp_path / "one")], check=True, capture_output=True, timeout=240)
+    subprocess.run([*line, str(tmp_path / "two"), "--part", "1/2"], check=True,
+                   capture_output=True, timeout=240)  # fmt: skip
+    assert len(list((tmp_path / "two").glob("single*/*/*.json"))) == 2
+    subprocess.run([*line, str(tmp_path / "two"), "--workers", "2"], check=True,
+                   capture_output=True, timeout=240)  # fmt: skip
+    files = sorted(path.relative_to(tmp_path / "one") for path in tmp_path.glob("one/single*/*/*"))
+    assert len(files) == 4
+    for name in files:
+        one, two = (json.loads((tmp_path / which / name).read_text()) for which in ("one", "two"))
+        assert one["points"] == two["points"]
