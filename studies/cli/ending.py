@@ -40,7 +40,6 @@ def finish(
     *shown: Report | Facts | str,
     trouble: Exception | None = None,
     together: Together | None = None,
-    **_: object,  # quiet, of commands that do not write a Report yet
 ) -> None:
     """Save every file that was asked for, show what was found, and say what was written.
 

@@ -84,11 +84,3 @@ def refuse_same_file(values: Mapping[str, Any]) -> None:
             if place in known:
                 raise ValueError(f"{path} is given twice; give it once, or another name")
             known.add(place)
-
-
-def __getattr__(name: str) -> Any:  # of commands that are not moved yet
-    if name.startswith("__"):
-        raise AttributeError(name)
-    from quietarm.studies.cli import before
-
-    return getattr(before, name)

@@ -231,11 +231,3 @@ def part_option(pieces: str) -> Callable[[F], F]:
         "--part", type=Parsed("i/n", _part), default="1/1",
         help=f"Do every n-th {pieces} alone, as 2/8 in a queue's array job.",
     )  # fmt: skip
-
-
-def __getattr__(name: str) -> Any:  # of commands that are not moved yet
-    if name.startswith("__"):
-        raise AttributeError(name)
-    from quietarm.studies.cli import before
-
-    return getattr(before, name)

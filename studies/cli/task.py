@@ -158,11 +158,3 @@ class TypedMove:
 
 def _parser(unit: str, name: str) -> Callable[[str], float]:
     return partial(parse_quantity, unit=unit, what=f"a value of {name}")
-
-
-def __getattr__(name: str) -> Any:  # of commands that are not moved yet
-    if name.startswith("__"):
-        raise AttributeError(name)
-    from quietarm.studies.cli import before
-
-    return getattr(before, name)

@@ -12,6 +12,8 @@ from typing import Any
 import click
 from quietarm.models import load_plant_file
 from quietarm.ocp.checks import unknown
+from quietarm.ocp.files import check_writable
+from quietarm.studies.cli.folders import check_folder
 from quietarm.studies.cli.plants import parse_error, parse_plant
 from quietarm.studies.cli.quantities import (
     is_number,
@@ -127,11 +129,5 @@ TORQUE_SPEED = Parsed("torque@speed", parse_torque_speed)
 WEIGHTS = Parsed("weights", parse_weights)
 WHOLE = click.INT
 INPUT = click.Path(path_type=Path)
-
-
-def __getattr__(name: str) -> Any:  # of commands that are not moved yet
-    if name.startswith("__"):
-        raise AttributeError(name)
-    from quietarm.studies.cli import before
-
-    return getattr(before, name)
+FILE, FOLDER = Parsed("file", check_writable), Parsed("folder", check_folder)
+"""What is written, after it was made sure that it can be."""
