@@ -153,6 +153,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--page", type=Path)
+    parser.add_argument("--only-page", action="store_true", help="of the runs that are there")
     given = parser.parse_args()
     hard = [hard_problem(name, given.folder) for name in hard_tasks()]
     jobs = jobs_of([*(qa.problem_of(name) for name in MOVES), *hard])
@@ -161,7 +162,10 @@ def main() -> None:
         print(f"{done}/{total} {job.name} {front.seconds:.2f} s", flush=True)
 
     try:
-        fronts = qa.run_jobs(jobs, given.folder, workers=given.workers, report=report)
+        fronts = (
+            qa.finished_jobs(jobs, given.folder) if given.only_page
+            else qa.run_jobs(jobs, given.folder, workers=given.workers, report=report)
+        )  # fmt: skip
     except qa.LostJobsError as error:
         print(error)
         fronts = error.fronts
