@@ -55,7 +55,8 @@ _STUDIES = {
     "figures": "Pictures",
     "identify": "Identification",
     "sweep": "Grids of moves",
-    "contest": "Contests",
+    "bench": "Benches",
+    "compare": "Comparison",
 }
 _TAG = re.compile(r"\\tag\{(.*?)\}")
 

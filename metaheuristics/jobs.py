@@ -109,7 +109,7 @@ class Job:
     def _find(self, rehearse: bool = False) -> Front:
         problem, budget, settings = self.problem, self.budget, dict(self.settings)
         asked: Any = {"profile": problem.profile, "bound": problem.bound, "seed": self.seed}
-        if self.method in GRADIENT:
+        if isinstance(self.method, str) and self.method in GRADIENT:
             if rehearse:
                 settings = {"starts" if "multistart" in self.label else "points": _REHEARSAL}
             return gradient_front(problem.task, method=self.method, settings=settings, **asked)
@@ -340,7 +340,8 @@ def side_by_side(
     here: Any = {"backend": "loky", "n_jobs": workers, "inner_max_num_threads": 1}
     try:
         with parallel_config(**(here if client is None else {"backend": "dask", "n_jobs": -1})):
-            running: Any = Parallel(return_as="generator_unordered", batch_size=1)
+            options: Any = {"return_as": "generator_unordered", "batch_size": 1}
+            running: Any = Parallel(**options)
             yield from running(delayed(function)(item) for item in items)
     except TerminatedWorkerError:
         return

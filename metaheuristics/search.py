@@ -150,7 +150,7 @@ def search(
     function = MoveFunction(task, profile, bound=bound, threads=threads)
     first = _starts(start, function) if start is not None else np.empty((0, profile.size))
     record = Record(task, profile.size, reference)
-    problem = CountedProblem(function, record, inf if evaluations is None else chosen.evaluations)
+    problem = CountedProblem(function, record, chosen.evaluations or inf)
     after = None if report is None else _reporting(problem, chosen.generations, report)
     # a division by a distance of zero is of no concern to a user; and pymoo's NSGA-III leaves all
     # warnings of the process switched off
@@ -281,8 +281,9 @@ def _own(
     from quietarm.metaheuristics.algorithms.own import own_algorithm
     from quietarm.metaheuristics.algorithms.provenance import settings_of
 
-    if inspect.isclass(algorithm):
-        raise ValueError(f"give an algorithm, as {algorithm.__name__}(), not its class")
+    given: Any = algorithm
+    if inspect.isclass(given):
+        raise ValueError(f"give an algorithm, as {given.__name__}(), not its class")
     chosen = own_algorithm(algorithm)
     method = type(chosen).__name__
     for name, value in (("population", population), ("settings", settings)):

@@ -61,7 +61,7 @@ def _plant_for(given: object) -> str:
     """What to give instead of something that is no plant: the class of a name, made."""
     kinds = known_plants()
     kind = given if isinstance(given, type) else kinds.get(str(given))
-    names = [kind] if kind in kinds.values() else kinds.values()
+    names: Iterable[Any] = [kind] if kind in kinds.values() else kinds.values()
     return f"a plant, as {' or '.join(f'{one.__name__}()' for one in names)}"
 
 

@@ -6,7 +6,7 @@
     plan = qa.plan_move(task)
 
 Every public name of `quietarm.models`, `quietarm.ocp` and `quietarm.metaheuristics`, and of
-`figures`, `compare`, `identify`, `contest` and `sweep` in `quietarm.studies`; each package is
+`figures`, `compare`, `identify`, `bench` and `sweep` in `quietarm.studies`; each package is
 imported with the first of its names that is asked for.
 """
 

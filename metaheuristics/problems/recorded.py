@@ -40,8 +40,9 @@ class RecordedFunction(MoveFunction):
         table = np.array(candidates, dtype=float)
         found, violations = super().__call__(table)
         inside = (table >= self.lower) & (table <= self.upper)
-        good = [inside, found < UNUSABLE, violations <= 0]
-        self.record.add(table, found, np.concatenate(good, axis=1).all(axis=1))
+        good = np.concatenate([inside, found < UNUSABLE, violations <= 0], axis=1)
+        usable: Any = good.all(axis=1)
+        self.record.add(table, found, usable)
         return found, violations
 
     def front(self, method: str, seed: int | None = None) -> Front:

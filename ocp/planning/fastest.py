@@ -128,7 +128,8 @@ def _with_more_terms(six: _Search, tolerance: float) -> tuple[_Search, Plan]:
     search.best = six.best
     _narrow(search, tolerance)
     try:
-        return search, plan_move(search.best.task, **{**search.settings, "guess": None})
+        settings: dict[str, Any] = {**search.settings, "guess": None}
+        return search, plan_move(search.best.task, **settings)
     except SolverFailedError:
         return search, search.best
 

@@ -130,7 +130,7 @@ class TypedMove:
 
     def grid(self, **known: float) -> Grid:
         """The task, and axes over what has several values."""
-        given = {**self.given, **{name: (value,) for name, value in known.items()}}
+        given: dict[str, Any] = {**self.given, **{name: (one,) for name, one in known.items()}}
         kind, parameters, errors = (given.pop(name) for name in ("plant", "parameters", "errors"))
         axes = {name: text for name, text in parameters if ":" in text or "," in text}
         single = [(name, text) for name, text in parameters if name not in axes]

@@ -89,10 +89,10 @@ _NAMES = {"rad": "radians", "m": "metres", "s": "seconds"}
 
 def _sides(parse: Callable[[str], float], text: str) -> float | tuple[float, ...]:
     """A limit of both directions, or one for each: ``-30:40``."""
-    values = tuple(map(parse, text.split(":")))
+    values = [parse(side) for side in text.split(":")]
     if len(values) > 2:
         raise ValueError(f"{text!r} is no limit; give one number, or one for each side as -30:40")
-    return values if len(values) == 2 else values[0]
+    return tuple(values) if len(values) == 2 else values[0]
 
 
 def limit_type(name: str, unit: str) -> Parsed:

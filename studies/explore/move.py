@@ -100,7 +100,7 @@ class Explored:
     @property
     def profile(self) -> str:
         """The name of the profile's family; its label where it has none."""
-        kinds = {kind: name for name, kind in FAMILIES.items()}
+        kinds: dict[Any, str] = {kind: name for name, kind in FAMILIES.items()}
         return kinds.get(type(self.plan.profile), self.plan.profile.label)
 
     @cached_property

@@ -52,7 +52,7 @@ class Page:
         self._file.js_on_change("data", CustomJS(args={"file": self._file}, code=_SAVE))
         # as a tag it is part of the document
         self._said = Div(name="said", tags=[self._file], **_WIDE)
-        families = list(dict.fromkeys([*FAMILIES, explored.profile]))
+        families: Any = list(dict.fromkeys([*FAMILIES, explored.profile]))
         self._plant = Select(title="plant", options=list(plants), **_WIDE)
         self._profile = Select(title="profile", options=families, **_WIDE)
         self._terms = Spinner(title="terms", low=1, step=1, **_WIDE)

@@ -213,7 +213,8 @@ def _draw(film: Film) -> tuple[Figure, list[Update]]:
     clock = figure.text(0.99, 0.99, "", ha="right", va="top", fontsize=11)
     at_speed = f", speed x {film.speed:g}" if film.speed != 1 else ""
     updates: list[Update] = [lambda k: clock.set_text(f"t = {times[k]:.2f} s{at_speed}")]
-    upper, lower = figure.subfigures(2, 1, height_ratios=[above, _CURVES_HIGH])
+    subfigures: Any = figure.subfigures(2, 1, height_ratios=[above, _CURVES_HIGH])
+    upper, lower = subfigures
     panels = list(upper.subplots(rows, columns, squeeze=False).flat)
     for spare in panels[len(structures) :]:
         spare.axis("off")

@@ -145,7 +145,7 @@ SEARCH = ["--population", "20", "--generations", "5"]
 SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of its own
     "front": ["--points", "5"],
     "search": SEARCH,
-    "contest": ["--runs", "1", "--evaluations", "150", "--methods", "nsga2,vepso"],
+    "bench": ["--runs", "1", "--evaluations", "200"],
 }
 
 

@@ -104,7 +104,8 @@ def bench(
     report = bench_report(Results.of_jobs(fronts, given), typed_line())
     files = report.files(output)
     for path, write in files:
-        write(path)
+        if path is not None:
+            write(path)
     show(Console(), brief_report(Results.of_jobs(fronts, given)))
     click.echo(f"wrote report.md and {len(files) - 1} tables and pictures to {output}")
     if trouble is not None:

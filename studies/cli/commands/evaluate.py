@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 from quietarm.ocp import evaluate_coefficients
@@ -134,7 +135,10 @@ def _evaluate_table(
             f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
             f"{FAMILIES[profile](terms).size}; leave --terms out, or transpose the table"
         )
-    settings = {"imported": file.name, **({} if bound is None else {"bound": bound})}
+    settings: dict[str, Any] = {
+        "imported": file.name,
+        **({} if bound is None else {"bound": bound}),
+    }
     with working("evaluating", Console(stderr=True), quiet=quiet()):
         try:
             motions = FAMILIES[profile].of_size(columns)

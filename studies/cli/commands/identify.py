@@ -103,5 +103,5 @@ def identify(
     with working("fitting", Console(stderr=True), quiet=quiet()):
         found = identification.identify(read, known, free, parts)
     picture = drawing(lambda: figures.identification_figure(found, read))
-    files = files_of(output, {".json": found.save, PICTURE: picture})
-    finish(files, machine_rows(found), *machine_notes(found))
+    written = files_of(output, {".json": found.save, PICTURE: picture})
+    finish(written, machine_rows(found), *machine_notes(found))
