@@ -8,7 +8,7 @@ from typing import Any
 import click
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import command, quiet, typed
-from quietarm.studies.cli.types import INPUT, MODES, SHARE, WHOLE
+from quietarm.studies.cli.types import INPUT, FILE, SHARE, WHOLE
 from quietarm.studies.export.formats import (
     COLUMNS,
     FORMATS,
@@ -29,7 +29,7 @@ from rich.console import Console
 @click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
 @click.option(
     "--output",
-    type=MODES,
+    type=FILE,
     required=True,
     help="The file, whose ending is the format; move.c has move.h beside it.",
 )
