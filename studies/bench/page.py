@@ -73,7 +73,9 @@ def brief_report(results: Results) -> Report:
     """What a terminal shows: a narrow table and a verdict for each problem."""
     columns = ["method", "runs", "missing [%]", "at rest", "seconds"]
     names = [problem.name for problem in results.problems]
-    tables = {name: problem_table(results, name)[columns].map(_rounded) for name in names}
+    tables: dict[str, Any] = {
+        name: problem_table(results, name)[columns].map(_rounded) for name in names
+    }
     verdicts = {name: verdict_on(results, name) for name in names}
     return Report("bench/brief.md", {"verdicts": verdicts}, tables)
 
@@ -95,7 +97,7 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
             "with motions between [%]": 100 * quartiles(own["missing_between"])[1],
             "IGD+": quartiles(own["igd_plus"])[1], "epsilon": quartiles(own["epsilon"])[1],
             "energy above at 1 mm [%]": 100 * quartiles(own["energy_1mm"])[1],
-            "at rest": f"{int(own['at_rest'].sum())} of {len(own)}",
+            "at rest": f"{np.count_nonzero(own['at_rest'])} of {len(own)}",
             "candidates": spent["evaluations"], "gradients": spent["gradients"],
             "Hessians": spent["hessians"], "seconds": spent["seconds"],
         })  # fmt: skip
@@ -107,7 +109,7 @@ def summary_table(results: Results) -> pd.DataFrame:
     """Every method over all problems: medians over problems of the medians over runs."""
     rows = []
     for method, own in results.table.groupby("method"):
-        by_problem = own.groupby("problem")
+        by_problem, at_rest = own.groupby("problem"), float(np.mean(own["at_rest"]))
 
         def median(column: str, by_problem: Any = by_problem) -> float:
             return quartiles([quartiles(one[column])[1] for _, one in by_problem])[1]
@@ -117,7 +119,7 @@ def summary_table(results: Results) -> pd.DataFrame:
             "runs": len(own), "missing [%]": 100 * median("missing"),
             "with motions between [%]": 100 * median("missing_between"),
             "energy above at 1 mm [%]": 100 * median("energy_1mm"),
-            "at rest [%]": 100 * float(own["at_rest"].mean()), "candidates": median("evaluations"),
+            "at rest [%]": 100 * at_rest, "candidates": median("evaluations"),
             "gradients": median("gradients"), "seconds": median("seconds"),
         })  # fmt: skip
     found = pd.DataFrame(rows).sort_values("missing [%]", ignore_index=True)

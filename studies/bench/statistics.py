@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import comb, sqrt
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -128,7 +129,8 @@ def values_on(results: Results, problem: str, column: str) -> Mapping[str, Array
     """A column of the table of runs by method, of one problem; methods with two runs or more."""
     table = results.table
     here = table[table["problem"] == problem]
-    grouped = {str(name): own[column].to_numpy(dtype=float) for name, own in here.groupby("method")}
+    groups: Any = here.groupby("method")
+    grouped = {str(name): own[column].to_numpy(dtype=float) for name, own in groups}
     return {name: own for name, own in grouped.items() if len(own) > 1}
 
 
@@ -206,7 +208,7 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
     table = pairs_on(results, problem, column)
     near = [best]
     for _, row in table[table["p_holm"] >= ALPHA].iterrows():
-        both = {row["one"], row["other"]}
+        both = {str(row["one"]), str(row["other"])}
         if label_of(best) in both:
             near += [name for name in values if label_of(name) in both - {label_of(best)}]
     others = [label_of(name) for name in sorted(near[1:], key=lambda name: medians[name])]

@@ -65,7 +65,9 @@ def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Rec
     time = fit.time if isinstance(fit, Forced) else fit.window.begin + fit.window.time
     fitted, residual = fit.fitted[:, 0], fit.residual[:, 0]
     size = max(float(np.abs(fitted - fitted.mean()).max()), 1e-300)
-    drawn = (piece.time, fit.at(piece.time)[:, 0]) if not part.hub else (time, fitted)
+    drawn = time, fitted
+    if not (part.hub or isinstance(fit, Forced)):
+        drawn = piece.time, fit.at(piece.time)[:, 0]
     over.plot(piece.time, piece.values[:, 0], color=GREY, linewidth=2.2, label="measured")
     over.plot(*drawn, color=BLUE, linewidth=1.0, label="fitted")
     over.set_title(f"{part.recording}, {part.begin:.3g} to {part.end:.3g} s: {part.misfit:.1%} "

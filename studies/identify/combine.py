@@ -9,6 +9,7 @@ The interval of a further one is Higgins, Thompson and Spiegelhalter's (J. R. St
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,4 +94,5 @@ def _between(groups: Sequence[Array], own: Sequence[Array]) -> float:
     if free == 0 or excess(0.0) <= 0:
         return 0.0
     widest = max(float(np.ptp(values)) for values in groups)
-    return float(brentq(excess, 0.0, 1e3 * widest**2))
+    root: Any = brentq(excess, 0.0, 1e3 * widest**2)
+    return float(root)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.recording import noise_of
@@ -23,7 +25,8 @@ def spectrum_of(time: Array, left: Array) -> tuple[Array, Array]:
     even = np.linspace(time[0], time[-1], len(time))
     values = np.interp(even, time, column)
     step = float(even[1] - even[0])
-    return np.fft.rfftfreq(len(even), step), 2 * np.abs(np.fft.rfft(values)) / len(even)
+    amplitudes: Array = 2 * np.abs(np.fft.rfft(values)) / len(even)
+    return np.asarray(np.fft.rfftfreq(len(even), step), dtype=float), amplitudes
 
 
 def cause_of(
@@ -123,7 +126,8 @@ def saturated(values: Array, fitted: Array | None = None) -> NDArray[np.bool_]:
     low, high = limits_of(values)
     near = 0.0 if fitted is None else 2 * noise_of(values)
     at = values if fitted is None else fitted
-    return ((at <= low + near) | (at >= high - near)).any(axis=1)
+    cut: Any = (at <= low + near) | (at >= high - near)
+    return cut.any(axis=1)
 
 
 def exceeds(values: Array, fitted: Array, flat: NDArray[np.bool_]) -> bool:

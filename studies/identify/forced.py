@@ -109,7 +109,8 @@ def fit_forced(model: ForcedModel, plants: Sequence[Plant], names: Sequence[str]
     scale = np.where(starts[0] != 0, np.abs(starts[0]), 1e-2)
 
     def fitted(p: Array, deviation: Array, loss: str) -> Any:
-        return least_squares(
+        solve: Any = least_squares
+        return solve(
             lambda x: (model(x * scale)[0] / deviation).ravel(),
             np.clip(p, lower, upper) / scale,
             lambda x: (model(x * scale)[1] / deviation).reshape(len(x), -1).T * scale,
@@ -125,7 +126,7 @@ def fit_forced(model: ForcedModel, plants: Sequence[Plant], names: Sequence[str]
     left, J, later = (entry / deviation for entry in model(p))
     flat, later = J.reshape(len(p), -1).T, later.ravel()
     power = _correlated_power(left)
-    covariance = np.linalg.pinv(flat.T @ flat, hermitian=True) * power
+    covariance: Any = np.linalg.pinv(flat.T @ flat, hermitian=True) * power
     delay = _delay(left.ravel(), flat, later, power)
     residual = left * deviation
     return Forced(p, covariance, model.time, model.values - residual, residual, delay)

@@ -109,7 +109,7 @@ class Recording:
         first, last = np.searchsorted(self.time, [begin, end], side="left")
         return slice(int(first), int(last) + 1)
 
-    def part(self, rows: slice) -> Recording:
+    def part(self, rows: slice | NDArray[np.bool_]) -> Recording:
         """Some of its rows."""
         names = [
             name for name in ("time", "angle", *self.signals) if getattr(self, name) is not None

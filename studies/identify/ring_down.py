@@ -87,11 +87,10 @@ class RingDowns:
         if not part.saturated:
             return self._fit(Window.of(piece, fastest, slow, bool(part.hub)), start)
         flat = saturated(piece.values)
-        for _ in range(2):  # the second time by the fit: near the limit the noise is cut as well
-            rest = piece.part(~flat)
-            fit = self._fit(Window.of(rest, trend=slow), start)
-            flat = saturated(piece.values, fit.at(piece.time))
-        return fit
+        # the second time by the fit: near the limit the noise is cut as well
+        first = self._fit(Window.of(piece.part(~flat), trend=slow), start)
+        flat = saturated(piece.values, first.at(piece.time))
+        return self._fit(Window.of(piece.part(~flat), trend=slow), start)
 
     def _fit(self, window: Window, start: Array) -> Swing:
         ends = bounds_of(self.plant, self.names, start)

@@ -43,6 +43,7 @@ class Eigenvalues:
     def __call__(self, p: Array) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """The eigenvalues that oscillate, slowest first, and their derivatives, a row each."""
         A, dA = (entry.full() for entry in self._matrix(p))
+        values: Any
         values, right = np.linalg.eig(A)
         left = np.linalg.inv(right)
         order = [k for k in np.argsort(values.imag) if values[k].imag > 0]
@@ -126,8 +127,8 @@ class Window:
         grown = np.exp(value * h)
         late = (grown - 1 - value * h) / (value**2 * h)  # weight of the sample at the step's end
         early = (grown - 1) / value - late
-        z = lfilter([late, early], [1, -grown], theta)
-        dz = lfilter([late, early], [1, -grown], z)
+        z: Any = lfilter([late, early], [1, -grown], theta)
+        dz: Any = lfilter([late, early], [1, -grown], z)
         gain = value**2 / (2j * value.imag)
         on_time = lambda x: np.interp(self.time, even, x)  # noqa: E731
         answer = theta + 2 * (gain * z).real
@@ -251,7 +252,8 @@ def fit_swing(
 
     for round_ in range(_ROUNDS):
         loss, most = ("huber", 20) if round_ else ("linear", 40)
-        found = least_squares(
+        solve: Any = least_squares
+        found = solve(
             residuals, x, jacobian, bounds=bounds, x_scale="jac", loss=loss, f_scale=_HUBER,
             xtol=1e-12, ftol=1e-9, gtol=1e-14, max_nfev=most,
         )  # fmt: skip
@@ -272,7 +274,7 @@ def fit_swing(
     own = B.shape[1] - window.trend.shape[1]
     swinging = (B / size)[:, :own] @ shares[:own]
     J = jacobian(x)
-    inverse = np.linalg.pinv(J.T @ J, hermitian=True)[:count, :count] * np.outer(scale, scale)
+    inverse: Any = np.linalg.pinv(J.T @ J, hermitian=True)[:count, :count] * np.outer(scale, scale)
     power = _power_near(window.time, (y - fitted) / deviation, values[0].imag / (2 * np.pi), len(x))
     return Swing(p, inverse * power, window, fitted, swinging, values, shares / size[:, None])
 

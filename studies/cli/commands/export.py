@@ -8,7 +8,7 @@ from typing import Any
 import click
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import command, quiet, typed
-from quietarm.studies.cli.types import INPUT, FILE, SHARE, WHOLE
+from quietarm.studies.cli.types import FILE, INPUT, SHARE, WHOLE
 from quietarm.studies.export.formats import (
     COLUMNS,
     FORMATS,
