@@ -11,6 +11,7 @@ from .jobs import Job as Job
 from .jobs import LostJobsError as LostJobsError
 from .jobs import finished_jobs as finished_jobs
 from .jobs import run_jobs as run_jobs
+from .jobs import search_many as search_many
 from .objective.population import PopulationObjective as PopulationObjective
 from .objective.population import PopulationValues as PopulationValues
 from .problems.catalogue import PROBLEMS as PROBLEMS
@@ -23,3 +24,4 @@ from .quality import Reference as Reference
 from .search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
 from .search import SearchProgress as SearchProgress
 from .search import search as search
+from .spread import Spread as Spread

@@ -86,8 +86,10 @@ def coarsely():
         whole = Figure.savefig
 
         def draw(figure, *given, **settings):
+            if settings.get("format") in ("raw", "rgba"):  # the frames of a film
+                return whole(figure, *given, **settings)
             figure.set_layout_engine(None)
-            whole(figure, *given, **{**settings, "dpi": 40})
+            return whole(figure, *given, **{**settings, "dpi": 40})
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(Figure, "savefig", draw)

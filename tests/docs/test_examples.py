@@ -11,7 +11,14 @@ from pathlib import Path
 import pytest
 from pages import COMMAND_BLOCKS, PAGES, blocks
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients, plan_move
+from quietarm.ocp import (
+    CycloidPolynomial,
+    Front,
+    Plan,
+    PointToPoint,
+    evaluate_coefficients,
+    plan_move,
+)
 from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
 
@@ -129,7 +136,7 @@ def test_first_lines_and_a_profile_of_your_own_plan_a_move(run_python):
 def test_plain_casadi_finds_what_the_page_says(run_python):
     assert run_python(PLAIN) == PLAIN_PRINTS
     task = PointToPoint(SingleLinkManipulator(), math.pi / 2, 1.0, torque_limit=0.3)
-    plan = plan_move(task, bound=0.2, residual_limit=1e-3)
+    plan = plan_move(task, CycloidPolynomial(6), bound=0.2, residual_limit=1e-3)
     assert plan.energy == pytest.approx(float(PLAIN_PRINTS.split()[1]), rel=5e-4)
     assert f"{plan.energy:.4f} J" in PAGES["casadi"]  # a little more, as the limits hold everywhere
 

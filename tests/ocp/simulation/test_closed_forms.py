@@ -7,6 +7,7 @@ from math import cos, sin
 import numpy as np
 import pytest
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 
 import quietarm as qa
 
@@ -72,7 +73,7 @@ def test_every_sign_change_of_a_long_ringing_move_is_found():
     )
     with pytest.warns(UserWarning, match="700 rad, more than a turn; were degrees meant"):
         task = qa.PointToPoint(plant, span, T)
-    given = qa.Candidate.of_profile(task, _InPowers((0.0, 0.0, 1.0)), [])
+    given = qa.Candidate(task, PiecewiseMotion.of_profile(task, _InPowers((0.0, 0.0, 1.0)), []))
     motion = given.perturbed({"alpha1": -1.0}).motion  # no plant has alpha1 = 0
     zeros = np.arange(pi / 2, omega * T, pi) / omega
     t = np.array([0.0, *zeros, T])
