@@ -11,6 +11,7 @@ from quietarm.ocp import FileFormatError
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.studies.identify.recording import MOST_ANGLE
 from quietarm.studies.reading.table import read_table
+from quietarm.studies.reading.units import split_name
 
 Array = NDArray[np.float64]
 _LEAST_ROWS, _MOST_ROWS = 5, 5000
@@ -40,8 +41,9 @@ def read_path(path: Path) -> RecordedPath:
     names = {one: table.first(one) for one in ("time", "angle")}
     time, angle = (table.in_si(name, one) for one, name in names.items())
     _check(path, time, angle)
+    column = table.find(names["angle"])
     turns = np.abs(angle).max() > 2 * np.pi
-    if turns and "_" not in names["angle"]:
+    if turns and not (column.unit or split_name(column.name)[1]):
         raise FileFormatError(
             f"{path}: column {names['angle']} reaches {np.abs(angle).max():g} and names no unit; "
             "were degrees meant? name it angle_deg, or angle_rad"
