@@ -40,7 +40,7 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> Callab
             raise ValueError(f"{text} is none of the files that it writes; give {listed}")
         return check_folder(path) if kind in (FOLDER, DATASET) else check_writable(path)
 
-    names = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder *.zarr"}
+    names = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
     listed = "; ".join(f"{names.get(kind, kind)} for {words}" for kind, words in kinds.items())
     return click.option(
         "--output", type=Parsed("file", check), multiple=True, required=required,
