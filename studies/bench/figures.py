@@ -5,10 +5,11 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from quietarm.studies.bench.results import Results, derivative_free, label_of, quartiles
 from quietarm.studies.bench.statistics import ALPHA, Ranking
-from quietarm.studies.figures.axes import TITLE, new_figure
+from quietarm.studies.figures.axes import TITLE, legend_below, logarithmic, new_figure
 from quietarm.studies.figures.looks import look
 
 _LEAST = 1e-4
@@ -21,7 +22,7 @@ def curves_figure(results: Results, by: str = "seconds") -> Figure:
     """Median of what is missing on every problem, over processor time or evaluations."""
     problems = results.problems
     columns = min(3, len(problems))
-    figure = new_figure(4.2 * columns, 3.0 * -(-len(problems) // columns) + 0.8)
+    figure = new_figure(max(4.2 * columns, 5.5), 3.0 * -(-len(problems) // columns) + 0.8)
     axes = figure.subplots(-(-len(problems) // columns), columns, squeeze=False).ravel()
     methods = [m for m in results.methods if by == "seconds" or derivative_free(m)]
     for ax, problem in zip(axes, problems, strict=False):
@@ -34,20 +35,27 @@ def curves_figure(results: Results, by: str = "seconds") -> Figure:
             style = {"color": own.colour, "linestyle": own.dash, "label": label_of(method)}
             marker = {"marker": "o", "markersize": 4} if len(at) <= len(missing) else {}
             ax.plot(at, 100 * np.array(median), drawstyle="steps-post", **style, **marker)
-        ax.set(xscale="log", yscale="log", ylim=(100 * _LEAST, 110))
+        _logarithmic_in(ax)
+        logarithmic(ax, 1 / _LEAST, "y")
+        ax.set_ylim(100 * _LEAST, 110)
         ax.set_title(problem.name, **TITLE)
         ax.grid(alpha=0.25)
     for ax in axes[len(problems) :]:
         ax.axis("off")
     words = "processor time [s]" if by == "seconds" else "candidates simulated"
-    figure.supxlabel(words, fontsize=10)
-    figure.supylabel("hypervolume missing [%]", fontsize=10)
-    handles = {label: line for ax in axes for line, label in zip(
-        *ax.get_legend_handles_labels(), strict=True
-    )}  # fmt: skip
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4,
-                  fontsize=8, frameon=False)  # fmt: skip
+    for ax in axes[max(len(problems) - columns, 0) : len(problems)]:
+        ax.set_xlabel(words)
+    for ax in axes[: len(problems) : columns]:
+        ax.set_ylabel("hypervolume missing [%]")
+    legend_below(figure, list(axes), 4 if columns > 1 else 1, 8)
     return figure
+
+
+def _logarithmic_in(ax: Axes) -> None:
+    """Make the axis of costs logarithmic, over what is drawn."""
+    drawn = np.concatenate([[], *(np.asarray(line.get_xdata()) for line in ax.lines)])
+    positive = drawn[drawn > 0]
+    logarithmic(ax, float(positive.max() / positive.min()) if positive.size else 1.0)
 
 
 def profiles_figure(results: Results) -> Figure:
@@ -66,9 +74,8 @@ def profiles_figure(results: Results) -> Figure:
         own = look(number)
         ax.plot(times[reached], share[reached], drawstyle="steps-post", color=own.colour,
                 linestyle=own.dash, label=label_of(method))  # fmt: skip
-    ax.set(
-        xscale="log", ylim=(0, 1), xlabel="processor time [s]", ylabel="share of targets reached"
-    )
+    _logarithmic_in(ax)
+    ax.set(ylim=(0, 1), xlabel="processor time [s]", ylabel="share of targets reached")
     ax.grid(alpha=0.25)
     figure.legend(loc="outside right center", fontsize=8, frameon=False)
     return figure
@@ -76,11 +83,10 @@ def profiles_figure(results: Results) -> Figure:
 
 def ranks_figure(ranking: Ranking) -> Figure:
     """Critical differences: mean ranks; a bar joins methods that the test does not tell apart."""
+    import pandas as pd
     from scikit_posthocs import critical_difference_diagram
 
     names = [label_of(method) for method in ranking.methods]
-    import pandas as pd
-
     ranks = np.array(ranking.ranks)
     apart = np.abs(ranks[:, None] - ranks) > ranking.critical
     p_values = np.where(apart, ALPHA / 2, 1.0)
