@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
 from quietarm.metaheuristics.gradient import GRADIENT, gradient_front, polished
+from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.search import MOST_EVALUATIONS, search
 from quietarm.ocp import Front, PointToPoint, QuietarmError
-from quietarm.ocp.checks import install, unknown, whole
+from quietarm.ocp.checks import unknown, whole
 from quietarm.ocp.record import Setting
 
 if TYPE_CHECKING:
@@ -313,56 +314,13 @@ def _refuse_twice(jobs: Sequence[Job]) -> None:
 
 def _outcomes(jobs: Sequence[Job], folder: Path, workers: int, scheduler: str | None) -> Any:
     """Each job with its front, or why there is none, as they end; fewer where a worker dies."""
-    for job, found in side_by_side(_run, jobs, workers, scheduler):
-        if isinstance(found, Front):
-            path = folder / f"{job.name}.json"
-            path.parent.mkdir(parents=True, exist_ok=True)
-            found.save(path)
-        yield job, found
-
-
-def side_by_side(
-    function: Callable[[Any], Any], items: Sequence[Any], workers: int, scheduler: str | None
-) -> Iterator[Any]:
-    """What a function gives for each item, as they end; no more where a worker dies.
-
-    In this process with one worker, else in so many of joblib's, or dask's of a scheduler.
-    """
-    if not items:
-        return
-    if workers == 1 and scheduler is None:
-        yield from map(function, items)
-        return
-    from joblib import Parallel, delayed, parallel_config
-    from joblib.externals.loky.process_executor import TerminatedWorkerError
-
-    client = None if scheduler is None else _client(scheduler)
-    here: Any = {"backend": "loky", "n_jobs": workers, "inner_max_num_threads": 1}
-    try:
-        with parallel_config(**(here if client is None else {"backend": "dask", "n_jobs": -1})):
-            options: Any = {"return_as": "generator_unordered", "batch_size": 1}
-            running: Any = Parallel(**options)
-            yield from running(delayed(function)(item) for item in items)
-    except TerminatedWorkerError:
-        return
-    finally:
-        if client is not None:
-            client.close()
-
-
-def _client(scheduler: str) -> Any:
-    """A client of a dask scheduler; ValueError where none answers."""
-    try:
-        from distributed import Client
-    except ImportError:
-        raise ValueError(f"a scheduler needs dask; {install('cluster')}") from None
-    try:
-        return Client(scheduler, timeout=10)
-    except (OSError, TimeoutError, ValueError) as error:
-        raise ValueError(
-            f"no scheduler answers at {scheduler} ({error}); start one with dask scheduler, or "
-            "leave --scheduler out"
-        ) from None
+    with suppress(LostWorkersError):
+        for job, found in side_by_side(_run, jobs, workers, scheduler):
+            if isinstance(found, Front):
+                path = folder / f"{job.name}.json"
+                path.parent.mkdir(parents=True, exist_ok=True)
+                found.save(path)
+            yield job, found
 
 
 def _run(job: Job) -> tuple[Job, Front | str]:

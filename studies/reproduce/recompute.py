@@ -10,8 +10,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-import joblib
 from quietarm.metaheuristics import search
+from quietarm.metaheuristics.parallel import side_by_side
 from quietarm.ocp import (
     CrossCheck,
     CycloidPolynomial,
@@ -215,8 +215,6 @@ def _search(case: Case, asked: Mapping[str, Any], kept: Path | None) -> Front:
         if all(same):
             return front
     front = search(case.task, case.search, **asked)
-    if not front.complete:
-        raise KeyboardInterrupt
     if kept is not None:
         kept.parent.mkdir(parents=True, exist_ok=True)
         front.save(kept)
@@ -235,8 +233,8 @@ def _solves(effort: Effort) -> _Calls:
             solve = partial(plan_move, case.task, profile, bound=bound, starts=effort.starts)
             calls[where, case, terms] = f"gradient, {where}: {case.name}, N = {terms}", solve
     others = [(case, case.earlier[1]) for case in (CONDITIONS if effort.full else STUDIED)]
-    side_by_side = effort.systems if effort.full else ()
-    others += product(side_by_side, ["spline"])
+    compared = effort.systems if effort.full else ()
+    others += product(compared, ["spline"])
     for case, name in others:
         solve = partial(plan_move, case.task, OTHERS[name], starts=effort.other_starts)
         calls["other", case, name] = f"gradient: {case.name}, {name}", solve
@@ -247,7 +245,7 @@ def _solves(effort: Effort) -> _Calls:
         calls["both solvers", case] = (
             f"both solvers: {case.name}", partial(_checked, case, effort.points)
         )  # fmt: skip
-    for case in side_by_side:
+    for case in compared:
         calls["robust", case] = f"robust: {case.name}", partial(_robust, case, effort.starts)
     return calls
 
@@ -299,15 +297,14 @@ def _in_parallel(
     begin: Callable[[str], object],
 ) -> dict[Any, Any]:
     """What calls give, by their keys."""
-    parallel = joblib.Parallel(n_jobs=workers, return_as="generator_unordered")
-    jobs = (joblib.delayed(_keyed)(i, call) for i, (_, call) in enumerate(calls.values()))
-    done: Any = parallel(jobs)
     keys, found = list(calls), dict[Any, Any]()
-    for i, answer in done:
+    work = [(i, call) for i, (_, call) in enumerate(calls.values())]
+    for i, answer in side_by_side(_numbered, work, workers):
         found[keys[i]] = answer
         begin(calls[keys[i]][0])
     return found
 
 
-def _keyed(number: int, call: Callable[[], Any]) -> tuple[int, Any]:
+def _numbered(work: tuple[int, Callable[[], Any]]) -> tuple[int, Any]:
+    number, call = work
     return number, call()

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, SolveSettings
 from quietarm.ocp.checks import has_no
 from quietarm.ocp.interrupts import note_interrupts
@@ -22,7 +21,6 @@ from quietarm.studies.sweep.store import Store
 if TYPE_CHECKING:
     import xarray
 
-_CONNECT_SECONDS = 10
 _REMEDY = "what is done is kept; give the same line again to go on"
 
 
@@ -98,19 +96,18 @@ def run_sweep(
     report: Callable[[int, int], object] = lambda done, total: None,
 ) -> None:
     """Plan the chunks of a part that are missing; each is in the store as soon as it is done."""
-    from joblib import Parallel, delayed
-
-    missing = store.missing(part)
-    number = 1 if not missing or scheduler else min(workers, len(missing))
-    with _backend(scheduler):
-        parallel: Any = Parallel(n_jobs=number, return_as="generator_unordered")
-        work = (delayed(_plan_numbered)(store.definition, number) for number in missing)
-        for done, (number, columns) in enumerate(parallel(work), start=1):
+    missing, done = store.missing(part), 0
+    planned = side_by_side(partial(_plan_numbered, store.definition), missing, workers, scheduler)
+    try:
+        for number, columns in planned:
             with note_interrupts() as came:
                 store.write(number, columns)
+            done += 1
             report(done, len(missing))
             if came:
                 raise KeyboardInterrupt
+    except LostWorkersError as error:
+        raise QuietarmError(f"{error}; {_REMEDY}") from None
     if not store.missing():
         with note_interrupts():
             store.mark_jumps()
@@ -118,52 +115,3 @@ def run_sweep(
 
 def _plan_numbered(definition: Definition, number: int) -> tuple[int, Any]:
     return number, plan_chunk(definition, number)
-
-
-@contextmanager
-def _backend(scheduler: str | None) -> Iterator[None]:
-    """Where joblib has the work done; QuietarmError where its workers are lost on the way."""
-    from joblib import parallel_config
-
-    if scheduler is None:
-        try:
-            with parallel_config("loky"):
-                yield
-        except BrokenExecutor:
-            raise QuietarmError(f"a worker died; {_REMEDY}") from None
-        return
-    with _connect(scheduler) as client:
-        from distributed.scheduler import KilledWorker
-
-        try:
-            with parallel_config("dask", client=client):
-                yield
-        except (CancelledError, KilledWorker):
-            raise QuietarmError(f"the scheduler at {scheduler} is gone; {_REMEDY}") from None
-
-
-@contextmanager
-def _connect(scheduler: str) -> Iterator[Any]:
-    """A client of a dask scheduler that has workers."""
-    from distributed import Client
-    from distributed.comm.addressing import get_address_host_port
-
-    # what a user has to know is said here
-    logging.getLogger("distributed.client").setLevel(logging.CRITICAL + 1)
-    try:
-        get_address_host_port(scheduler, strict=True)
-        client = Client(scheduler, timeout=_CONNECT_SECONDS, set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise ValueError(
-            f"no scheduler answers at {scheduler} ({error}); start one with `dask scheduler` and "
-            "give its address as tcp://host:8786, or give --workers"
-        ) from None
-    try:
-        if not client.nthreads():
-            raise QuietarmError(
-                f"the scheduler at {scheduler} has no workers; start some with `dask worker "
-                f"{scheduler}`"
-            )
-        yield client
-    finally:
-        client.close(timeout=1)
