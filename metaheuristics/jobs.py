@@ -314,21 +314,22 @@ def _refuse_twice(jobs: Sequence[Job]) -> None:
 
 def _outcomes(jobs: Sequence[Job], folder: Path, workers: int, scheduler: str | None) -> Any:
     """Each job with its front, or why there is none, as they end; fewer where a worker dies."""
+    by_name = {job.name: job for job in jobs}  # a job from a worker has a copy of its function
     with suppress(LostWorkersError):
-        for job, found in side_by_side(_run, jobs, workers, scheduler):
+        for name, found in side_by_side(_run, jobs, workers, scheduler):
             if isinstance(found, Front):
-                path = folder / f"{job.name}.json"
+                path = folder / f"{name}.json"
                 path.parent.mkdir(parents=True, exist_ok=True)
                 found.save(path)
-            yield job, found
+            yield by_name[name], found
 
 
-def _run(job: Job) -> tuple[Job, Front | str]:
+def _run(job: Job) -> tuple[str, Front | str]:
     """A job in a worker; what is wrong with it is an outcome and ends no other job."""
     try:
-        return job, job.run()
+        return job.name, job.run()
     except (QuietarmError, ValueError, ArithmeticError) as error:
-        return job, str(error)
+        return job.name, str(error)
 
 
 def search_many(

@@ -23,6 +23,13 @@ def joint_unit(unit: str, joint: str) -> str:
     return unit if joint == ROTARY else unit.replace("N m", "N").replace("rad", "m")
 
 
+def joint_label(label: str, joint: str) -> str:
+    """A label of a rotary joint's quantity likewise: joint torque is drive force."""
+    if joint == ROTARY:
+        return label
+    return label.replace("joint torque", "drive force").replace("angle", "position")
+
+
 class JointMotion(NamedTuple):
     """Angle [rad], speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of the joint.
 

@@ -13,6 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
+from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
@@ -160,7 +161,8 @@ class Plan(MotionAnswer):
             "coefficients": ", ".join(f"{a:.4g}" for a in self.coefficients) or "-",
             "status": self.status.text,
         }
-        return to_html(rows.items())
+        joint = task.plant.joint
+        return to_html((name, joint_unit(words, joint)) for name, words in rows.items())
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
         """Write the move as a table to drive a joint with, so many rows a second [Hz].
@@ -172,8 +174,12 @@ class Plan(MotionAnswer):
         sampled = self.sampled(np.arange(ticks + 1) / sample_rate)
         tips = sampled.tips.shape[1]
         tip_names = ["tip_m"] if tips == 1 else [f"tip_{i + 1}_m" for i in range(tips)]
-        header = ["time_s", "angle_rad", "speed_rad_s", "acceleration_rad_s2", *tip_names]
-        header += ["torque_Nm", "power_W"]
+        way, force = "angle_rad", "torque_Nm"
+        if self.task.plant.joint != ROTARY:
+            way, force = "position_m", "force_N"
+        unit = way.rpartition("_")[2]
+        header = ["time_s", way, f"speed_{unit}_s", f"acceleration_{unit}_s2", *tip_names]
+        header += [force, "power_W"]
         table = np.column_stack(
             [sampled.time, sampled.joint, sampled.tips, sampled.torque, sampled.power]
         )

@@ -20,6 +20,7 @@ _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*
 _WITH_UNIT = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%°/]*)")
 _COMMA = re.compile(r"[+-]?\d+,\d+[^\d,]*")
 _PLUS = re.compile(r"(?<!\d[eE])\+")
+_LENGTHS = {"m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}
 _ANGLES = {"rad": 1.0, **dict.fromkeys(("deg", "°", "degrees"), 180 / math.pi)}
 _SPEEDS = {
     **_ANGLES, "rad/s": 1.0, "deg/s": 180 / math.pi, "rpm": 30 / math.pi,
@@ -27,7 +28,9 @@ _SPEEDS = {
 }  # fmt: skip
 UNITS: Mapping[str, Mapping[str, float]] = {
     "rad": _ANGLES, "rad/s": _SPEEDS, "rad/s^2": _ANGLES, "rad/s^3": _ANGLES,
-    "m": {"m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}, "s": {"s": 1.0, "ms": 1e3},
+    "m/s": {"m/s": 1.0, "mm/s": 1e3}, "m/s^2": _LENGTHS, "m/s^3": _LENGTHS,
+    "N": {"N": 1.0, "mN": 1e3, "kN": 1e-3},
+    "m": _LENGTHS, "s": {"s": 1.0, "ms": 1e3},
     "N m": {"Nm": 1.0, "mNm": 1e3}, "kg": {"kg": 1.0, "g": 1e3}, "-": {"%": 100.0},
 }  # fmt: skip
 """By the SI unit of a quantity, the units that it may be typed in, and how many of each make one.
@@ -38,19 +41,21 @@ _EXAMPLES = {
     "rad": "radians (0.5), 30deg, pi/6 or -pi/2", "rad/s": "rad/s (2), 60deg/s or 3.2Hz",
     "rad/s^2": "rad/s^2 (2) or 60deg/s^2", "rad/s^3": "rad/s^3 (2) or 60deg/s^3",
     "m": "metres (0.001) or 1mm", "s": "seconds (0.8) or 800ms", "kg": "kilograms (0.1) or 100g",
-    "N m": "newton metres (1.5) or 200mNm", "-": "a number (0.1) or 10%",
+    "m/s": "m/s (0.5) or 500mm/s", "m/s^2": "m/s^2 (2) or 2000mm/s^2", "m/s^3": "m/s^3 (50)",
+    "N": "newtons (20) or 20N", "N m": "newton metres (1.5) or 200mNm",
+    "-": "a number (0.1) or 10%",
 }  # fmt: skip
 
 
 def parse_quantity(text: str, unit: str, what: str) -> float:
     """Read a number in an SI unit, or with another unit of its kind: 0.6, 600mm, 3.2Hz, pi/6."""
     plain = text.strip()
-    if unit.startswith("rad"):
-        plain = plain.removesuffix(unit.removeprefix("rad")) if "^" in unit else plain
-        if match := _PI.fullmatch(plain):
-            sign, factor, divisor = match.groups()
-            if float(divisor or 1) != 0:
-                return float(f"{sign}1") * float(factor or 1) * math.pi / float(divisor or 1)
+    if "^" in unit:
+        plain = plain.removesuffix(unit.removeprefix("rad").removeprefix("m"))
+    if unit.startswith("rad") and (match := _PI.fullmatch(plain)):
+        sign, factor, divisor = match.groups()
+        if float(divisor or 1) != 0:
+            return float(f"{sign}1") * float(factor or 1) * math.pi / float(divisor or 1)
     match = _WITH_UNIT.fullmatch(plain)
     if match and match[2] in UNITS.get(unit, {}):
         return float(match[1]) / UNITS[unit][match[2]]

@@ -8,13 +8,13 @@ from functools import partial, wraps
 from typing import Any, TypeVar
 
 import click
+from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, plant_file, refuse_typed, typed
 from quietarm.studies.cli.plants import check_machine, chosen_plant, uncertainty_of, units_of_plant
 from quietarm.studies.cli.quantities import parse_quantity
 from quietarm.studies.cli.types import (
-    ANGLES,
     ENERGY,
     ERROR,
     FASTEST,
@@ -24,7 +24,7 @@ from quietarm.studies.cli.types import (
     TIME,
     TIMES,
     TORQUE_SPEED,
-    limit_type,
+    parse_of_joint,
 )
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid, axis_values
 
@@ -36,8 +36,7 @@ _NEEDED = {"target": "30deg", "duration": "0.8"}
 
 def _limit_option(quantity: Quantity) -> Callable[[F], F]:
     return click.option(
-        f"--{quantity.name}-limit", type=limit_type(quantity.name, quantity.unit),
-        metavar=f"[{quantity.unit}]",
+        f"--{quantity.name}-limit", metavar=f"[{quantity.unit}]",
         help=f"Largest {quantity.label} on the way; by direction as LEAST:LARGEST.",
     )  # fmt: skip
 
@@ -47,9 +46,11 @@ set_option = click.option(
     help="Set a parameter of the plant, as omega=3.2Hz or length=600mm; may be repeated.",
 )  # fmt: skip
 start_option = click.option(
-    "--start", type=ANGLES, default="0", show_default=True, help="Joint angle at the start."
+    "--start", default="0", show_default=True, metavar="ANGLE", help="Joint angle at the start."
 )
-target_option = click.option("--target", type=ANGLES, help="Joint angle at the end.")
+target_option = click.option(
+    "--target", metavar="ANGLE", help="Joint angle at the end; of a linear axis a length, as 300mm."
+)
 duration_option = click.option(
     "--duration", type=TIMES,
     help="Travelling time; quietarm plan also takes `fastest`, the shortest within the limits.",
@@ -83,6 +84,8 @@ _MOVE = (
     "start", "target", "duration", "residual_window", "initial", "final", "energy",
     *(quantity.limit for quantity in QUANTITIES.values()), "torque_speed",
 )  # fmt: skip
+_OF_JOINT = ("start", "target", *(quantity.limit for quantity in QUANTITIES.values()))
+"""Options that are read once the plant is known: in radians, or in metres of a linear axis."""
 NAMES = ("plant", "parameters", "errors", *_MOVE)
 """What the options of a task are called among a command's arguments."""
 
@@ -117,6 +120,15 @@ class TypedMove:
         """Refuse options of a task, all by default, where they have no meaning."""
         refuse_typed(names or NAMES, why)
 
+    def read(self, name: str, joint: str) -> Any:
+        """What an option says that is in the units of the joint; None where it was not typed."""
+        text = self.given[name]
+        try:
+            return None if text is None else parse_of_joint(name, text, joint)
+        except ValueError as error:
+            option = f"'--{name.replace('_', '-')}'"
+            raise click.BadParameter(str(error), param_hint=option) from None
+
     def task(self, **known: float) -> PointToPoint:
         """The task, with what is `known` in the place of options."""
         grid = self.grid(**known)
@@ -130,7 +142,7 @@ class TypedMove:
 
     def grid(self, **known: float) -> Grid:
         """The task, and axes over what has several values."""
-        given: dict[str, Any] = {**self.given, **{name: (one,) for name, one in known.items()}}
+        given: dict[str, Any] = dict(self.given)
         kind, parameters, errors = (given.pop(name) for name in ("plant", "parameters", "errors"))
         axes = {name: text for name, text in parameters if ":" in text or "," in text}
         single = [(name, text) for name, text in parameters if name not in axes]
@@ -143,13 +155,19 @@ class TypedMove:
         firsts = [(axis.name, repr(axis.values[0])) for axis in found]
         plant = chosen_plant(kind, plant_file(), [*single, *firsts]) if firsts else plant
         check_machine(kind, [*single, *firsts], errors)
+        given |= {name: self.read(name, plant.joint) for name in _OF_JOINT}
+        given |= {name: (one,) for name, one in known.items()}
+        if plant.joint != ROTARY and given["torque_speed"] is not None:
+            raise ValueError("--torque-speed is for a joint that turns; give --torque-limit in N")
         for name, example in _NEEDED.items():
             if given[name] is None:
                 raise click.UsageError(f"Missing option '--{name}'. Give it as --{name} {example}")
         if given["duration"] == FASTEST:
             given["duration"] = (BEGIN,)
         found += [
-            Axis(name, given[name], unit) for name, unit in OF_MOVES.items() if len(given[name]) > 1
+            Axis(name, given[name], joint_unit(unit, plant.joint))
+            for name, unit in OF_MOVES.items()
+            if len(given[name]) > 1
         ]
         given |= {name: max(given[name], key=abs) for name in OF_MOVES}  # one that moves
         uncertainty = uncertainty_of(errors, kind)

@@ -11,8 +11,10 @@ from typing import Any
 
 import click
 from quietarm.models import load_plant_file
+from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.files import check_writable
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.cli.folders import check_folder
 from quietarm.studies.cli.plants import parse_error, parse_plant
 from quietarm.studies.cli.quantities import (
@@ -92,21 +94,33 @@ def _sides(parse: Callable[[str], float], text: str) -> float | tuple[float, ...
     values = [parse(side) for side in text.split(":")]
     if len(values) > 2:
         raise ValueError(f"{text!r} is no limit; give one number, or one for each side as -30:40")
+    if len({is_number(side.strip()) for side in text.split(":")}) > 1:
+        raise ValueError(f"{text!r} has a unit on one side alone; give it on both, or on none")
     return tuple(values) if len(values) == 2 else values[0]
 
 
-def limit_type(name: str, unit: str) -> Parsed:
-    """A limit of a quantity: its largest size, or its least and largest value."""
-    return Parsed("limit", partial(_sides, partial(quantity, unit, f"a {name}")))
+def parse_of_joint(name: str, text: str, joint: str) -> Any:
+    """Read an end of a move, or a limit, in the units of a kind of joint.
+
+    Ends have one value or several; a limit is a number, or one for each direction.
+    """
+    if name in ("start", "target"):
+        rotary = partial(quantity, "rad", "an angle")
+        linear = partial(parse_quantity, unit="m", what="a position")
+        return axis_values(text, rotary if joint == ROTARY else linear)
+    limited = QUANTITIES[name.removesuffix("_limit")]
+    unit = joint_unit(limited.unit, joint)
+    return _sides(
+        partial(quantity, unit, f"a{'n' * (limited.name == 'acceleration')} {limited.name}"), text
+    )
 
 
-ANGLE, LENGTH, TIME, TORQUE, SHARE = (
-    Parsed(name, partial(quantity, unit, f"a{'n' * (name == 'angle')} {name}"))
+LENGTH, TIME, TORQUE, SHARE = (
+    Parsed(name, partial(quantity, unit, f"a {name}"))
     for name, unit in (
-        ("angle", "rad"), ("length", "m"), ("time", "s"), ("torque", "N m"), ("share", "-")
+        ("length", "m"), ("time", "s"), ("torque", "N m"), ("share", "-")
     )
 )  # fmt: skip
-ANGLES = Parsed("angle", partial(axis_values, parse=ANGLE.parse))
 FASTEST = "fastest"
 """In the place of a duration: the shortest within the limits."""
 TIMES = Parsed(

@@ -9,6 +9,7 @@ from math import pi
 from pathlib import Path
 
 from quietarm.models import Plant
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import CycloidPolynomial, PointToPoint, evaluate_coefficients
 from quietarm.ocp.files import read_bytes
 from quietarm.studies.explore.move import Explored
@@ -21,7 +22,9 @@ _TARGET, _DURATION = pi / 6, 0.8
 
 
 def open_plant(plant: Plant) -> Explored:
-    """The plain cycloid of a plant, with the coefficients of six terms to be set."""
+    """The plain cycloid of a plant that turns, with the coefficients of six terms to be set."""
+    if plant.joint != ROTARY:
+        raise ValueError(f"the page is for joints that turn, and {plant.name} slides; give another")
     task, profile = PointToPoint(plant, _TARGET, _DURATION), CycloidPolynomial()
     return Explored(evaluate_coefficients(task, profile.plain, profile=profile))
 

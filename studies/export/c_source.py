@@ -8,10 +8,11 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.report.templates import templates
-from quietarm.studies.report.words import move_of, moved
+from quietarm.studies.report.words import limit_words, move_of, moved
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.interpolation import ORDERS
 from quietarm.studies.sweep.library import MoveLibrary
@@ -29,6 +30,9 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
             "of letters, digits and _ that begins with a letter"
         )
     words = _words_of_plan(moves) if isinstance(moves, Plan) else _words_of_library(moves)
+    task = moves.task if isinstance(moves, Plan) else moves.grid.task
+    words["unit"] = joint_unit("rad", task.plant.joint)
+    words["way"] = f"{'angle' if words['unit'] == 'rad' else 'position'} [{words['unit']}]"
     words["title"] = words["title"].replace("*/", "")
     words["helpers"], words["statements"] = _path_in_c(moves.profile)
     texts = templates(keep_trailing_newline=True)
@@ -47,7 +51,7 @@ def _words_of_plan(plan: Plan) -> dict[str, Any]:
         "version": plan.provenance.versions.get("quietarm", ""),
         "figures": ", ".join([
             f"Energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
-            *(f"{limit.name} within {limit.bounds}" for limit in plan.task.limits),
+            *limit_words(plan.task),
         ]),
         "axes": (), "given": "", "move": [repr(value) for value in plan.task.move],
         "coefficients": plan.coefficients,

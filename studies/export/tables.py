@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.planning.plan import ticks_of_move
@@ -28,6 +29,17 @@ UNITS: Mapping[str, Mapping[str, float]] = {
     "power": {"W": 1.0, "mW": 1e3},
 }
 """What a column may hold, and its units; the first is that where none is given."""
+_LENGTH = {"m": 1.0, "mm": 1e3}
+LINEAR: Mapping[str, Mapping[str, float]] = {
+    **UNITS,
+    "angle": _LENGTH,
+    "speed": {f"{unit}/s": factor for unit, factor in _LENGTH.items()},
+    "acceleration": {f"{unit}/s^2": factor for unit, factor in _LENGTH.items()},
+    "jerk": {f"{unit}/s^3": factor for unit, factor in _LENGTH.items()},
+    "torque": {"N": 1.0, "kN": 1e-3},
+}
+"""The same of a linear axis, whose angle is its position and whose torque is its force."""
+_NAMES = {"angle": "position", "torque": "force"}
 
 
 def columns_of(
@@ -65,10 +77,11 @@ def table(plan: Plan, columns: Mapping[str, tuple[str, float]], rate: float) -> 
         "power": motion.power,
     }  # fmt: skip
     found: dict[str, Array] = {}
+    names = {} if plan.task.plant.joint == ROTARY else _NAMES
     for name, (unit, factor) in columns.items():
         ending = unit.replace("/", "_").replace("^", "")
         if name != "tip":
-            found[f"{name}_{ending}"] = factor * values[name]
+            found[f"{names.get(name, name)}_{ending}"] = factor * values[name]
             continue
         for candidate, errors in zip(plan.candidate.scenarios, plan.task.scenarios, strict=True):
             named = zip(plan.task.error_names, errors, strict=True)

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.figures.axes import (
@@ -98,7 +99,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
 
 def draw_lines(lines: Sequence[Line], quantity: str, ax: Axes) -> Axes:
     """`draw_quantity` of motions that may have several durations."""
-    words, values = [heading(quantity)], list[NDArray[np.float64]]()
+    words, values = [heading(quantity, lines[0].plan.task.plant.joint)], list[NDArray[np.float64]]()
     for line in lines:
         values.append(np.column_stack(curves(line.plan, quantity)))
         for i, column in enumerate(values[-1].T):
@@ -127,10 +128,10 @@ def curves(motion: Plan | Floor, quantity: str) -> list[NDArray[np.float64]]:
     return [_shown(quantity)[2] * np.asarray(column) for column in columns]
 
 
-def heading(quantity: str) -> str:
+def heading(quantity: str, joint: str = ROTARY) -> str:
     """A quantity with the unit that is shown: tip displacement [mm]."""
     label, unit, _ = _shown(quantity)
-    return f"{label} [{raised(unit)}]"
+    return f"{joint_label(label, joint)} [{raised(joint_unit(unit, joint))}]"
 
 
 def _shown(quantity: str) -> tuple[str, str, float]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import CycloidPolynomial, Floor, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.limits import QUANTITIES
@@ -38,7 +39,7 @@ def plan_rows(plan: Plan) -> list[Row]:
         _choice(plan),
         *_terms_rows(plan),
         *_figure_rows(plan.task, plan.motion),
-        *([("turns back", f"by {back:.3g} rad on the way")] if back > _SEEN else []),
+        *([("turns back", f"by {_way(back, plan.task)} on the way")] if back > _SEEN else []),
         *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
         ("status", plan.status.text),
         _verified_row(plan),
@@ -155,7 +156,7 @@ def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) 
     for limit in task.limits:
         peak = limit.peak_of(motion)
         broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
-        limits.append(f"{limit}{broken}")
+        limits.append(joint_unit(f"{limit}{broken}", task.plant.joint))
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),
@@ -174,15 +175,25 @@ def _figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     return [
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         ("residual (F1)", f"{residual} at the {_tip(task)} within {task.residual_window:g} s"),
-        *((f"peak {name}", _peak(name, task, motion)) for name in known),
-        ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot > _ROUNDING else "none"),
+        *((_peak_name(name, task), _peak(name, task, motion)) for name in known),
+        ("overshoot", _way(motion.overshoot, task) if motion.overshoot > _ROUNDING else "none"),
     ]
+
+
+def _peak_name(name: str, task: PointToPoint) -> str:
+    force = name == "torque" and task.plant.joint != ROTARY
+    return f"peak {'force' if force else name}"
+
+
+def _way(size: float, task: PointToPoint) -> str:
+    """A way of the joint in its unit."""
+    return f"{size:.3g} {joint_unit('rad', task.plant.joint)}"
 
 
 def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
-    peak, unit = motion.peak(name), QUANTITIES[name].unit
-    if unit == "m":
+    peak, unit = motion.peak(name), joint_unit(QUANTITIES[name].unit, task.plant.joint)
+    if name == "deflection":
         small = task.plant.small_deflection
         if small is None or max(motion.peak_deflection, motion.residual) <= small:
             return millimetres(peak)

@@ -7,7 +7,7 @@ from dataclasses import fields
 from math import degrees
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR
+from quietarm.models.joint_motion import LINEAR, joint_unit
 from quietarm.ocp import Front, ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from rich.console import Console
@@ -85,8 +85,13 @@ def energy_words(task: PointToPoint) -> list[str]:
 
 def title_of(task: PointToPoint) -> str:
     """A task in a line: its plant and move; its limits where it has any."""
-    limits = [f"{limit.name} within {limit.bounds}" for limit in task.limits]
-    return ", ".join([moved(task), move_of(task), *limits])
+    return ", ".join([moved(task), move_of(task), *limit_words(task)])
+
+
+def limit_words(task: PointToPoint) -> list[str]:
+    """The limits of a task, as "acceleration within 40 rad/s^2"."""
+    joint = task.plant.joint
+    return [f"{one.name} within {joint_unit(one.bounds, joint)}" for one in task.limits]
 
 
 def versions_of(fronts: Iterable[Front]) -> list[str]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
+from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, SolveSettings
 from quietarm.ocp.checks import has_no
 from quietarm.ocp.interrupts import note_interrupts
@@ -73,7 +74,7 @@ def sweep(
         When a worker died or the scheduler is gone; finished chunks are kept.
     """
     units = {entry.name: entry.metadata.get("unit", "-") for entry in fields(task.plant)}
-    units |= OF_MOVES
+    units |= {name: joint_unit(unit, task.plant.joint) for name, unit in OF_MOVES.items()}
     for name in axes:
         if name not in units:
             raise ValueError(has_no(task.plant.name, "axis", name, units))

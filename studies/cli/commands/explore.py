@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 from quietarm.models import known_plants
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp.checks import install
 from quietarm.studies.cli.options import command, plant_file
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
@@ -46,4 +47,5 @@ def explore(what: str | None, parameters: tuple[tuple[str, str], ...], no_browse
     else:
         kind = parse_plant(what or _USUAL) if what or plant_file() is None else None
         explored = open_plant(chosen_plant(kind, plant_file(), parameters))
-    serve(explored, menu(explored.task.plant, known_plants()), click.echo, not no_browser)
+    turning = {name: kind for name, kind in known_plants().items() if kind.joint == ROTARY}
+    serve(explored, menu(explored.task.plant, turning), click.echo, not no_browser)

@@ -158,6 +158,8 @@ def _look_up(move: TypedMove, dataset: Path, output: Sequence[Path]) -> None:
     with working("interpolating between the cells", Console(stderr=True), quiet=quiet()):
         plant = Store(dataset).definition.grid.task.plant
         at = values_of_plant(plant, move.given["parameters"])
-        at |= {name: move.given[name][0] for name in OF_MOVES if typed(name)}
+        ends = {name: move.read(name, plant.joint) for name in ("start", "target")}
+        given = {**move.given, **ends}
+        at |= {name: given[name][0] for name in OF_MOVES if typed(name)}
         found, between, trouble = plan_from(dataset, **at)
     finish(plan_files(output, found), plan_rows(found), between.words, trouble=trouble)

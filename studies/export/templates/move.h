@@ -11,15 +11,15 @@
    at a change of motion. */
 int {{ name }}_plan({{ places }}, double coefficients[{{ size }}]);
 
-/* The joint's angle [rad], speed [rad/s] and acceleration [rad/s^2] on such a move, a time [s]
+/* The joint's {{ way }}, speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2] on such a move, a time [s]
    after its start. */
 {% else %}
-/* How long the move takes [s], and where the joint rests before and after it [rad]. */
+/* How long the move takes [s], and where the joint rests before and after it [{{ unit }}]. */
 #define {{ upper }}_DURATION {{ move[2] }}
 #define {{ upper }}_START {{ move[0] }}
 #define {{ upper }}_TARGET {{ move[1] }}
 
-/* The joint's angle [rad], speed [rad/s] and acceleration [rad/s^2], a time [s] after the start. */
+/* The joint's {{ way }}, speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2], a time [s] after the start. */
 {% endif %}
 void {{ name }}_at({{ given }}double time,
     double *angle, double *speed, double *acceleration);

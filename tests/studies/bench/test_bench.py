@@ -123,7 +123,7 @@ def test_a_recorded_run_has_the_figures_of_a_job(fronts):
         Results.of_jobs({job: front}, [elsewhere.front("my tool")])
 
 
-def test_a_function_of_ones_own_is_a_method():
+def test_a_function_of_ones_own_is_a_method_and_runs_in_workers(tmp_path):
     def halton(function, seed, budget):
         rng = np.random.default_rng(seed)
         while True:
@@ -131,6 +131,8 @@ def test_a_function_of_ones_own_is_a_method():
 
     front = Job(NAME, halton, 1, budget=100).run()
     assert (front.method, front.evaluations) == ("halton", 100)
+    jobs = [Job(NAME, halton, seed, budget=60) for seed in (0, 1)]
+    assert list(run_jobs(jobs, tmp_path, workers=2)) == jobs
 
 
 # -- statistics --

@@ -144,11 +144,12 @@ def test_speeds_accelerations_and_states_have_units(call):
 def test_limits_of_a_drive_by_direction_and_by_speed(call):
     line = f"evaluate {MOVE} --set zeta=1% --coefficients=0"
     typed = (
-        "--acceleration-limit=-300deg:40 --torque-limit=-200mNm:0.3 --torque-speed 1.5Nm@0,1@190rpm"
+        "--acceleration-limit=-300deg:720deg --torque-limit=-200mNm:300mNm "
+        "--torque-speed 1.5Nm@0,1@190rpm"
     )
     assert call(f"{line} {typed} --output plan.json")[0] == 0
     task = Plan.load("plan.json").task
-    assert task.acceleration_limit == pytest.approx((-5 * math.pi / 3, 40.0), rel=1e-12)
+    assert task.acceleration_limit == pytest.approx((-5 * math.pi / 3, 4 * math.pi), rel=1e-12)
     assert task.torque_limit == (-0.2, 0.3)
     assert task.torque_speed == ((1.5, 0.0), (1.0, pytest.approx(19.8968, rel=1e-5)))
 
@@ -159,3 +160,23 @@ def test_a_limit_far_off_does_not_silence_the_warning_of_high_acceleration(call,
     code, out, _ = call(f"plan {MOVE} --starts 1 {given}")
     assert code == 0
     assert ("times the plain cycloid's" in out) is warned
+
+
+def test_a_linear_axis_is_in_metres_and_newtons_from_the_line_to_the_c(call, folder):
+    code, out, err = call(
+        "plan linear-axis --target 300mm --duration 0.5 "
+        "--acceleration-limit=-9000mm/s^2:10000mm/s^2 --terms 6 --quiet "
+        "--output axis.json --output axis.csv --output axis.png"
+    )
+    assert (code, err) == (0, "")
+    assert "0 to 300 mm in 0.5 s" in out
+    assert "acceleration -9 to 10 m/s^2" in out
+    assert re.search(r"peak force +[\d.]+ N\s", out)
+    assert not re.search(r"\brad|deg|N m", out)
+    header, *rows = Path("axis.csv").read_text().splitlines()
+    assert header == "time_s,position_m,speed_m_s,acceleration_m_s2,tip_m,force_N,power_W"
+    assert float(rows[-1].split(",")[1]) == pytest.approx(0.3, abs=1e-9)
+    assert call("export axis.json --output axis.c")[0] == 0
+    assert "The joint's position [m], speed [m/s]" in Path("axis.h").read_text()
+    assert call("export axis.json --output mm.csv --columns time:ms,angle:mm,torque")[0] == 0
+    assert Path("mm.csv").read_text().startswith("time_ms,position_mm,force_N\n")
