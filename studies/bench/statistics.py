@@ -126,12 +126,17 @@ def holm(p_values: Array) -> Array:
 
 
 def values_on(results: Results, problem: str, column: str) -> Mapping[str, Array]:
-    """A column of the table of runs by method, of one problem; methods with two runs or more."""
+    """A column of the table of runs by method, of one problem.
+
+    Of methods with two runs or more, and half as many as another at least: a few runs of one method
+    would take the power from the tests of all.
+    """
     table = results.table
     here = table[table["problem"] == problem]
     groups: Any = here.groupby("method")
     grouped = {str(name): own[column].to_numpy(dtype=float) for name, own in groups}
-    return {name: own for name, own in grouped.items() if len(own) > 1}
+    least = max(2, max(map(len, grouped.values()), default=0) / 2)
+    return {name: own for name, own in grouped.items() if len(own) >= least}
 
 
 def moves_of(problems: Sequence[NamedProblem]) -> list[list[NamedProblem]]:
@@ -156,7 +161,7 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
     names = [problem.name for problem in results.problems]
     known = {name: values_on(results, name, column) for name in names}
     left_out = [
-        f"{label_of(method)} (not on all problems, or one run alone)"
+        f"{label_of(method)} (not on all problems, or too few runs)"
         for method in results.methods
         if any(method not in known[name] for name in names)
     ]
@@ -212,5 +217,5 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
         if label_of(best) in both:
             near += [name for name in values if label_of(name) in both - {label_of(best)}]
     others = [label_of(name) for name in sorted(near[1:], key=lambda name: medians[name])]
-    alike = f"; not told apart from it: {', '.join(others)}" if others else ""
+    alike = f"; not told apart from it: {'; '.join(others)}" if others else ""
     return f"{label_of(best)} ends nearest{alike}"
