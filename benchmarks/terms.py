@@ -24,7 +24,6 @@ import pandas as pd
 from parts.measuring import console, machine, timed
 from quietarm.models import DualLinkManipulator, Plant, SingleLinkManipulator
 from quietarm.ocp import (
-    CycloidPolynomial,
     InfeasibleTaskError,
     PointToPoint,
     SolverFailedError,
@@ -33,7 +32,7 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.ocp.planning.terms import OF_SIX
-from quietarm.studies.versus.rivals import rivals
+from quietarm.studies.compare.baselines import BASELINES, baseline
 
 AS_STILL, REST, KEPT = 1e-3, 1e-6, 2e-3
 """Shares of the plain cycloid's residual and of a limit, and a residual [m]."""
@@ -87,12 +86,14 @@ def random_task(random: np.random.Generator) -> tuple[PointToPoint, dict[str, fl
 def cheapest_shaper(task: PointToPoint, residual: float) -> tuple[str, float]:
     """The cheapest motion of today that is as still and keeps the limits, and its energy [J]."""
     allowed = max(residual, REST, AS_STILL * evaluate_coefficients(task, []).residual)
-    kept = {
-        one.name: one.motion.energy
-        for one in rivals(task, CycloidPolynomial(2))
-        if one.motion and one.name != "plan"
-        and one.motion.residual <= allowed and not one.motion.exceeded(task.limits, KEPT)
-    }  # fmt: skip
+    kept = dict[str, float]()
+    for name in BASELINES:
+        try:
+            motion = baseline(name, task).motion
+        except ValueError:  # the shaper is longer than the move, or ruckig finds none
+            continue
+        if motion.residual <= allowed and not motion.exceeded(task.limits, KEPT):
+            kept[name] = motion.energy
     name = min(kept, key=kept.__getitem__, default="")
     return name, kept.get(name, math.inf)
 
@@ -104,7 +105,7 @@ def row_of(task: PointToPoint) -> dict[str, object] | None:
     except InfeasibleTaskError:
         return None
     except SolverFailedError as error:
-        return {"limits": "+".join(task.limits), "failed": str(error)}
+        return {"limits": "+".join(limit.name for limit in task.limits), "failed": str(error)}
     smooth = task.jerk_limit is not None  # a free acceleration jumps
     name, shaper = cheapest_shaper(task, plan.residual)
     try:
@@ -113,7 +114,8 @@ def row_of(task: PointToPoint) -> dict[str, object] | None:
         floor = math.nan
     six = plan.provenance.search.get(OF_SIX, math.nan)
     return {
-        "limits": "+".join(task.limits), "terms": plan.profile.size, "plan_J": plan.energy,
+        "limits": "+".join(limit.name for limit in task.limits), "terms": plan.profile.size,
+        "plan_J": plan.energy,
         "above_floor": plan.energy / floor - 1, "six_above_floor": float(six or 0) / floor - 1,
         "shaper": name, "shaper_above_plan": shaper / plan.energy - 1,
         "residual_m": plan.residual, "seconds": seconds,

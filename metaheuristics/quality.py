@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil
 
@@ -72,7 +73,7 @@ def objectives(front: Front) -> Array:
     return np.column_stack([front.residuals, front.energies])
 
 
-def within(points: Array, residuals: tuple[float, ...]) -> Array:
+def within(points: Array, residuals: Sequence[float] | Array) -> Array:
     """Least energies [J] of points within residuals [m]; NaN where there is none."""
     found = [points[points[:, 0] <= one, 1] for one in residuals]
     return np.array([one.min() if one.size else np.nan for one in found])

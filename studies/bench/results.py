@@ -12,6 +12,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics import PRESETS, Job, NamedProblem
 from quietarm.metaheuristics.quality import measured
+from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front
 from quietarm.ocp.front.points import LEVELS
 
@@ -196,10 +197,9 @@ def label_of(method: str) -> str:
 
 
 def quartiles(values: ArrayLike) -> tuple[float, float, float]:
-    """Lower quartile, median and upper quartile: values that exist, a missing one is infinite."""
-    known = np.nan_to_num(np.asarray(values, dtype=float), nan=np.inf, posinf=np.inf)
-    low, middle, high = np.quantile(known, [0.25, 0.5, 0.75], method="inverted_cdf")
-    return float(low), float(middle), float(high)
+    """Lower quartile, median and upper quartile, by the rule of `Spread`."""
+    spread = Spread.of(np.asarray(values, dtype=float).tolist())
+    return spread.lower, spread.median, spread.upper
 
 
 def _method(label: str, budget: int | None, budgets: int) -> str:

@@ -12,7 +12,7 @@ from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.studies import figures
 from quietarm.studies.compare.fronts import Comparison, Group
-from quietarm.studies.figures.fronts import KnownPoint
+from quietarm.studies.figures.comparison import KnownPoint
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import millimetres, title_of
 

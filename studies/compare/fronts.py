@@ -10,13 +10,13 @@ from operator import attrgetter
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.quality import CORNER, objectives
+from quietarm.metaheuristics.quality import CORNER, objectives, within
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
 from quietarm.ocp.checks import not_negative, positive
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.saved import plain
-from quietarm.studies.compare.staircase import best_of, evenly_spaced, filled, within
+from quietarm.studies.compare.staircase import best_of, evenly_spaced, filled
 from quietarm.studies.registry.methods import Kind, method_of
 
 Array = NDArray[np.float64]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import moocore
 import numpy as np
 from numpy.typing import NDArray
@@ -24,14 +22,6 @@ def best_of(fronts: list[Array]) -> Array:
     """The points of several fronts that none of them dominates; residuals rise."""
     best = moocore.filter_dominated(np.vstack(fronts))
     return best[np.argsort(best[:, 0])]
-
-
-def within(front: Array, residuals: Sequence[float] | Array, missing: float = np.nan) -> Array:
-    """Least energies [J] on a staircase within residuals."""
-    if not len(front):
-        return np.full(np.shape(residuals), missing)
-    count = np.searchsorted(front[:, 0], residuals, side="right")
-    return np.where(count > 0, front[np.maximum(count - 1, 0), 1], missing)
 
 
 def evenly_spaced(points: Array, stations: int = _STATIONS) -> Array:

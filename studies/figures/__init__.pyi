@@ -1,11 +1,11 @@
-from .fronts import KnownPoint as KnownPoint
-from .fronts import comparison_figure as comparison_figure
+from .comparison import KnownPoint as KnownPoint
+from .comparison import comparison_figure as comparison_figure
+from .comparison import draw_gaps as draw_gaps
+from .comparison import draw_still as draw_still
+from .comparison import draw_whole as draw_whole
 from .fronts import draw_fronts as draw_fronts
-from .fronts import draw_gaps as draw_gaps
 from .fronts import draw_hypervolume as draw_hypervolume
 from .fronts import draw_seed_energies as draw_seed_energies
-from .fronts import draw_still as draw_still
-from .fronts import draw_whole as draw_whole
 from .fronts import front_figure as front_figure
 from .identification import identification_figure as identification_figure
 from .looks import BLUE as BLUE
