@@ -109,9 +109,9 @@ def differences(function: Any, seed: int, budget: int) -> None:
         return function(np.clip(x, function.lower, function.upper)[None])[0][0]
 
     def slopes(x: Any, column: int) -> Any:
-        step = 1e-6
-        rows = np.vstack([x, x + step * np.eye(len(x))])
-        values = function(rows)[0][:, column]
+        x = np.clip(x, function.lower, function.upper)
+        step = np.where(x + 1e-6 <= function.upper, 1e-6, -1e-6)
+        values = function(np.vstack([x, x + np.diag(step)]))[0][:, column]
         return (values[1:] - values[0]) / step
 
     while True:

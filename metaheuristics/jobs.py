@@ -194,6 +194,8 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
         preset.generations_for(budget, population)
     elif budget is None:
         raise ValueError(f"give a budget for {method_name(method)}, in evaluations")
+    elif settings:
+        raise ValueError(f"{method_name(method)} takes no settings here; set it before you give it")
     return whole("budget", budget, 1, MOST_EVALUATIONS)
 
 
@@ -250,8 +252,8 @@ def run_jobs(
     Raises
     ------
     ValueError
-        When a job is given twice, a file is of another problem or other versions, a number is out
-        of range, or no scheduler answers.
+        When there is no job, or one twice, a file is of another problem or other versions, a
+        number is out of range, or no scheduler answers.
     LostJobsError
         At the end, when jobs failed, or their workers died twice.
     """
@@ -305,6 +307,8 @@ def _load(job: Job, path: Path) -> Front:
 
 
 def _refuse_twice(jobs: Sequence[Job]) -> None:
+    if not jobs:
+        raise ValueError("there are no jobs; give at least one problem and one method")
     seen = set[str]()
     for job in jobs:
         if job.name in seen:

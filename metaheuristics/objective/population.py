@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.checks import whole
+from quietarm.ocp.front.points import table_of
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
@@ -111,14 +112,9 @@ class PopulationObjective:
         Raises
         ------
         ValueError
-            When their shape does not fit the profile.
+            When they are no plain numbers, or their shape does not fit the profile.
         """
-        population = np.asarray(coefficients, dtype=float)
-        if population.ndim != 2 or population.shape[1] != self.profile.size:
-            raise ValueError(
-                f"the population has shape {population.shape}; give (candidates, "
-                f"{self.profile.size})"
-            )
+        population = table_of(coefficients, self.profile.size)
         count, scenarios = len(population), len(self._scenarios)
         # scenario by scenario: the first rows are the candidates on the nominal plant
         rows = np.tile(population, (scenarios, 1))

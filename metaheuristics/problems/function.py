@@ -116,7 +116,7 @@ class MoveFunction:
         Raises
         ------
         ValueError
-            When the shape is another.
+            When they are no plain numbers, or the shape is another.
         """
         with np.errstate(all="ignore"):  # coefficients of any size
             values = self._objective(candidates)

@@ -12,17 +12,21 @@ from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.record import Record
 from quietarm.ocp import Front
+from quietarm.ocp.checks import whole
+from quietarm.ocp.front.points import table_of
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.problems.catalogue import NamedProblem
 
 Array = NDArray[np.float64]
+_ROUNDING = 1e-9
+"""Share of the box by which scaling from another may pass it."""
 
 
 class RecordedFunction(MoveFunction):
     """A problem's function that keeps every candidate that none dominates, with marks on the way.
 
-    It has the accuracy of all searches. Candidates beyond the box count, and are not kept.
+    It has the accuracy of all searches.
 
     Parameters
     ----------
@@ -36,19 +40,30 @@ class RecordedFunction(MoveFunction):
         self.record = Record(self.task, len(self.variables), problem.reference())
 
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
-        """Evaluate candidates, as `MoveFunction` does, and keep them."""
-        table = np.array(candidates, dtype=float)
-        found, violations = super().__call__(table)
-        inside = (table >= self.lower) & (table <= self.upper)
-        good = np.concatenate([inside, found < UNUSABLE, violations <= 0], axis=1)
-        usable: Any = good.all(axis=1)
-        self.record.add(table, found, usable)
+        """Evaluate candidates, as `MoveFunction` does, and keep them.
+
+        ValueError also when a coefficient is beyond the box, or is no number.
+        """
+        table = table_of(candidates, len(self.variables))
+        inside = np.clip(table, self.lower, self.upper)
+        beyond = np.argwhere(~(np.abs(table - inside) <= _ROUNDING * (self.upper - self.lower)))
+        if len(beyond):
+            row, column = beyond[0]
+            raise ValueError(
+                f"{self.variables[column]} of candidate {self.record.evaluations + row + 1} is "
+                f"{table[row, column]:.4g}, not from {self.lower[column]:.4g} to "
+                f"{self.upper[column]:.4g}; clip candidates to the function's lower and upper"
+            )
+        found, violations = super().__call__(inside)
+        usable: Any = np.concatenate([found < UNUSABLE, violations <= 0], axis=1).all(axis=1)
+        self.record.add(inside, found, usable)
         return found, violations
 
     def front(self, method: str, seed: int | None = None) -> Front:
         """What was asked until now, as the front of a method; ValueError when nothing was asked."""
         if not self.record.evaluations:
             raise ValueError("no candidate was asked for; let the library call the function first")
+        seed = None if seed is None else whole("seed", seed, 0)
         settings: dict[str, Any] = {"bound": self.bound, "problem": self.problem.name}
         found = self.record.front(
             self.task, self.profile, method=method, settings=settings, seed=seed

@@ -148,18 +148,26 @@ class Evaluated(NamedTuple):
     infeasible: int
 
 
-def table_of(coefficients: ArrayLike) -> NDArray[np.float64]:
-    """Coefficients, one row for each motion."""
+def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.float64]:
+    """Coefficients, one row for each motion; one motion at least where any columns will do."""
+    if np.ma.isMaskedArray(coefficients):
+        raise ValueError(
+            "coefficients are a masked array; give plain numbers, as of its filled(value)"
+        )
     try:
-        table = np.asarray(coefficients, dtype=float)
+        given = np.asarray(coefficients)
+        if given.dtype.kind not in "biufO":
+            raise TypeError
+        table = given.astype(float)
     except (TypeError, ValueError, OverflowError):
         raise ValueError(
             f"coefficients are {reprlib.repr(coefficients)}; give a row of numbers for each motion"
         ) from None
-    if table.ndim != 2 or len(table) == 0:
+    fits = table.ndim == 2 and (len(table) > 0 if columns is None else table.shape[1] == columns)
+    if not fits:
         raise ValueError(
-            f"coefficients have shape {table.shape}; give (motions, coefficients), one row for "
-            "each motion"
+            f"coefficients have shape {table.shape}; give (motions, {columns or 'coefficients'}), "
+            "one row for each motion"
         )
     return table
 

@@ -4,9 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
-from quietarm.metaheuristics import MoveFunction
-from quietarm.ocp import CycloidPolynomial, evaluate_coefficients
-from small_searches import HALF, SIXTH
+from quietarm.metaheuristics import MoveFunction, problem_of
+from quietarm.ocp import CycloidPolynomial, Front, evaluate_coefficients
+from small_searches import HALF, SIXTH, one_line
 
 LIMITED = dataclasses.replace(SIXTH, torque_limit=0.16, acceleration_limit=60.0)
 RANDOM = np.random.default_rng(4).uniform(-0.2, 0.2, (7, 3))
@@ -39,3 +39,42 @@ def test_the_figures_are_those_of_cvodes(task):
         assert found[2] == pytest.approx(exact.motion.peak_torque, rel=2e-3)
         for limit, passed in zip(task.limits, broken, strict=True):
             assert passed == pytest.approx(limit.peak_of(exact.motion) / limit.size - 1, abs=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        (RANDOM[0], r"have shape \(3,\); give \(motions, 3\)"),
+        (RANDOM[None], r"have shape \(1, 7, 3\); give"),
+        (RANDOM + 0j, "give a row of numbers"),
+        ([["a", "b", "c"]], "give a row of numbers"),
+        ([[1.0, 2.0], [3.0]], "give a row of numbers"),
+        (np.ma.masked_array(RANDOM, mask=RANDOM > 0), "masked array; give plain numbers"),
+    ],
+)
+def test_what_is_no_table_of_numbers_is_refused_in_one_line(rows, words):
+    profile = CycloidPolynomial(3)
+    with pytest.raises(ValueError, match=words) as caught:
+        MoveFunction(HALF, profile, bound=0.2)(rows)
+    one_line(caught)
+    with pytest.raises(ValueError, match=r"coefficients (are|have)"):
+        Front.from_coefficients(HALF, rows, method="mine", profile=profile)
+
+
+@pytest.mark.parametrize(("value", "words"), [(np.nan, "nan"), (0.3, r"0\.3"), (-np.inf, "-inf")])
+def test_a_recording_takes_nothing_beyond_the_box_and_goes_on(value, words):
+    recorded = problem_of("single-link-30deg-0.8s-4-terms").recorded()
+    rows = np.zeros((3, 4))
+    recorded(rows)
+    rows[1, 2] = value
+    with pytest.raises(
+        ValueError, match=f"a_3 of candidate 5 is {words}, not from .*; clip"
+    ) as caught:
+        recorded(rows)
+    one_line(caught)
+    recorded([recorded.upper * (1 + 1e-12)])  # as scaling from another box leaves it
+    found = recorded.front("mine")
+    assert found.evaluations == 4
+    assert (np.abs(found.coefficients) <= 0.2).all()
+    with pytest.raises(ValueError, match="seed is -1"):
+        recorded.front("mine", seed=-1)

@@ -111,9 +111,8 @@ def test_a_recorded_run_has_the_figures_of_a_job(fronts):
     rng = np.random.default_rng(0)
     for _ in range(2):
         recorded(rng.uniform(recorded.lower, recorded.upper, (100, 2)))
-    recorded([[9.0, 9.0]])  # beyond the box: it counts, and is not kept
     found = recorded.front("my tool", seed=7)
-    assert found.evaluations == 201
+    assert found.evaluations == 200
     assert all(abs(c) <= 0.2 for point in found.points for c in point.coefficients)
     results = Results.of_jobs({job: front}, [found])
     assert set(results.methods) == {"random", "my tool"}
@@ -201,6 +200,9 @@ def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
         (lambda: Job(NAME, "nsga2", 0, 0), "less than one generation"),
         (lambda: Job(NAME, "epsilon", 0, 100), "ends by itself; leave its budget out"),
         (lambda: Job(NAME, "nsga2", -1), "seed is -1"),
+        (lambda: Job(NAME, print, budget=0), "budget is 0"),
+        (lambda: Job(NAME, print, budget=9, settings={"a": 1}), "print takes no settings here"),
+        (lambda: run_jobs([], "x"), "there are no jobs; give at least one problem and one method"),
         (lambda: run_jobs([Job(NAME, "nsga2")] * 2, "x"), "is given twice; give it once"),
         (lambda: problems_of([NAME, NAME]), "is given twice; give it once"),
         (lambda: jobs_of(problems_of([NAME]), ["nsga2", "nsga2"], 1, 100), "is given twice"),
