@@ -296,7 +296,8 @@ def main() -> None:
     screen.print(machine("rockit-meco", *(["yapss"] if yapss else [])))
     floor = energy_floor(TASK, tolerance=1e-4)
     screen.print(
-        f"reference {floor.energy:.6f} J, {floor.free.steps} intervals, left {floor.left:.1e} J"
+        f"reference {floor.energy:.6f} J, {floor.free.steps} intervals, "
+        f"error {floor.discretisation_error:.1e} J"
     )
     rows: list[Row] = []
     for steps in sorted(arguments.steps):

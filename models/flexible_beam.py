@@ -27,7 +27,7 @@ _modes_of_numbers = lru_cache(maxsize=256)(beam_modes)
 
 @dataclass(frozen=True)
 class FlexibleBeam(Plant):
-    """A flexible beam with a tip mass on a motor's hub, in measured terms.
+    """A flexible beam with a tip mass on a motor's hub, with measurable parameters.
 
     Measure `omega` with the hub held: push the tip and count its swings, `--set omega=3.2Hz`. The
     amplitude of each mode is the displacement of the tip by it.

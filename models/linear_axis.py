@@ -18,7 +18,7 @@ _LENGTH = 0.3
 
 @dataclass(frozen=True)
 class LinearAxis(Plant):
-    """A carriage whose load swings, in measured terms: metres and newtons all the way.
+    """A carriage with a swinging load, in metres and newtons.
 
     W is how far each mode displaces the load along the axis, as seen from the carriage.
     docs/plants.md derives the equations.

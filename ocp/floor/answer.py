@@ -48,10 +48,11 @@ class FloorSettings:
 
 @dataclass(frozen=True)
 class Floor(MotionAnswer):
-    """The least energy of a move over all joint motions, at rest on arrival or as the task asks.
+    """The best motion found without a parametrisation, at rest on arrival or as the task asks.
 
-    The energy is that of a motion that does the move, so the true floor is no higher; `left`
-    estimates how much lower it may be. A better motion far from all starts would be missed by both.
+    Its energy is an upper estimate of the least energy of all motions. `discretisation_error`
+    estimates how far finer grids would lower it; a better local minimum far from all starts may
+    exist.
 
     Attributes
     ----------
@@ -107,14 +108,14 @@ class Floor(MotionAnswer):
         return falls[1] / falls[0] if len(falls) == 2 and min(falls) > 0 else None
 
     @property
-    def left(self) -> float:
-        """Estimate of how far the energy would still fall with ever finer grids [J], no bound.
+    def discretisation_error(self) -> float:
+        """Estimate of how far ever finer grids would lower the energy [J]; it is no bound.
 
-        The last fall continued as a geometric series, by the ratio of the last two falls but at
-        least 1/2, and what the solver's own quadrature misses. A jolt takes up to 4e-5 of the move
-        on every grid, which costs about 1e-4 of the energy and is left out. Where a coarser grid
-        needs less than the last, the energy went to another minimum: then it is the larger of the
-        fall down to the lowest energy and the rise since, an order of magnitude.
+        The last decrease is continued as a geometric series, by the ratio of the last two but at
+        least 1/2, and the quadrature error of the solver is added. A pulse of acceleration takes
+        up to 4e-5 of the move on every grid, which costs about 1e-4 of the energy and is neglected.
+        Where a coarser grid has a lower energy than the last, the solver has changed to another
+        local minimum: then the larger of the decrease and the increase is an order of magnitude.
         """
         energies = [level.energy for level in self.levels]
         lowest = energies.index(min(energies))

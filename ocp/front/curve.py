@@ -159,7 +159,7 @@ def curve_of(
     front: Front, *, starts: int, steps: int | None = None, solver: SolverName = "sqp"
 ) -> Curve:
     """The curve of a front that is there already, within its bound; it must have a point."""
-    front.stillest()
+    front.smallest_residual()
     bound: Any = front.settings.get("bound")
     settings = SolveSettings(
         bound=bound, starts=starts, seed=front.seed or 0, steps=steps, solver=solver

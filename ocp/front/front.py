@@ -47,7 +47,7 @@ class Front(Saved):
     profile : JointProfile
         How the joint moves.
     points : tuple of FrontPoint
-        Sorted by residual, stillest first; energies fall along the front.
+        Sorted by increasing residual; energies fall along the front.
     method : str
         How it was found.
     settings : dict
@@ -154,13 +154,13 @@ class Front(Saved):
         return to_html(rows, head)
 
     def to_frame(self) -> pandas.DataFrame:
-        """The points as a data frame of pandas, stillest first, with the columns of `columns`."""
+        """The points as a data frame of pandas by increasing residual, with the `columns`."""
         import pandas as pd  # comes with quietarm[sweep]
 
         return pd.DataFrame(self.columns())
 
     def save_csv(self, path: str | Path) -> None:
-        """Write the `columns` as a table, stillest first, with every digit.
+        """Write the `columns` as a table, by increasing residual, with every digit.
 
         ValueError when the file cannot be written.
         """
@@ -229,8 +229,8 @@ class Front(Saved):
             seconds=time.perf_counter() - began,
         )
 
-    def stillest(self) -> FrontPoint:
-        """The point of least residual; ValueError when the front is empty."""
+    def smallest_residual(self) -> FrontPoint:
+        """The point of smallest residual; ValueError when the front is empty."""
         return self._nonempty()[0]
 
     def cheapest(self, residual_limit: float | None = None) -> FrontPoint:
@@ -247,7 +247,7 @@ class Front(Saved):
         if not still:
             raise ValueError(
                 f"no point of the front has a residual of {residual_limit:g} m or less; give at "
-                f"least that of the stillest, {points[0].residual:.3g} m"
+                f"least the smallest residual, {points[0].residual:.3g} m"
             )
         return still[-1]
 

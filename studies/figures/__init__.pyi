@@ -1,7 +1,7 @@
 from .comparison import KnownPoint as KnownPoint
 from .comparison import comparison_figure as comparison_figure
 from .comparison import draw_gaps as draw_gaps
-from .comparison import draw_still as draw_still
+from .comparison import draw_small_residuals as draw_small_residuals
 from .comparison import draw_whole as draw_whole
 from .fronts import draw_fronts as draw_fronts
 from .fronts import draw_hypervolume as draw_hypervolume

@@ -76,7 +76,7 @@ def comparison_figure(
     figure = new_figure(10, 7.4)
     axes: list[Axes] = list(figure.subplots(2, 2).flat)
     draw_whole(comparison, known, axes[0])
-    draw_still(comparison, known, axes[1])
+    draw_small_residuals(comparison, known, axes[1])
     draw_gaps(comparison, axes[2])
     letter(axes[:3])
     axes[3].axis("off")
@@ -119,7 +119,7 @@ def draw_whole(
     return ax
 
 
-def draw_still(
+def draw_small_residuals(
     comparison: Comparison, known: Sequence[KnownPoint] = (), ax: Axes | None = None
 ) -> Axes:
     """Draw energy against small residuals, logarithmic.

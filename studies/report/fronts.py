@@ -114,7 +114,7 @@ def _chosen_points(front: Front) -> list[str]:
     """The ends and the knee, a line each; of two points none is a knee."""
     if not front.points:
         return []
-    chosen = {"least residual": front.stillest(), "knee": front.knee(),
+    chosen = {"least residual": front.smallest_residual(), "knee": front.knee(),
               "least energy": front.cheapest()}  # fmt: skip
     if len(front.points) < 3:
         del chosen["knee"]

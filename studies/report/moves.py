@@ -63,11 +63,12 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
         *([f"{missing} failed"] if missing > 0 else []),
     ]
     unsettled = "" if floor.settled else " On a finer grid it failed."
+    error = floor.discretisation_error
     return [
         *_move_rows(floor.task, motion),
         ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
         *_figure_rows(floor.task, motion),
-        ("finer grids", f"would save about {floor.left:.2g} J ({floor.left / floor.energy:.2%})"),
+        ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%})"),
         ("intervals", ", ".join(f"{one.steps}: {one.energy:.6g} J" for one in floor.levels)),
         ("starts", ", ".join(starts)),
         (f"{_size(plan)} terms", beside),

@@ -100,7 +100,7 @@ def test_the_examples_of_fronts_find_and_save_them(run_python):
     printed, front = run_python(SEARCH_OF_PYMOO), Front.load("sms-emoa.json")
     assert printed == f"SMSEMOA {len(front.points)} {front.cheapest(10e-3).energy}\n"
     printed, front = run_python(FRONT), Front.load("front.json")
-    chosen = [front.stillest(), front.knee(), front.cheapest(5e-3)]
+    chosen = [front.smallest_residual(), front.knee(), front.cheapest(5e-3)]
     assert printed == "".join(f"{point.residual} {point.energy}\n" for point in chosen)
     assert len(front.points) == 20
 

@@ -1,4 +1,4 @@
-"""A beam in measured terms, against closed forms and the paper's identified plate."""
+"""A beam with measurable parameters, against closed forms and the paper's identified plate."""
 
 from math import pi
 

@@ -15,7 +15,7 @@ NAMES = pytest.mark.parametrize("name", [name for name in PRESETS if name not in
 
 
 def test_every_algorithm_of_pymoo_for_two_objectives_is_there():
-    # those that are left out: docs/methods.md, "Left out"
+    # those that are left out: docs/methods.md, "Not included"
     left_out = {"dnsga2", "kgb", "pinsga2", "rnsga2", "rnsga3"}
     folder = Path(import_module("pymoo.algorithms.moo").__path__[0])
     modules = {path.stem for path in folder.glob("*.py")} - {"__init__"}

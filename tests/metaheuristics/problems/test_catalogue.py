@@ -115,7 +115,7 @@ def test_the_robust_residual_is_the_largest_of_three_plants():
         # when it was found, the residual was sampled, to 1.2e-6 of a peak
         assert point.residual == pytest.approx(max(residuals), rel=1.3e-6)
     # what the paper's front has at rest leaves far more where the frequency is 10 % wrong
-    still = problem_of("single-link-30deg-0.8s").fronts()[0].stillest()
+    still = problem_of("single-link-30deg-0.8s").fronts()[0].smallest_residual()
     left = evaluate_coefficients(problem.task, still.coefficients)
-    assert left.residual > 2 * front.stillest().residual
-    assert left.energy > front.stillest().energy
+    assert left.residual > 2 * front.smallest_residual().residual
+    assert left.energy > front.smallest_residual().energy

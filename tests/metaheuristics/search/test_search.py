@@ -104,10 +104,10 @@ def test_a_plant_of_two_modes(two_links):
     task = PointToPoint(two_links, pi / 2, 0.9)
     front = search(task, "nsga2", bound=0.3, population=30, generations=30)
     assert_is_a_front(front)
-    stillest, cheapest = (
+    smallest, cheapest = (
         Candidate.of_profile(task, front.profile, point.coefficients).motion
-        for point in (front.stillest(), front.cheapest())
+        for point in (front.smallest_residual(), front.cheapest())
     )
     plain = Candidate.of_profile(task, CycloidPolynomial(0), []).motion
-    assert stillest.residual < plain.residual / 4
+    assert smallest.residual < plain.residual / 4
     assert cheapest.energy < plain.energy

@@ -39,7 +39,7 @@ def exact(task):
 @pytest.mark.parametrize("of", ["searched", "exact"])
 def test_residuals_are_those_of_the_worst_sample_by_cvodes(of, task, request):
     front = request.getfixturevalue(of)
-    for point in (front.stillest(), front.cheapest()):
+    for point in (front.smallest_residual(), front.cheapest()):
         alone = [
             Candidate.of_profile(
                 replace(task, plant=part, uncertainty=None), front.profile, point.coefficients

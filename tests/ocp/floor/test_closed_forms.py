@@ -64,7 +64,7 @@ def test_a_rigid_joint_with_friction_has_its_closed_form(rigid, smooth):
     assert floor.energy == pytest.approx(expected, rel=2e-3)
     assert floor.energy > expected * (1 - 1e-4)  # no motion is cheaper
     # A jolt takes up to 4e-5 of the move at any level.
-    assert abs(floor.energy - expected) < 2 * floor.left + 1e-4 * expected
+    assert abs(floor.energy - expected) < 2 * floor.discretisation_error + 1e-4 * expected
 
 
 def test_a_rigid_joint_with_limited_acceleration_has_its_closed_form(rigid):

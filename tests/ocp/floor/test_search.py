@@ -41,7 +41,7 @@ def test_no_plan_is_cheaper(solved, coarse_of, limits):
 def test_a_smooth_motion_comes_to_the_same_floor(coarse_of):
     free, smooth = coarse_of(ARM), coarse_of(ARM, smooth=True, starts=2)
     # Jolts take up to 4e-5 of the move at any level, which no level shows.
-    room = free.left + smooth.left + 1e-4 * free.energy
+    room = free.discretisation_error + smooth.discretisation_error + 1e-4 * free.energy
     assert smooth.energy == pytest.approx(free.energy, abs=room)
     assert np.any(smooth.free.jerk)
     assert not np.any(free.free.jerk)
@@ -77,8 +77,8 @@ def test_what_is_left_is_what_finer_grids_gain(coarse_of):
     assert fine.levels[: len(rough.levels)] == rough.levels
     assert len(fine.levels) > len(rough.levels)
     gained = rough.levels[-1].energy - fine.levels[-1].energy
-    assert 0 < gained < rough.left < 5 * gained
-    assert fine.left < rough.left
+    assert 0 < gained < rough.discretisation_error < 5 * gained
+    assert fine.discretisation_error < rough.discretisation_error
     for level, finer in zip(fine.levels[:-1], fine.levels[1:], strict=True):
         assert 1.5 * level.steps < finer.steps < 4 * level.steps
         assert finer.energy < level.energy
@@ -98,7 +98,7 @@ def test_the_estimate_continues_the_falls_of_the_energy(coarse_of, energies, rat
     floor = replace(coarse_of(ARM), levels=levels)
     assert floor.ratio == (None if ratio is None else pytest.approx(ratio))
     missed = -floor.verification.energy_difference
-    assert floor.left == pytest.approx(left + missed)
+    assert floor.discretisation_error == pytest.approx(left + missed)
     assert missed > 0
 
 

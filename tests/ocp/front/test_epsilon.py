@@ -24,8 +24,8 @@ def test_the_ends_are_the_plans_of_least_energy(case):
     task, bound, front = case
     still = qa.plan_move(task, bound=bound)
     free = qa.plan_move(task, bound=bound, residual_limit=1.0)
-    assert front.stillest().residual < STILL
-    assert front.stillest().energy == pytest.approx(still.energy, rel=1e-6)
+    assert front.smallest_residual().residual < STILL
+    assert front.smallest_residual().energy == pytest.approx(still.energy, rel=1e-6)
     assert front.cheapest().energy == pytest.approx(free.energy, rel=1e-6)
     assert front.cheapest().residual == pytest.approx(free.residual, rel=1e-3)
 
@@ -81,8 +81,8 @@ def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     scan = [
         qa.Candidate.of_profile(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)
     ]
-    stillest = front.stillest()
-    assert 0.9 * min(scan) < stillest.residual < 1.001 * min(scan)
+    smallest = front.smallest_residual()
+    assert 0.9 * min(scan) < smallest.residual < 1.001 * min(scan)
     assert len(front.points) > 2
 
 

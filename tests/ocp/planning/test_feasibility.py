@@ -82,7 +82,7 @@ def test_the_residual_offered_for_one_term_is_the_least_there_is(refused, tasks,
     assert scan * 0.9999 <= float(text) <= scan * 1.002
 
 
-def test_an_overdamped_plant_is_brought_to_rest_from_its_stillest_motion():
+def test_an_overdamped_plant_is_brought_to_rest_from_its_motion_of_least_residual():
     # The plain cycloid and random starts lead nowhere; 1e-8 m counts as at rest (docs/accuracy.md).
     plant = qa.SingleLinkManipulator(zeta=5.0)
     task = qa.PointToPoint(plant, math.pi / 6, 0.8)
