@@ -120,7 +120,7 @@ class Candidate(Ranged):
         peaks = {one.peak: max(-low, high) for one in known for low, high in [self._range(one)]}
         others = [
             limit.quantity for limit in task.limits
-            if not limit.is_peak and (limit.quantity in known or limit.name not in QUANTITIES)
+            if not limit.is_peak and (limit.name not in QUANTITIES or limit.quantity.peak in peaks)
         ]  # fmt: skip
         return Motion(
             residual=self.residual,

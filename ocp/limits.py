@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.joint_motion import joint_label, joint_unit
 from quietarm.ocp.checks import not_negative
 
 Of = Callable[[JointMotion, Sequence[Expression], Expression], Sequence[Expression]]
@@ -67,6 +69,17 @@ QUANTITIES: Mapping[str, Quantity] = {
 }
 """Every quantity by its name; each has fields for its limit in a task and for its peak in a
 `Motion`."""
+
+
+@lru_cache
+def quantities_of(joint: str) -> Mapping[str, Quantity]:
+    """The same in the units of a kind of joint: metres and newtons of a linear one."""
+    return {
+        name: replace(one, unit=joint_unit(one.unit, joint), label=joint_label(one.label, joint))
+        for name, one in QUANTITIES.items()
+    }
+
+
 RESIDUAL, TORQUE_SPEED = "residual", "torque_speed"
 _RESIDUAL = Quantity(RESIDUAL, "m", "residual vibration", lambda *_: [], None, True)
 """It has no values on the way, and follows from the state on arrival."""

@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant, known_plants
+from quietarm.models.joint_motion import joint_unit
 from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
-from quietarm.ocp.limits import QUANTITIES, Bounds, Limit, Quantity, TorqueSpeedLine
+from quietarm.ocp.limits import Bounds, Limit, Quantity, TorqueSpeedLine, quantities_of
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
 
 
@@ -50,11 +51,11 @@ class ModalState:
             )
 
 
-_UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual_window": "s"}
-_MOST = {"rad": 1e6, "s": 1e6}
-"""Beyond these no joint moves, and double precision does not follow."""
+_TIMES = {"duration": "s", "residual_window": "s"}
+_MOST = 1e6
+"""Beyond this [rad, m, s] no joint moves, and double precision does not follow."""
 LEAST_DURATION, LEAST_MOVE = 1e-6, 1e-6
-"""Below these [s, rad] double precision or the integrators' absolute tolerances do not suffice."""
+"""Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
 
 
 def _plant_for(given: object) -> str:
@@ -74,7 +75,8 @@ class PointToPoint:
     plant : Plant
         What moves.
     target, duration, start : float
-        Joint angle at the end [rad], travelling time [s], joint angle at the beginning [rad].
+        Joint angle at the end [rad], travelling time [s], joint angle at the beginning [rad]; of a
+        linear joint, here and below, positions [m] and forces [N].
     torque_limit, speed_limit, acceleration_limit, deflection_limit, jerk_limit : optional
         Largest absolute joint torque [N m], speed [rad/s], acceleration [rad/s^2], tip displacement
         [m] and rate of change of the joint's acceleration [rad/s^3] on the way; or of each the
@@ -127,11 +129,12 @@ class PointToPoint:
         self.plant.validate()
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)
-        for name, unit in _UNITS.items():
-            check = finite if unit == "rad" else positive
-            number = check(name.replace("_", " "), getattr(self, name), unit, _MOST[unit])
+        way = joint_unit("rad", self.plant.joint)
+        for name, unit in {"start": way, "target": way, **_TIMES}.items():
+            check = positive if name in _TIMES else finite
+            number = check(name.replace("_", " "), getattr(self, name), unit, _MOST)
             object.__setattr__(self, name, number)
-        for quantity in QUANTITIES.values():
+        for quantity in quantities_of(self.plant.joint).values():
             if getattr(self, quantity.limit) is not None:
                 bounds = _check_bounds(quantity, getattr(self, quantity.limit))
                 object.__setattr__(self, quantity.limit, bounds)
@@ -139,7 +142,8 @@ class PointToPoint:
             line = TorqueSpeedLine(tuple(self.torque_speed))
             object.__setattr__(self, "torque_speed", line.points)
         for name, angle in (("start", self.start), ("target", self.target)):
-            if abs(angle) > 2 * math.pi and (2 * angle).is_integer():  # no multiple of pi is
+            more = way == "rad" and abs(angle) > 2 * math.pi
+            if more and (2 * angle).is_integer():  # no multiple of pi is
                 warnings.warn(
                     f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
                     f"numpy.radians({angle:g})",
@@ -147,8 +151,8 @@ class PointToPoint:
                 )
         if abs(self.span) < LEAST_MOVE:
             raise ValueError(
-                f"target - start is {self.span:g} rad: there is no move; change one of them by "
-                f"{LEAST_MOVE:g} rad or more"
+                f"target - start is {self.span:g} {way}: there is no move; change one of them by "
+                f"{LEAST_MOVE:g} {way} or more"
             )
         if self.duration < LEAST_DURATION:
             raise ValueError(f"duration is {self.duration:g} s; give at least {LEAST_DURATION:g} s")
@@ -229,7 +233,8 @@ class PointToPoint:
     @property
     def limits(self) -> tuple[Limit, ...]:
         """The limits that are set."""
-        given = [(one, getattr(self, one.limit)) for one in QUANTITIES.values()]
+        quantities = quantities_of(self.plant.joint).values()
+        given = [(one, getattr(self, one.limit)) for one in quantities]
         limits = [Limit.within(one, bounds) for one, bounds in given if bounds is not None]
         line = [] if self.torque_speed is None else [TorqueSpeedLine(self.torque_speed)]
         return (*limits, *map(Limit.of_line, line))

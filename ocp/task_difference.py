@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass
 from math import isclose
 
 from quietarm.models import Plant
+from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.task import PointToPoint
@@ -27,8 +28,10 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
     if one.plant.name != other.plant.name:
         return f"plant is {one.plant.name}, not {other.plant.name}"
     mine, theirs = dict(_entries(one)), dict(_entries(other))
+    joint = one.plant.joint
     return ", ".join(
-        f"{name} is {_words(name, mine.get(name))}, not {_words(name, theirs.get(name))}"
+        f"{name} is {_words(name, mine.get(name), joint)}, "
+        f"not {_words(name, theirs.get(name), joint)}"
         for name in mine | theirs
         if not _same(mine.get(name), theirs.get(name))
     )
@@ -69,9 +72,8 @@ def _same(one: object, other: object) -> bool:
     return one == other
 
 
-def _words(name: str, value: object) -> str:
+def _words(name: str, value: object, joint: str) -> str:
     if value is None:
         return "none"
-    return (
-        f"{value:.10g} {_UNITS.get(name, '')}".strip() if isinstance(value, float) else str(value)
-    )
+    unit = joint_unit(_UNITS.get(name, ""), joint)
+    return f"{value:.10g} {unit}".strip() if isinstance(value, float) else str(value)

@@ -12,11 +12,11 @@ from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.ocp import Front, JointProfile, Plan, PointToPoint
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import refuse_beyond_box
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.ocp.robustness.perturbed import worst_of
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.task import QUANTITIES
 
 _SAMPLE = 100
 """Points that are evaluated again: as many as one call takes. An edit or a conversion rarely leaves

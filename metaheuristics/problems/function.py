@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.objective.population import PopulationObjective, replace_failures
 from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
 from quietarm.ocp.checks import unknown
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.record import coefficient_bound
-from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
 

@@ -11,10 +11,10 @@ from typing import Any
 
 import click
 from quietarm.models import load_plant_file
-from quietarm.models.joint_motion import ROTARY, joint_unit
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.files import check_writable
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import quantities_of
 from quietarm.studies.cli.folders import check_folder
 from quietarm.studies.cli.plants import parse_error, parse_plant
 from quietarm.studies.cli.quantities import (
@@ -29,7 +29,9 @@ from quietarm.studies.cli.quantities import (
 )
 from quietarm.studies.sweep.grid import axis_values
 
-_RARE = {"rad": (2 * math.pi, "deg"), "m": (0.1, "mm"), "s": (100.0, "ms")}
+_RARE = {
+    "rad": (2 * math.pi, "deg"), "m": (0.1, "mm"), "a position": (10.0, "mm"), "s": (100.0, "ms")
+}  # fmt: skip
 """Beyond this a number alone is asked about: it was easily meant in the other unit."""
 
 
@@ -77,7 +79,7 @@ def _spelling(name: str) -> str:
 def quantity(unit: str, what: str, text: str) -> float:
     """Read a quantity; a number alone that is rarely meant in SI is asked about."""
     value = parse_quantity(text, unit, what)
-    most, other = _RARE.get(unit, (math.inf, ""))
+    most, other = _RARE.get(what) or _RARE.get(unit, (math.inf, ""))
     if math.isfinite(value) and abs(value) > most and is_number(text):
         name = {"deg": "degrees", "mm": "millimetres", "ms": "milliseconds"}[other]
         raise ValueError(
@@ -106,13 +108,11 @@ def parse_of_joint(name: str, text: str, joint: str) -> Any:
     """
     if name in ("start", "target"):
         rotary = partial(quantity, "rad", "an angle")
-        linear = partial(parse_quantity, unit="m", what="a position")
+        linear = partial(quantity, "m", "a position")
         return axis_values(text, rotary if joint == ROTARY else linear)
-    limited = QUANTITIES[name.removesuffix("_limit")]
-    unit = joint_unit(limited.unit, joint)
-    return _sides(
-        partial(quantity, unit, f"a{'n' * (limited.name == 'acceleration')} {limited.name}"), text
-    )
+    limited = quantities_of(joint)[name.removesuffix("_limit")]
+    what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
+    return _sides(partial(quantity, limited.unit, what), text)
 
 
 LENGTH, TIME, TORQUE, SHARE = (

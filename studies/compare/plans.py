@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 import pandas as pd
+from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import Plan, PointToPoint, QuietarmError
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies import figures
@@ -66,10 +67,11 @@ def compare_plans(
     return judged
 
 
-def motions_table(motions: Sequence[Judged]) -> pd.DataFrame:
+def motions_table(motions: Sequence[Judged], joint: str = ROTARY) -> pd.DataFrame:
     """A row for each motion with all its figures; what is known of none is left out."""
     rows = [{"motion": one.name, **dict(_cells(one))} for one in motions]
-    return pd.DataFrame(rows).dropna(axis=1, how="all")
+    table = pd.DataFrame(rows).dropna(axis=1, how="all")
+    return table.rename(columns=lambda name: joint_unit(str(name), joint))
 
 
 def _cells(one: Judged) -> Iterator[tuple[str, float | str | None]]:
@@ -99,21 +101,21 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     """What a page has room for; residuals in whole thousandths of a millimetre: 0 is rest."""
     lengths = [column for column in table if str(column).endswith("[mm]")]
     rounded = table.round(dict.fromkeys(lengths, 3))
-    return rounded.drop(columns=["parameters", "time [s]"], errors="ignore").rename(
-        columns={
-            "peak torque [N m]": "torque [N m]",
-            "peak acceleration [rad/s^2]": "accel. [1/s^2]",
-        }
-    )
+    short = {"peak ": "", "acceleration [rad": "accel. [1", "acceleration": "accel."}
+    for long, word in short.items():
+        rounded.columns = rounded.columns.str.replace(long, word, regex=False)
+    return rounded.drop(columns=["parameters", "time [s]"], errors="ignore")
 
 
-def remarks(motions: Sequence[Judged]) -> list[str]:
+def remarks(motions: Sequence[Judged], unit: str = "rad") -> list[str]:
     """Why a motion is missing, and which joints turn back."""
     reasons: dict[str, list[str]] = {}
     for one in motions:
         if one.why:
             reasons.setdefault(one.why, []).append(one.name)
-    back = [f"{m.name} by {m.turns_back:.2g} rad" for m in motions if (m.turns_back or 0) > _TURNED]
+    back = [
+        f"{m.name} by {m.turns_back:.2g} {unit}" for m in motions if (m.turns_back or 0) > _TURNED
+    ]
     return [
         *(f"{', '.join(names)}: {why}" for why, names in reasons.items()),
         *([f"The joint turns back on its way: {', '.join(back)}"] if back else []),
@@ -122,7 +124,8 @@ def remarks(motions: Sequence[Judged]) -> list[str]:
 
 def plans_report(task: PointToPoint, motions: Sequence[Judged]) -> Report:
     """Motions as a table, what to know of them, and a picture."""
-    table = motions_table(motions)
+    joint = task.plant.joint
+    table = motions_table(motions, joint)
     robust = next((one.robustness for one in motions if one.robustness), None)
     ranges = next((one.worst.errors for one in motions if one.worst), {})
     return Report(
@@ -130,7 +133,7 @@ def plans_report(task: PointToPoint, motions: Sequence[Judged]) -> Report:
         {
             "title": title_of(task),
             "shown": shown(table),
-            "remarks": remarks(motions),
+            "remarks": remarks(motions, joint_unit("rad", joint)),
             "errors": list(ranges),
             "robust": robust,
             "tolerated": f"{100 * TOLERATED:g} %",

@@ -23,7 +23,7 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.ocp.front.curve import Report, no_report
-from quietarm.ocp.task import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.export.formats import export_plan
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.sweep.grid import OF_MOVES

@@ -13,7 +13,7 @@ from bokeh.models import ColumnDataSource, CustomJS, DataRange1d, ScaleBar
 from bokeh.plotting import figure
 from numpy.typing import NDArray
 from quietarm.ocp import Plan
-from quietarm.ocp.task import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading

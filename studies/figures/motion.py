@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
-from quietarm.ocp.task import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -130,16 +130,19 @@ def curves(motion: Plan | Floor, quantity: str) -> list[NDArray[np.float64]]:
 
 def heading(quantity: str, joint: str = ROTARY) -> str:
     """A quantity with the unit that is shown: tip displacement [mm]."""
-    label, unit, _ = _shown(quantity)
-    return f"{joint_label(label, joint)} [{raised(joint_unit(unit, joint))}]"
+    label, unit, _ = _shown(quantity, joint)
+    return f"{label} [{raised(unit)}]"
 
 
-def _shown(quantity: str) -> tuple[str, str, float]:
+def _shown(quantity: str, joint: str = ROTARY) -> tuple[str, str, float]:
     """Label, unit that is shown, and the factor to it."""
     if quantity in QUANTITIES:
-        label, unit = QUANTITIES[quantity].label, QUANTITIES[quantity].unit
-        return (label, "mm", 1e3) if unit == "m" else (label, unit, 1.0)
-    return ("joint angle", "rad", 1.0) if quantity == "angle" else ("power", "W", 1.0)
+        known = quantities_of(joint)[quantity]
+        millimetres = known.unit == "m"
+        return known.label, "mm" if millimetres else known.unit, 1e3 if millimetres else 1.0
+    if quantity == "angle":
+        return joint_label("joint angle", joint), joint_unit("rad", joint), 1.0
+    return "power", "W", 1.0
 
 
 def motion_figure(

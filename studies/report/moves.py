@@ -157,7 +157,7 @@ def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) 
     for limit in task.limits:
         peak = limit.peak_of(motion)
         broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
-        limits.append(joint_unit(f"{limit}{broken}", task.plant.joint))
+        limits.append(f"{limit}{broken}")
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),

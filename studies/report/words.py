@@ -7,7 +7,7 @@ from dataclasses import fields
 from math import degrees
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR, joint_unit
+from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import Front, ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from rich.console import Console
@@ -90,8 +90,7 @@ def title_of(task: PointToPoint) -> str:
 
 def limit_words(task: PointToPoint) -> list[str]:
     """The limits of a task, as "acceleration within 40 rad/s^2"."""
-    joint = task.plant.joint
-    return [f"{one.name} within {joint_unit(one.bounds, joint)}" for one in task.limits]
+    return [f"{one.name} within {one.bounds}" for one in task.limits]
 
 
 def versions_of(fronts: Iterable[Front]) -> list[str]:

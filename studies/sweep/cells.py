@@ -18,8 +18,8 @@ from quietarm.ocp import (
     plan_moves,
 )
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.robustness.perturbed import sensitivities_of_moves
-from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
 
 Columns = dict[str, NDArray[Any]]

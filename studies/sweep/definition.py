@@ -7,11 +7,11 @@ from typing import Any
 
 from quietarm.ocp import PointToPoint, SolveSettings, SolveStatus
 from quietarm.ocp.checks import positive
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness.perturbed import OF_MODES
 from quietarm.ocp.saved import plain, typed
 from quietarm.ocp.solvers.transcription import RESIDUAL
-from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.sweep.grid import Axis, Grid
 
 STATUS, COEFFICIENTS, JUMP = "status", "coefficients", "jump"

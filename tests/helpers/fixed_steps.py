@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import integrated
-from quietarm.ocp.task import QUANTITIES
 
 import quietarm as qa
 

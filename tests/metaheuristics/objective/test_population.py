@@ -9,7 +9,7 @@ from fixed_steps import rollout
 from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.ocp import Candidate, CycloidPolynomial, PointToPoint
-from quietarm.ocp.task import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES
 
 LIMITS = tuple(QUANTITIES)
 
