@@ -191,7 +191,7 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
         preset.checked(population, own)
         if budget is None:
             return preset.evaluations(population, preset.generations)
-        preset.generations_for(budget, population)
+        preset.refuse_less_than_one(budget, population)
     elif budget is None:
         raise ValueError(f"give a budget for {method_name(method)}, in evaluations")
     elif settings:

@@ -261,7 +261,7 @@ def _known(
     if evaluations is not None:
         evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
         generations = -(-evaluations // (preset.swarms * size))
-        preset.generations_for(evaluations, size)  # refuses less than one
+        preset.refuse_less_than_one(evaluations, size)
         limits: dict[str, object] = {"evaluations": evaluations}
     else:
         wanted = preset.generations if generations is None else generations

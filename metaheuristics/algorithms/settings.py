@@ -1,30 +1,20 @@
-"""What a method may be set to: names, defaults, and checks of what a user gives."""
+"""What methods may be set to, each once: the argument of an algorithm, its name and its values."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from quietarm.ocp.checks import finite, has_no, nearest, whole
+from quietarm.ocp.checks import finite, has_no, nearest, not_negative, positive, whole
 
 Value = float | int | bool | str | None
-MOST_KEPT = 100_000
+Check = Callable[[str, Any], Value]
+_MOST_KEPT = 100_000
 """Most points in an archive."""
 
 
-@dataclass(frozen=True)
-class Setting:
-    """A setting of a method."""
-
-    name: str
-    argument: str
-    default: Value
-    meaning: str
-    check: Callable[[str, Any], Value]
-
-
-def _number(wanted: str, fits: Callable[[float], bool]) -> Callable[[str, object], float]:
+def _number(wanted: str, fits: Callable[[float], bool]) -> Check:
     def check(name: str, value: object) -> float:
         number = finite(name, value)
         if not fits(number):
@@ -34,23 +24,13 @@ def _number(wanted: str, fits: Callable[[float], bool]) -> Callable[[str, object
     return check
 
 
-share = _number("a number from 0 to 1", lambda number: 0 <= number <= 1)
-positive_share = _number("a positive number up to 1", lambda number: 0 < number <= 1)
-scale = _number("a positive number up to 2", lambda number: 0 < number <= 2)
-index_of_spread = _number("a number between 1 and 100", lambda number: 1 < number < 100)
-"""Of a crossover or a mutation: pymoo allows 1 to 100, both left out."""
-
-
-def yes_or_no(name: str, value: object) -> bool:
-    """True or false."""
+def _yes_or_no(name: str, value: object) -> bool:
     if not isinstance(value, bool):
         raise ValueError(f"{name} is {value!r}; give true or false")
     return value
 
 
-def one_of(*choices: str) -> Callable[[str, object], str]:
-    """A check for one of several words."""
-
+def _one_of(*choices: str) -> Check:
     def check(name: str, value: object) -> str:
         if value not in choices:
             hint = nearest(str(value), choices)
@@ -60,17 +40,91 @@ def one_of(*choices: str) -> Callable[[str, object], str]:
     return check
 
 
-def count(least: int, most: int = MOST_KEPT) -> Callable[[str, object], int]:
-    """A check for a whole number."""
-    return lambda name, value: whole(name, value, least, most)
+def _count(least: int) -> Check:
+    return lambda name, value: whole(name, value, least, _MOST_KEPT)
+
+
+_share = _number("a number from 0 to 1", lambda number: 0 <= number <= 1)
+_positive_share = _number("a positive number up to 1", lambda number: 0 < number <= 1)
+_scale = _number("a positive number up to 2", lambda number: 0 < number <= 2)
+# pymoo allows 1 to 100, both left out
+_index = _number("a number between 1 and 100", lambda number: 1 < number < 100)
+_variant = _one_of(*(
+    f"DE/{base}/{number}/{cross}"
+    for base in ("rand", "best", "current-to-best", "current-to-rand", "ranked")
+    for number in (1, 2) for cross in ("bin", "exp")
+))  # fmt: skip
+
+_ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
+    "crossover.prob": ("crossover", "share of the pairs that are crossed, by SBX", _share),
+    "crossover.prob_var": ("crossover_gene", "share of the coefficients that cross",
+                           _positive_share),
+    "crossover.eta": ("crossover_eta", "how near to its parents a child is", _index),
+    "mutation.prob": ("mutation", "share of the children that may mutate", _share),
+    "mutation.prob_var": ("mutation_gene", "share of the coefficients that mutate; 1 / their "
+                          "number, at most 0.5, where it is not set", _share),
+    "mutation.eta": ("mutation_eta", "how small a mutation is", _index),
+    "normalize": ("normalise", "scale the objectives to the population", _yes_or_no),
+    "n_neighbors": ("neighbours", "nearest directions that take a child", _count(2)),
+    "prob_neighbor_mating": ("neighbour_mating", "share of the pairs that come from these", _share),
+    "alpha": ("alpha", "how fast the penalty of an angle grows", positive),
+    "adapt_freq": ("adaptation", "share of the generations between changes of the directions",
+                   _positive_share),
+    "boundary": ("boundary", "what happens beyond the box", _one_of("clip", "reflect")),
+    "velocity_limit": ("velocity_limit", "largest velocity of a coefficient, as a share of its box",
+                       positive),
+    "max_velocity_rate": ("velocity_limit",
+                          "largest velocity of a coefficient, as a share of its box", positive),
+    "archive_size": ("archive_size", "most points of the front; all are kept where it is not set",
+                     _count(2)),
+    "rule.inertia_start": ("inertia", "share of its velocity that a particle keeps at first",
+                           not_negative),
+    "rule.inertia_end": ("last_inertia", "that share at the end", not_negative),
+    "rule.constriction": ("constriction", "factor of every velocity", positive),
+    "rule.cognitive": ("cognitive", "pull to its own best", not_negative),
+    "rule.social": ("social", "pull to the next swarm's best", not_negative),
+    "w": ("inertia", "share of its velocity that a particle keeps", not_negative),
+    "c1": ("cognitive", "pull to its own best", not_negative),
+    "c2": ("social", "pull to a point of the front", not_negative),
+    "elite_size": ("elites", "particles that the others learn from", _count(1)),
+    "mutation_rate": ("mutation", "share of the particles that may mutate", _share),
+    "initial_velocity": ("first_velocity", "of the first population", _one_of("random", "zero")),
+    "variant": ("variant", "which vectors differ, and how they cross", _variant),
+    "CR": ("crossover", "share of the coefficients that cross", _share),
+    "F": ("scale", "factor of a difference; random from 0 to 1 where it is not set", _scale),
+    "gamma": ("jitter", "how much the factor differs between coefficients", not_negative),
+    "de_repair": ("repair", "what happens beyond the box",
+                  _one_of("bounce-back", "midway", "rand-init", "to-bounds")),
+    "delta": ("delta", "difference that is too small to dominate, as a share of the range",
+              not_negative),
+    "obj_crowding": ("objective_crowding", "spread the objectives", _yes_or_no),
+    "var_crowding": ("coefficient_crowding", "spread the coefficients", _yes_or_no),
+}  # fmt: skip
+"""By the algorithms' own arguments, with a dot of an operator's."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A setting of a method; None as its default leaves it to the algorithm."""
+
+    name: str
+    argument: str
+    default: Value
+    meaning: str
+    check: Check
+
+    @classmethod
+    def of(cls, argument: str, default: Value) -> Setting:
+        """The setting of an argument."""
+        name, meaning, check = _ARGUMENTS[argument]
+        return cls(name, argument, default, meaning, check)
 
 
 def with_defaults(
-    method: str, known: Iterable[Setting], given: Mapping[str, object] | None
+    method: str, known: tuple[Setting, ...], given: Mapping[str, object]
 ) -> dict[str, Value]:
     """All settings of a method: those that are given, each checked, and the defaults."""
     entries = {setting.name: setting for setting in known}
-    given = {} if given is None else given
     for name in given:
         if name not in entries:
             raise ValueError(has_no(method, "setting", str(name), entries))
