@@ -96,7 +96,7 @@ def hard_problem(name: str, folder: Path) -> qa.NamedProblem:
     return qa.NamedProblem.of_front(name, qa.Front.load(path))
 
 
-def differences(function: Any, seed: int, budget: int) -> None:
+def differences(function: Any, seed: int, budget: int, step: float = 1e-6) -> None:
     """SLSQP with differences, on the energy within one residual limit after another.
 
     What is left of the gradient where an energy is a black box; a limit is a share of what the
@@ -110,9 +110,9 @@ def differences(function: Any, seed: int, budget: int) -> None:
 
     def slopes(x: Any, column: int) -> Any:
         x = np.clip(x, function.lower, function.upper)
-        step = np.where(x + 1e-6 <= function.upper, 1e-6, -1e-6)
-        values = function(np.vstack([x, x + np.diag(step)]))[0][:, column]
-        return (values[1:] - values[0]) / step
+        steps = np.where(x + step <= function.upper, step, -step)
+        values = function(np.vstack([x, x + np.diag(steps)]))[0][:, column]
+        return (values[1:] - values[0]) / steps
 
     while True:
         limit = random.uniform(0.0, reach) if np.isfinite(reach) else None
