@@ -25,6 +25,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_click",
     "sphinx_copybutton",
+    "sphinx_inline_tabs",
 ]
 root_doc = "docs/index"
 include_patterns = [

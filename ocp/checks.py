@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import operator
+import re
 from collections.abc import Collection
 from typing import Annotated, Any, TypeVar
 
@@ -75,9 +76,16 @@ def has_no(owner: str, what: str, name: str, known: Collection[str]) -> str:
 
 def nearest(name: str, known: Collection[str]) -> str:
     """A question for a message, with the known name that is most like an unknown one."""
+    same = [other for other in known if spelling(other) == spelling(name)]
     part = [other for other in known if len(name) >= _PART and name.lower() in other.lower()]
-    near = part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=_ALIKE)
+    near = same or part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=_ALIKE)
     return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def spelling(name: str) -> str:
+    """A name without what people spell differently: NSGA-II and nsga_2 are nsga2."""
+    small = re.sub(r"[-_ ]", "", name.lower())
+    return re.sub(r"i{2,3}$", lambda match: str(len(match[0])), small)
 
 
 def known(family: type[T]) -> dict[str, type[T]]:

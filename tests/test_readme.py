@@ -13,13 +13,13 @@ from quietarm.studies.reproduce.paper import SINGLE_LINK_SIXTH
 # The two commands
 
 
-def test_exactly_two_commands_of_one_line_stand_first():
-    section = README.split("## Two commands\n", 1)[1].split("\n## ", 1)[0]
-    found = re.findall(r"^```(\w*)\n(.*?)^```$", section, re.DOTALL | re.MULTILINE)
-    assert [language for language, _ in found] == ["console", "console"]
-    assert [body.strip() for _, body in found] == TWO_COMMANDS
-    assert [body.count("\n") for _, body in found] == [1, 1]
-    assert README.index("## Two commands") < README.index("```")
+def test_a_picture_a_move_and_python_come_before_the_two_commands_for_all():
+    places = ["](docs/images/move.gif)", "```sh\n.venv/bin/quietarm plan ", "```python\n"]
+    found = [README.index(words) for words in (*places, "\n## Two commands\n", "```console\n")]
+    assert found == sorted(found)
+    section = README.split("\n## Two commands\n", 1)[1].split("\n## ", 1)[0]
+    assert re.findall(r"^```console\n(.+)\n```$", section, re.MULTILINE) == TWO_COMMANDS
+    assert section.count("```") == 4
 
 
 @pytest.mark.parametrize("command", [*TWO_COMMANDS, NOTEBOOK])

@@ -112,7 +112,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     status = NOT_SOLVED
     # one more Ctrl-C may come while the first is answered
     with suppress(KeyboardInterrupt), as_ctrl_c():
-        status = _run(sys.argv[1:] if arguments is None else list(arguments))
+        status = _run(arguments)
     if arguments is None:  # answered: nothing is left that another Ctrl-C could stop
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.exit(status)
@@ -124,9 +124,11 @@ def _unless_ctrl_c(lost: sys.UnraisableHookArgs) -> None:
         sys.__unraisablehook__(lost)
 
 
-def _run(words: Sequence[str]) -> int:
+def _run(arguments: Sequence[str] | None) -> int:
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    given = None if arguments is None else words  # of None click looks for files on Windows
     try:
-        status = quietarm.main(words, prog_name="quietarm", standalone_mode=False, obj=words) or 0
+        status = quietarm.main(given, prog_name="quietarm", standalone_mode=False, obj=words) or 0
         sys.stdout.flush()
         return status
     except click.exceptions.NoArgsIsHelpError as error:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import Any
 import click
 from quietarm.models import load_plant_file
 from quietarm.models.joint_motion import ROTARY
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import spelling, unknown
 from quietarm.ocp.files import check_writable
 from quietarm.ocp.limits import quantities_of
 from quietarm.studies.cli.folders import check_folder
@@ -63,17 +62,11 @@ class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name."""
-        same = [name for name in self.choices if _spelling(name) == _spelling(value)]
+        same = [name for name in self.choices if spelling(name) == spelling(value)]
         if not same:
             known = unknown(self._what, value, self.choices)
             self.fail(self._none.get(value, known), param, ctx)
         return same[0]
-
-
-def _spelling(name: str) -> str:
-    """A name without what people spell differently: nsga-iii is nsga3."""
-    small = re.sub(r"[-_ ]", "", name.lower())
-    return re.sub(r"i{2,3}$", lambda match: str(len(match[0])), small)
 
 
 def quantity(unit: str, what: str, text: str) -> float:

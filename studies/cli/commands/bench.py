@@ -69,8 +69,10 @@ def bench(
       quietarm bench all --methods nsga2,gde3,epsilon,epsilon:ipopt --runs 15 --output bench
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.metaheuristics import LostJobsError, run_jobs
+    from quietarm.metaheuristics import PRESETS, LostJobsError, run_jobs
+    from quietarm.metaheuristics.gradient import GRADIENT
     from quietarm.ocp import Front
+    from quietarm.ocp.checks import spelling
     from quietarm.ocp.errors import QuietarmError
     from quietarm.studies.bench.asked import jobs_of, problems_of, write_references
     from quietarm.studies.bench.page import bench_report, brief_report
@@ -80,7 +82,9 @@ def bench(
     from quietarm.studies.report.progress import progress
     from quietarm.studies.report.words import print_lines
 
-    names = [name.strip() for name in methods.split(",")]
+    known = {spelling(name): name for name in (*PRESETS, *GRADIENT)}
+    parts = [name.strip().partition("+") for name in methods.split(",")]
+    names = [known.get(spelling(name), name) + plus + polish for name, plus, polish in parts]
     chosen, errors = problems_of(problems), Console(stderr=True)
     jobs, left_out = jobs_of(
         chosen, names, runs, evaluations, seed, settings_by_method(setting, names)
