@@ -14,13 +14,15 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from time import perf_counter, process_time
 
 import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
-from quietarm.metaheuristics import PRESETS, PopulationObjective, search, search_many
+from quietarm.metaheuristics import PRESETS, PopulationObjective, search
+from quietarm.metaheuristics.parallel import side_by_side
 from quietarm.metaheuristics.spread import energies_at, energy_at
-from quietarm.ocp import evaluate_coefficients
+from quietarm.ocp import Front, evaluate_coefficients
 from quietarm.studies.reproduce.paper import (
     ARM_HALF,
     COEFFICIENTS,
@@ -86,6 +88,10 @@ def times(repetitions: int) -> Table:
     return table
 
 
+def searched(condition: Case, method: str, seed: int) -> Front:
+    return search(condition.task, method, bound=condition.bound, seed=seed)
+
+
 def energies(seeds: int, workers: int) -> Table:
     levels = {method: residual_level(first) for method, first in METHODS.items()}
     shown = ", ".join(f"{level * 1e3:.3g} mm for {method}" for method, level in levels.items())
@@ -98,9 +104,8 @@ def energies(seeds: int, workers: int) -> Table:
             if row.earlier_energy is None or row.condition.task.plant != first.task.plant:
                 continue
             condition = row.condition
-            fronts = search_many(
-                condition.task, method, seeds, workers=workers, bound=condition.bound
-            )
+            one = partial(searched, condition, method)
+            fronts = list(side_by_side(one, range(seeds), workers))
             found = np.array([energy_at(front, level) for front in fronts])
             spread = energies_at(fronts, level)
             table.add_row(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -15,7 +14,7 @@ from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.search import MOST_EVALUATIONS, search
-from quietarm.ocp import Front, PointToPoint, QuietarmError
+from quietarm.ocp import Front, QuietarmError
 from quietarm.ocp.checks import unknown, whole
 from quietarm.ocp.record import Setting
 
@@ -334,27 +333,3 @@ def _run(job: Job) -> tuple[str, Front | str]:
         return job.name, job.run()
     except (QuietarmError, ValueError, ArithmeticError) as error:
         return job.name, str(error)
-
-
-def search_many(
-    task: PointToPoint,
-    method: str,
-    runs: int,
-    *,
-    workers: int = 1,
-    scheduler: str | None = None,
-    seed: int = 0,
-    done: Callable[[Front], None] = lambda front: None,
-    **settings: Any,
-) -> list[Front]:
-    """The fronts of so many seeds from one on, as of `search`; `done` is called as each ends."""
-    seeds = range(whole("seed", seed, 0), seed + whole("runs", runs, 1, 10_000))
-    one, fronts = partial(_search, task, method, settings), list[Front]()
-    for front in side_by_side(one, seeds, whole("workers", workers, 1), scheduler):
-        done(front)
-        fronts.append(front)
-    return sorted(fronts, key=lambda front: front.seed or 0)
-
-
-def _search(task: PointToPoint, method: str, settings: dict[str, Any], seed: int) -> Front:
-    return search(task, method, seed=seed, **settings)

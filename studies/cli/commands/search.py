@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX
-from quietarm.ocp import Front, QuietarmError, SolverFailedError
+from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
+from quietarm.ocp.checks import whole
 from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import PICTURE, ending_of, files_of, output_option
@@ -86,7 +88,8 @@ def search(
     several = runs > 1
     if several and STDOUT in output:
         raise ValueError("--output - is for one run; with --runs give the name of a file")
-    from quietarm.metaheuristics.jobs import search_many  # not at the top: --help needs it not
+    # not at the top: --help needs it not
+    from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 
     task, errors = move.task(), Console(stderr=True)
     settings["profile"] = profile_of(profile, task, terms)
@@ -96,31 +99,35 @@ def search(
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )
-    warn_of_workers(errors, settings["workers"], runs)
+    seed, workers = settings.pop("seed"), whole("workers", settings.pop("workers"), 1)
+    seeds = range(whole("seed", seed, 0), seed + whole("runs", runs, 1, 10_000))
+    warn_of_workers(errors, workers, runs)
     if given is not None:
         settings["start"] = load_front(given)
     fronts, trouble = list[Front](), None
 
-    def keep(front: Front) -> None:
-        fronts.append(front)
-        display.finish(front)
-
     with search_display(errors, quiet=quiet()) as display:
-        if not several and settings["workers"] == 1:
+        if not several and workers == 1:
             settings["report"] = display
         try:
-            search_many(task, method, runs, done=keep, **settings)
-        except KeyboardInterrupt:
+            for front in side_by_side(partial(_search, task, method, settings), seeds, workers):
+                fronts.append(front)
+                display.finish(front)
+        except (KeyboardInterrupt, LostWorkersError) as error:
             if not fronts:
                 raise
-            kept = f"{len(fronts)} of {runs} seeds are done and kept"
-            trouble = QuietarmError(f"interrupted: {kept}")
+            why = "interrupted" if isinstance(error, KeyboardInterrupt) else error
+            trouble = QuietarmError(f"{why}: {len(fronts)} of {runs} seeds are done and kept")
     fronts.sort(key=lambda front: front.seed or 0)
-    if len(fronts) < runs and trouble is None:
-        trouble = QuietarmError(f"a worker died: {len(fronts)} of {runs} seeds are done and kept")
     if not any(front.points for front in fronts):
         raise trouble or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
     finish(_files(output, fronts, several), search_lines(fronts), trouble=trouble)
+
+
+def _search(task: PointToPoint, method: str, settings: dict[str, Any], seed: int) -> Front:
+    from quietarm.metaheuristics import search
+
+    return search(task, method, seed=seed, **settings)
 
 
 def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> list[File]:
