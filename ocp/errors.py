@@ -53,16 +53,16 @@ class SolveStatus(Enum):
 
 _TEXTS = {
     SolveStatus.OPTIMAL: "The solver found a local optimum.",
-    SolveStatus.ACCEPTABLE: "The solver stopped within the limits where it could hardly lower the "
-    "objective any more; more steps or another seed may sharpen it.",
-    SolveStatus.INFEASIBLE: "The solver converged to a motion that breaks a limit; allow more "
-    "residual, wider limits, a longer duration or more terms.",
+    SolveStatus.ACCEPTABLE: "The solver stopped at a feasible motion, where the objective hardly "
+    "decreased any more; more steps or another seed may improve it.",
+    SolveStatus.INFEASIBLE: "The solver converged to an infeasible motion; allow a larger residual, "
+    "wider limits, a longer duration or more terms.",
     SolveStatus.ITERATION_LIMIT: "The solver ran out of iterations; try another seed, more starts "
     "or a bound on the coefficients.",
     SolveStatus.NUMERICAL_TROUBLE: "The solver failed numerically; try another seed, fewer terms "
     "or a bound on the coefficients.",
-    SolveStatus.SUPERSEDED: "The solver left this start: another led to as low a motion.",
-    SolveStatus.NOT_CERTIFIED: "The motion breaks a limit by CVODES although limits were "
+    SolveStatus.SUPERSEDED: "The solver stopped this start: another one led to an energy as low.",
+    SolveStatus.NOT_CERTIFIED: "By CVODES the motion exceeds a limit, although the limits were "
     "tightened; bound the coefficients or use fewer terms.",
     SolveStatus.NOT_OPTIMISED: "The motion was given, not optimised.",
 }

@@ -202,7 +202,7 @@ class Uncertainty:
         if len(ranges) > MOST_RANGES:
             raise ValueError(
                 f"{len(ranges)} errors at once have {2 ** len(ranges)} corners at which the "
-                f"residual is held; give at most {MOST_RANGES}"
+                f"residual is evaluated; give at most {MOST_RANGES}"
             )
         corners = product(*((-size, size) for size in ranges.values()))
         samples = tuple(tuple(map(float, sample)) for sample in self.samples or corners)

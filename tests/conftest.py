@@ -29,13 +29,6 @@ settings.register_profile(
 settings.load_profile("repeatable")
 
 
-TOGETHER = {
-    "tests/ocp/floor/": "floors",
-    "tests/studies/reproduce/": "the paper recomputed",
-}
-"""Tests of several files that share what takes long, by the beginning of their names."""
-
-
 def pytest_collection():
     """Collect no garbage while tests are: what is made then stays until the end."""
     gc.disable()
@@ -45,22 +38,6 @@ def pytest_collection_finish():
     """Look no more at what collecting has made, whenever garbage is looked for."""
     gc.freeze()
     gc.enable()
-
-
-@pytest.hookimpl(optionalhook=True)  # where xdist is not installed, nobody calls it
-def pytest_xdist_make_scheduler(config, log):
-    """Run in one process what shares its fixtures: a file, or several that are named above.
-
-    xdist's own groups by marks have no effect with pytest 9.2, which xdist 3.8 does not know.
-    """
-    from xdist.scheduler import LoadFileScheduling
-
-    class ByWhatIsShared(LoadFileScheduling):
-        def _split_scope(self, nodeid):
-            named = (group for begin, group in TOGETHER.items() if nodeid.startswith(begin))
-            return next(named, super()._split_scope(nodeid))
-
-    return ByWhatIsShared(config, log)
 
 
 @pytest.fixture(scope="session")

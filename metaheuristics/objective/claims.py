@@ -95,7 +95,7 @@ def check_plan(plan: Plan, name: str) -> None:
 
 
 def _check_worst(plan: Plan, name: str) -> None:
-    """Look again for the errors of an uncertain plant at which a plan leaves most."""
+    """Find the worst case of a plan for an uncertain plant again, and compare."""
     if plan.worst is None:
         return
     where = plan.task, plan.profile, plan.coefficients
@@ -103,13 +103,13 @@ def _check_worst(plan: Plan, name: str) -> None:
     if found is None or list(found.errors) != list(plan.worst.errors):
         what = ", ".join(plan.worst.errors) or "none"
         raise ValueError(
-            f"{name} states a worst with errors of {what}, which its plant does not have; find the "
-            "plan again"
+            f"{name} states a worst case with errors of {what}, which its plant does not have; "
+            "find the plan again"
         )
     there = plan.candidate.perturbed(plan.worst.errors)
-    for gives, words in (found.residual, "leave"), (there.residual, "leave there"):
+    for gives, words in (found.residual, ""), (there.residual, " with these errors"):
         if not agrees(stated, gives, REST):
             raise ValueError(
-                f"{name} states residual {stated:.4g} m at worst, but its coefficients {words} "
-                f"{gives:.4g} m; find the plan again"
+                f"{name} states a worst-case residual of {stated:.4g} m, but its coefficients "
+                f"give {gives:.4g} m{words}; find the plan again"
             )

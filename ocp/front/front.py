@@ -118,8 +118,8 @@ class Front(Saved):
             not_negative(f"energy of point {i}", point.energy, "J")
         if self.points != non_dominated(self.points):
             raise ValueError(
-                "its points are out of order, or one is better than another; order them by "
-                "residual and leave out what others beat, as non_dominated(points) does"
+                "its points are out of order, or one is dominated; order them by "
+                "residual and drop dominated ones, as non_dominated(points) does"
             )
 
     @property

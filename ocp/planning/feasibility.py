@@ -115,9 +115,9 @@ def unmet(
         if one.name in least and not one.keeps(least[one.name], at_rest=STILL)
     ]
     feasible = (
-        f"feasible with the rest kept: {' or '.join(remedies)}"
+        f"feasible with all else unchanged: {' or '.join(remedies)}"
         if remedies
-        else "taking any one of these limits away does not help, so widen several"
+        else "removing any single one of these limits does not help, so widen several"
     )
     return InfeasibleTaskError(
         f"found no {motion} with {asked}{box}; {feasible}; {remedy} may also do"

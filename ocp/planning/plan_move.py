@@ -63,8 +63,8 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
             )
     if residual_limit == 0:
         raise ValueError(
-            "residual limit is 0, but no motion arrives at rest whatever the errors of its plant; "
-            "leave it out (5 % of how far the plain cycloid bends the tip) or give one above 0"
+            "residual limit is 0, but no motion arrives at rest in all scenarios; omit it (default: "
+            "5 % of the plain cycloid's largest deflection) or give one above 0"
         )
     return residual_limit
 

@@ -49,8 +49,8 @@ def shaped_cycloid(
     modes = [FreeVibration(task.plant, angle).modes for angle in angles]
     if not modes[0] or len({len(each) for each in modes}) > 1:
         raise ValueError(
-            f"plant {task.plant.name!r} has modes that do not vibrate: there is nothing that a "
-            "shaper could leave out; take another profile"
+            f"plant {task.plant.name!r} has modes that do not vibrate, for which there is "
+            "no shaper; take another profile"
         )
     frequencies, damping_ratios = np.mean(modes, axis=0).T
     profile = ShapedCycloid(shaper, tuple(frequencies), tuple(damping_ratios))

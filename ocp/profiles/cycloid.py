@@ -38,7 +38,7 @@ class Cycloid(JointProfile):
     terms: int = 6
 
     def __post_init__(self) -> None:
-        why = "beyond that double precision no longer tells the terms apart"
+        why = "beyond that double precision no longer distinguishes the terms"
         terms = whole("terms", self.terms, self.least_terms, self.most_terms, why)
         object.__setattr__(self, "terms", terms)
 

@@ -19,7 +19,7 @@ _MOST_SLICES = 4
 _SHOWN = {
     "energy": ("energy F2 [J]", 1.0, 0.0),
     "residual": ("residual F1 [mm]", 1e3, 1e-3),
-    "price_residual": ("price of the residual [J/mm]", 1e-3, 1e-9),
+    "price_residual": ("shadow price [J/mm]", 1e-3, 1e-9),
 }
 """Variables with their labels, factors and least values that are told apart."""
 _GREYS = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")

@@ -26,7 +26,7 @@ from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
 from quietarm.studies.report.words import raised, title_of
 
 _SHOWN, _ABOVE = 0.99, 1.15
-"""A panel with jolts ends at this multiple of the 99 % quantile."""
+"""A panel with short pulses ends at this multiple of the 99 % quantile."""
 _LETTERS = 48
 """Of a title, for each column of panels."""
 _IN_SIGHT = 0.4
@@ -111,7 +111,7 @@ def draw_lines(lines: Sequence[Line], quantity: str, ax: Axes) -> Axes:
     scale = _shown(quantity)[2]
     bounds = [(scale * one.lower, scale * one.upper) for one in limits if one is not None]
     words += _draw_limits(ax, bounds, values)
-    words += _leave_out_jolts(ax, lines, values)
+    words += _cut_off_pulses(ax, lines, values)
     ax.set_title(", ".join(words), **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
     ax.margins(x=0)
@@ -262,10 +262,10 @@ def _draw_limits(
     return words
 
 
-def _leave_out_jolts(
+def _cut_off_pulses(
     ax: Axes, lines: Sequence[Line], values: Sequence[NDArray[np.float64]]
 ) -> list[str]:
-    """Cut off a floor's jolts, a thousand times the rest for a moment, and say so in words."""
+    """Cut off a floor's short pulses, a thousand times all other values, and say so in words."""
     if not any(isinstance(line.plan, Floor) for line in lines):
         return []
     peaks, usual = [0.0], [0.0]
@@ -282,4 +282,4 @@ def _leave_out_jolts(
         return []
     low, high = ax.get_ylim()
     ax.set_ylim(max(low, -highest), min(high, highest))
-    return ["jolts left out"]
+    return ["pulses cut off"]

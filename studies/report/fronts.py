@@ -92,7 +92,7 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
             for one in (gains[i] for i in shown)
         ),
         f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}",
-        *([f"{counted(dominated, 'point')} left out, dominated by another now"] * (dominated > 0)),
+        *([f"{counted(dominated, 'point')} dropped, dominated by another now"] * (dominated > 0)),
         *failure_lines(polished, len(given.points)),
     ])  # fmt: skip
 

@@ -10,15 +10,6 @@ from quietarm.ocp import CycloidPolynomial
 pi = math.pi
 PROFILE = CycloidPolynomial(6)
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
-CONDITIONS = [
-    # Tables 3 and 6: start, target, duration; boxes of eqs (12) and (17).
-    (SINGLE_LINK, 0.0, pi / 6, 0.8, 0.2),
-    (SINGLE_LINK, 0.0, pi / 2, 1.0, 0.2),
-    (SINGLE_LINK, 0.0, pi / 2, 1.1, 0.2),
-    (ARM, 0.0, pi / 2, 0.8, 0.5),
-    (ARM, -pi / 2, pi / 4, 1.0, 0.5),
-    (ARM, -pi / 2, pi / 2, 1.2, 0.5),
-]
 PLANTS = pytest.mark.parametrize("name", ["single link", "arm", "two links"])
 
 

@@ -2,16 +2,26 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 from moves import ARM
+from quietarm.ocp.floor import search
 from quietarm.ocp.floor.answer import Level
 
 import quietarm as qa
 
 
-def test_limited_to_200_the_arm_needs_what_other_transcriptions_find(coarse_of):
+@cache
+def coarse_of(task, starts=1, **settings):
+    """`energy_floor` from one start and on coarse grids, that solves nothing twice."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(search, "FIRST_INTERVALS", 24)
+        return qa.energy_floor(task, starts=starts, **settings)
+
+
+def test_limited_to_200_the_arm_needs_what_other_transcriptions_find():
     # benchmarks/README.md, floor_against_peers.py: 0.101326 J by rockit at 100 intervals, 0.3 %
     # above the refined floor.
     floor = coarse_of(replace(ARM, acceleration_limit=200.0))
@@ -28,7 +38,7 @@ def test_limited_to_200_the_arm_needs_what_other_transcriptions_find(coarse_of):
     ],
     ids=["no limit", "torque and speed", "direction and torque by speed"],
 )
-def test_no_plan_is_cheaper(solved, coarse_of, limits):
+def test_no_plan_is_cheaper(solved, limits):
     task = replace(ARM, **limits)
     floor = coarse_of(task)
     plan = solved(task, 6, starts=1)
@@ -38,7 +48,7 @@ def test_no_plan_is_cheaper(solved, coarse_of, limits):
         assert limit.peak_of(floor.motion) > 0.9 * limit.size  # the limit is in the way
 
 
-def test_a_smooth_motion_comes_to_the_same_floor(coarse_of):
+def test_a_smooth_motion_comes_to_the_same_floor():
     free, smooth = coarse_of(ARM), coarse_of(ARM, smooth=True, starts=2)
     # Jolts take up to 4e-5 of the move at any level, which no level shows.
     room = free.discretisation_error + smooth.discretisation_error + 1e-4 * free.energy
@@ -50,7 +60,7 @@ def test_a_smooth_motion_comes_to_the_same_floor(coarse_of):
     assert a[0] == 0.0
 
 
-def test_a_plant_of_two_modes_has_a_floor(tasks, solved, coarse_of):
+def test_a_plant_of_two_modes_has_a_floor(tasks, solved):
     task = replace(tasks["two links"], acceleration_limit=60.0)
     floor = coarse_of(task)
     assert floor.residual < 1e-8
@@ -58,7 +68,7 @@ def test_a_plant_of_two_modes_has_a_floor(tasks, solved, coarse_of):
     assert floor.energy < solved(task, 10, starts=1).energy
 
 
-def test_the_figures_are_those_of_the_independent_integrator(coarse_of):
+def test_the_figures_are_those_of_the_independent_integrator():
     floor = coarse_of(ARM)
     check = floor.verification
     assert floor.residual < 1e-8
@@ -71,7 +81,7 @@ def test_the_figures_are_those_of_the_independent_integrator(coarse_of):
     assert (angle[-1], speed[-1]) == pytest.approx((math.pi / 2, 0.0), abs=1e-6)
 
 
-def test_what_is_left_is_what_finer_grids_gain(coarse_of):
+def test_what_is_left_is_what_finer_grids_gain():
     # Against a much finer grid: the estimate is of the right size, and errs to the safe side.
     rough, fine = coarse_of(ARM), coarse_of(ARM, tolerance=3e-4)
     assert fine.levels[: len(rough.levels)] == rough.levels
@@ -93,7 +103,7 @@ def test_what_is_left_is_what_finer_grids_gain(coarse_of):
         ([1.0, 0.9, 1.2, 1.19], None, 0.3),
     ],
 )
-def test_the_estimate_continues_the_falls_of_the_energy(coarse_of, energies, ratio, left):
+def test_the_estimate_continues_the_falls_of_the_energy(energies, ratio, left):
     levels = tuple(Level(100 * 2**i, energy) for i, energy in enumerate(energies))
     floor = replace(coarse_of(ARM), levels=levels)
     assert floor.ratio == (None if ratio is None else pytest.approx(ratio))
@@ -105,7 +115,7 @@ def test_the_estimate_continues_the_falls_of_the_energy(coarse_of, energies, rat
 SMOOTH = {"smooth": True, "starts": 1, "tolerance": 0.02}
 
 
-def test_a_jerk_limit_is_kept_and_no_plan_needs_less(tasks, coarse_of, solved):
+def test_a_jerk_limit_is_kept_and_no_plan_needs_less(tasks, solved):
     task = replace(tasks["single link"], jerk_limit=1500.0)  # less than of a plan of least energy
     floor = coarse_of(task, **SMOOTH)
     assert floor.motion.peak_jerk == pytest.approx(1500.0, rel=1e-3)
@@ -130,7 +140,7 @@ def test_the_least_jerk_of_a_rigid_joint_is_its_closed_form():
     assert qa.energy_floor(enough, **SMOOTH).motion.peak_jerk <= 1.05 * least * (1 + 1e-6)
 
 
-def test_limits_that_nothing_meets_are_named_with_what_would_do(coarse_of):
+def test_limits_that_nothing_meets_are_named_with_what_would_do():
     task = replace(ARM, torque_limit=0.05, speed_limit=9.0)
     with pytest.raises(qa.InfeasibleTaskError, match="torque limit") as error:
         coarse_of(task)

@@ -48,7 +48,7 @@ def refused(tasks):
 @pytest.mark.parametrize("case", CASES)
 def test_what_the_error_offers_is_feasible(refused, tasks, case):
     name, terms, limits, settings = CASES[case]
-    offers = QUOTED.findall(refused(case).split("feasible with the rest kept")[1])
+    offers = QUOTED.findall(refused(case).split("feasible with all else unchanged")[1])
     assert offers
     for quantity, text in offers:
         value = float(text)
@@ -75,7 +75,7 @@ def test_the_residual_offered_for_one_term_is_the_least_there_is(refused, tasks,
     def least(coefficients):
         return min((rollout(task, profile, [a]).motion.residual, a) for a in coefficients)
 
-    ((_, text),) = QUOTED.findall(refused(f"one term, {name}").split("with the rest kept")[1])
+    ((_, text),) = QUOTED.findall(refused(f"one term, {name}").split("with all else unchanged")[1])
     _, best = least(np.linspace(-2.0, 2.0, 81))
     for step in (0.05, 0.0025):
         scan, best = least(best + np.linspace(-step, step, 41))

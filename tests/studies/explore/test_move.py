@@ -52,7 +52,7 @@ def test_values_outside_their_range_are_held(begun, name, given, held):
 def test_a_move_that_is_none_is_refused_with_its_remedy(begun):
     with pytest.raises(ValueError, match="there is no move"):
         begun.change({"target": 0.0})
-    with pytest.raises(InfeasibleTaskError, match="feasible with the rest kept: torque limit"):
+    with pytest.raises(InfeasibleTaskError, match="feasible with all else unchanged: torque limit"):
         begun.change({"torque_limit": 0.01}).solve()
 
 

@@ -17,13 +17,25 @@ from quietarm.studies.reproduce.paper import (
     SINGLE_LINK_HALF_1_0,
     SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
+    STUDIED,
     condition_of,
     paper_points,
 )
 from quietarm.studies.reproduce.recompute import Effort, Reproduction, recompute_paper
 from quietarm.studies.reproduce.report import TITLES, reproduction_report
-from short_paper import SHORT
 
+SHORT = Effort(
+    full=True,
+    searches={
+        "vepso": {"population": 20, "generations": 40},
+        "nsga2-paper": {"population": 20, "generations": 3},
+    },
+    starts=1,
+    other_starts=1,
+    points=3,
+    systems=STUDIED,
+    free_motion={"starts": 1, "tolerance": 0.05},
+)
 ROUNDED = 1 + 1e-6
 """Room for two solves of one problem to end at the same optimum."""
 
@@ -37,6 +49,12 @@ GRADIENT = {
     ARM_THREE_QUARTERS: (0.1379, 0.1365),
     ARM_WHOLE: (0.1954, 0.1935),
 }
+
+
+@pytest.fixture(scope="module")
+def reproduction():
+    """The paper recomputed; how well searches find is tested where they are."""
+    return recompute_paper(SHORT)
 
 
 @pytest.mark.parametrize("case", GRADIENT, ids=lambda case: case.name)
