@@ -38,15 +38,15 @@ class Job:
     problem : NamedProblem
         The problem, or the name of one of `PROBLEMS`.
     method : str, pymoo Algorithm or callable
-        A search of `PRESETS`, as it is or polished by the gradient (``"nsga2+polish"``); a method
+        A search of `PRESETS`, alone or polished by the gradient (``"nsga2+polish"``); a method
         of `GRADIENT`, as ``"epsilon"`` or ``"weighted:ipopt"``; an algorithm of pymoo that was not
-        run yet; or a function of your own, called with the problem's recorded function, seed and
+        run yet; or your own function, called with the problem's recorded function, seed and
         budget, of whose candidates the first `budget` count.
     seed : int
         Seed of the random numbers.
     budget : int, optional
-        Evaluations of a search; those of its preset by default. The gradient's methods end by
-        themselves and have none.
+        Evaluations of a search; those of its preset by default. Gradient methods stop when they
+        have converged, and have none.
     settings : mapping, optional
         Of the method: what `search` takes, ``population`` too; ``points`` of a front by the
         gradient, ``starts`` of multistart.
@@ -87,14 +87,14 @@ class Job:
 
     @property
     def name(self) -> str:
-        """Its place in a folder, without the ending."""
+        """Its file in a folder, without the ending."""
         spent = "" if self.budget is None else f"{self.budget}-evaluations-"
         return f"{self.problem.name}/{self.label.replace(':', '-by-')}/{spent}seed{self.seed}"
 
     def run(self) -> Front:
-        """Find the front, with its quality on the way; points by CVODES.
+        """Find the front, with its quality during the run; points by CVODES.
 
-        Its ``settings`` name the problem; its last mark has cost and quality at the end.
+        Its ``settings`` name the problem; its last mark has effort and quality at the end.
         """
         reference = self.problem.reference()
         if (self.problem, self.label) not in _rehearsed:
@@ -223,10 +223,10 @@ def run_jobs(
     part: tuple[int, int] = (1, 1),
     report: Report = lambda job, front, done, total: None,
 ) -> dict[Job, Front]:
-    """Run jobs whose files are not there yet.
+    """Run the jobs that have no file yet.
 
-    Each is a file of its own, written whole as soon as it is done: after any stop the same call
-    goes on, and what is lost are the jobs that were under way.
+    Each completed job is a file. After an interruption the same call continues; only the jobs that
+    were in progress are lost.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ def run_jobs(
         When there is no job, or one twice, a file is of another problem or other versions, a
         number is out of range, or no scheduler answers.
     LostJobsError
-        At the end, when jobs failed, or their workers died twice.
+        At the end, if jobs failed, or their workers died twice.
     """
     workers = whole("workers", workers, 1, 1024)
     index, parts = whole("part", part[0], 1, part[1]), whole("parts", part[1], 1)

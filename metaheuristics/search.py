@@ -28,7 +28,7 @@ SEARCH_RESIDUAL = 1e-3
 
 @dataclass(frozen=True)
 class SearchProgress:
-    """Where a search is, after a generation.
+    """Progress of a search after a generation.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class SearchProgress:
     hypervolume : float
         Share of the reference box that is dominated.
     evaluations, failed, infeasible : int
-        Candidates evaluated, and those among them that were not finite, and that broke a limit.
+        Candidates evaluated, and those among them that were not finite, and that violated a limit.
     seconds : float
         Processor time of the search.
     """
@@ -103,8 +103,7 @@ def search(
         Candidates in all, in place of generations: the search ends after exactly so many, in the
         middle of a generation if need be.
     settings : mapping, optional
-        What else a method known by name is set to, as ``{"crossover": 0.7}``; `Preset.settings`
-        says what it has.
+        Other settings of a method known by name, as ``{"crossover": 0.7}``; see `Preset.settings`.
     seed : int
         Seed of the random numbers.
     threads : int
@@ -112,14 +111,14 @@ def search(
     start : Front, optional
         Its points are in the first population, as many as that holds.
     reference : Reference, optional
-        Scale of the quality on the way, as jobs have it.
+        Scale of the quality during the search, as in jobs.
     report : callable, optional
         Called with a `SearchProgress` after every generation.
 
     Returns
     -------
     Front
-        At most 100 of the points found that no other dominates, with figures by CVODES.
+        At most 100 of the non-dominated points found, with values by CVODES.
 
     Raises
     ------

@@ -12,14 +12,14 @@ from quietarm.ocp import Front
 
 @dataclass(frozen=True)
 class Spread:
-    """Quartiles of a figure over seeds, of values that exist; a missing one counts as infinite.
+    """Quartiles of a quantity over seeds: observed values; a missing one counts as infinite.
 
     Attributes
     ----------
     lower, median, upper : float
-        Quartiles over all seeds; infinite where they fall on a seed without the figure.
+        Quartiles over all seeds; infinite if they fall on a seed without a value.
     count, seeds : int
-        How many seeds have the figure, of how many.
+        How many seeds have a value, of how many.
     """
 
     lower: float

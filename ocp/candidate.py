@@ -44,10 +44,10 @@ _RADIANS_A_SAMPLE = 0.003
 
 @dataclass(frozen=True, eq=False)
 class Candidate(Ranged):
-    """A motion of a task, judged by CVODES; what is asked for is computed once.
+    """A motion of a task, evaluated by CVODES; each quantity is computed when it is first read.
 
-    On an uncertain task residual and deflection are the worst of all scenarios, all else is of the
-    nominal plant.
+    For an uncertain task residual and deflection are the largest over the scenarios; all else is of
+    the nominal plant.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Candidate(Ranged):
     Raises
     ------
     ValueError, SolverFailedError
-        By what is asked for, when the residual window is too long, or CVODES cannot follow.
+        When a quantity is read, if the residual window is too long, or CVODES fails.
     """
 
     task: PointToPoint
@@ -101,7 +101,7 @@ class Candidate(Ranged):
 
     @cached_property
     def residual(self) -> float:
-        """F1: largest tip displacement after arrival of what is missed of the wanted state [m]."""
+        """F1: largest tip displacement after arrival, from the wanted free vibration [m]."""
         missed = self.task.missed(self.arrival)
         each = zip(self.scenarios, missed, strict=True)
         return max(float(one._vibration.peak(state)) for one, state in each)
@@ -113,7 +113,7 @@ class Candidate(Ranged):
 
     @cached_property
     def motion(self) -> Motion:
-        """All figures; peaks are those between the samples."""
+        """All values; peaks include those between the samples."""
         task, joint = self.task, self._samples.motion
         past_target = (self._largest(joint.angle[None]) - task.target) * np.sign(task.span)
         known = [one for one in QUANTITIES.values() if one.name != "jerk" or self.path.has_jerk]

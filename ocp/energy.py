@@ -27,9 +27,9 @@ class Energy(ABC):
     """Weight of the absolute power, 0 or more; its sign changes are found."""
 
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
-        """Power [W] that is spent beside, by joint torque [N m] and speed [rad/s].
+        """The smooth integrand [W], by joint torque [N m] and speed [rad/s].
 
-        Of smooth operations that work element by element.
+        In smooth operations that work element by element.
         """
         return 0.0
 
@@ -79,7 +79,8 @@ class CopperLoss(Energy):
     Parameters
     ----------
     motor_constant : float
-        Torque at the joint by the root of the loss [N m/W^0.5]: the motor's, times the gear ratio.
+        Joint torque over the square root of the loss [N m/W^0.5]: the motor's, times the gear
+        ratio.
     """
 
     name = "copper"

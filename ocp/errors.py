@@ -14,7 +14,7 @@ class SolverFailedError(QuietarmError):
 
 
 class InfeasibleTaskError(SolverFailedError):
-    """No motion of the given profile meets the task; the text says what would be feasible."""
+    """No motion of the given profile is feasible; the text says what would be."""
 
 
 class FileFormatError(QuietarmError, ValueError):
@@ -35,7 +35,7 @@ class SolveStatus(Enum):
 
     @property
     def solved(self) -> bool:
-        """Whether there is an answer: a local optimum, or one that hardly gets any better."""
+        """Whether there is an answer: a local optimum, or a feasible motion close to one."""
         return self in (SolveStatus.OPTIMAL, SolveStatus.ACCEPTABLE)
 
     @property
@@ -55,8 +55,8 @@ _TEXTS = {
     SolveStatus.OPTIMAL: "The solver found a local optimum.",
     SolveStatus.ACCEPTABLE: "The solver stopped at a feasible motion, where the objective hardly "
     "decreased any more; more steps or another seed may improve it.",
-    SolveStatus.INFEASIBLE: "The solver converged to an infeasible motion; allow a larger residual, "
-    "wider limits, a longer duration or more terms.",
+    SolveStatus.INFEASIBLE: "The solver converged to an infeasible motion; allow a larger "
+    "residual, wider limits, a longer duration or more terms.",
     SolveStatus.ITERATION_LIMIT: "The solver ran out of iterations; try another seed, more starts "
     "or a bound on the coefficients.",
     SolveStatus.NUMERICAL_TROUBLE: "The solver failed numerically; try another seed, fewer terms "

@@ -97,7 +97,7 @@ def coefficient_bound(value: object) -> float:
 
 @dataclass(frozen=True)
 class Verification:
-    """How far the fixed steps that the answer was found with are from the independent integrator.
+    """Differences between the solver's fixed steps and the independent integrator, CVODES.
 
     Attributes
     ----------
@@ -115,13 +115,13 @@ class Verification:
 
     @property
     def energy_share(self) -> float:
-        """How far the energies differ, as a share of the independent integrator's."""
+        """Relative difference of the energies."""
         energy = abs(self.fixed_step_energy - self.energy_difference)
         return abs(self.energy_difference) / max(energy, sys.float_info.min)
 
     @property
     def agrees(self) -> bool:
-        """Whether the figures count as verified, within `AGREEMENT`, and `REST` at rest."""
+        """Whether the values count as verified, within `AGREEMENT`, and `REST` at rest."""
         residual = abs(self.fixed_step_residual - self.residual_difference)
         close = abs(self.residual_difference) <= AGREEMENT * residual + REST
         return self.energy_share <= AGREEMENT and close

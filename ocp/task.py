@@ -82,17 +82,17 @@ class PointToPoint:
         [m] and rate of change of the joint's acceleration [rad/s^3] on the way; or of each the
         least value and the largest one, as (-30, 40).
     torque_speed : sequence of (float, float), optional
-        The most that the drive gives, torque [N m] at speed [rad/s], as [(1.5, 0), (0.8, 20)]: see
+        Largest torque [N m] of the drive at speeds [rad/s], as [(1.5, 0), (0.8, 20)]: see
         `TorqueSpeedLine`.
     residual_window : float, optional
-        How long after arrival the residual vibration is watched [s]; eq (11) has 1 s.
+        Time after arrival in which the residual is measured [s]; eq (11) has 1 s.
     initial, final : ModalState, optional
-        What rings already at the start, in every scenario, and what is wanted on arrival; at rest
-        by default. The residual is how far a tip is from the free vibration that begins with it.
+        States at the start (of every scenario) and wanted on arrival; at rest by default. The
+        residual is measured from the free vibration that begins with `final`.
     energy : Energy, optional
         What counts as F2; the paper's absolute power by default.
     uncertainty : Uncertainty, optional
-        How far the plant's parameters may be wrong; not at all by default.
+        Ranges of the plant's parameter errors; none by default.
 
     Raises
     ------
@@ -189,19 +189,19 @@ class PointToPoint:
 
     @property
     def final_state(self) -> tuple[float, ...]:
-        """The same as wanted on arrival."""
+        """W [m], then W' [m/s] wanted on arrival."""
         return self._numbers_of(self.final)
 
     def _numbers_of(self, state: ModalState | None) -> tuple[float, ...]:
         return (0.0,) * (2 * self.plant.modes) if state is None else (*state.W, *state.dW)
 
     def missed(self, arrival: ArrayLike) -> NDArray[np.float64]:
-        """What states on arrival miss of the wanted one: what vibrates on where rest is wanted."""
+        """States on arrival less the wanted one."""
         return np.asarray(arrival) - self.final_state
 
     @property
     def ranges(self) -> Mapping[str, float]:
-        """Largest relative errors of the plant's parameters by name; none where it is certain."""
+        """Largest relative errors of the plant's parameters by name; may be empty."""
         return {} if self.uncertainty is None else self.uncertainty.ranges
 
     @property

@@ -1,4 +1,4 @@
-"""Plants with errors of their parameters, and how far a task's plant may be wrong."""
+"""Perturbed plants, and the uncertainty of a task."""
 
 from __future__ import annotations
 
@@ -69,20 +69,20 @@ class ScaledModes(Plant):
 
 
 def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
-    """The plant as it is when the assumed one is wrong.
+    """The perturbed plant.
 
     Parameters
     ----------
     plant : Plant
-        The assumed plant.
+        The nominal plant.
     errors : mapping of str to Expression
-        Relative errors, numbers or symbols: ``"frequency"`` and ``"damping"`` of all modes alike,
-        else of the parameter of that name.
+        Relative errors, numbers or symbols: ``"frequency"`` and ``"damping"`` are those of all
+        modes, other names those of parameters.
 
     Returns
     -------
     Plant
-        A plant with 1 + error times the assumed parameters.
+        A plant with 1 + error times the nominal parameters.
 
     Raises
     ------
@@ -176,15 +176,16 @@ def _check_symbols(plant: Plant, name: str, value: float) -> None:
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """How far the parameters of a task's plant may be wrong, and at which errors that counts.
+    """Ranges of parameter errors, and the scenarios in them that are considered.
 
-    Residual and deflection are then the largest of all scenarios, all else of the nominal plant.
+    Residual and deflection are then the largest over the scenarios; all else is of the nominal
+    plant.
 
     Parameters
     ----------
     ranges : mapping of str to float
-        Largest relative errors by name, as 0.1 for 10 %: of ``"frequency"`` and ``"damping"``, of
-        all modes alike, and of any parameter of the plant.
+        Largest relative errors by name, as 0.1 for 10 %: of ``"frequency"`` and ``"damping"`` of
+        all modes, and of any parameter of the plant.
     samples : sequence of sequence of float, optional
         Errors of the scenarios beside the nominal plant, in that order; all corners by default.
 

@@ -41,7 +41,7 @@ class ExactDuplicates(DuplicateElimination):
 
 
 class PaperNSGA2(NSGA2):
-    """NSGA-II as the paper sets it: crossover rate 0.8, mutation rate 0.01 a gene.
+    """NSGA-II with the paper's settings: crossover rate 0.8, mutation rate 0.01 for each gene.
 
     pymoo's polynomial mutation has one probability for an individual and one for a gene; the
     paper's rate is read as that of a gene, and any individual may mutate. What the paper leaves

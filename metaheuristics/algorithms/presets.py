@@ -64,7 +64,7 @@ class Preset:
 
     @property
     def settings(self) -> tuple[Setting, ...]:
-        """What it may be set to, beside population and generations."""
+        """Its settings beside population and generations."""
         return tuple(Setting.of(argument, value) for argument, value in self.defaults.items())
 
     def build(self, population: int, settings: Mapping[str, object] | None = None) -> Algorithm:
@@ -118,7 +118,7 @@ class Preset:
     def evaluations(self, population: int, generations: int) -> int:
         """Candidates that a search evaluates.
 
-        They are fewer only where crossing finds too few that differ from those that are known.
+        They are fewer only if crossover finds too few new ones.
         """
         return self.swarms * population * generations
 

@@ -63,7 +63,7 @@ class VEPSO(Algorithm):
     rule : VelocityRule
         `CONSTRICTION`, `INERTIA_2002`, `PAPER_GROUP` or constants of your own.
     boundary : {"clip", "reflect"}
-        What happens to a particle that leaves the box.
+        What happens to a particle beyond the box.
     velocity_limit : float
         Largest velocity of a coordinate as a fraction of its box; Eberhart and Shi (2000) advise 1.
     archive_size : int, optional

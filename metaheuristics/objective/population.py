@@ -32,7 +32,7 @@ def search_steps(task: PointToPoint, profile: JointProfile) -> int:
 
 @dataclass(frozen=True)
 class PopulationValues:
-    """What a population costs; rows are candidates.
+    """Objectives and constraint violations of a population; rows are candidates.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class PopulationValues:
     energy : ndarray, shape (candidates,)
         F2 [J].
     violations : ndarray, shape (candidates, limits)
-        Each limited peak over its limit, less 1: positive where the limit is broken.
+        Each limited peak over its limit, less 1: positive if the limit is violated.
     """
 
     residual: NDArray[np.float64]
@@ -52,9 +52,9 @@ class PopulationValues:
 class PopulationObjective:
     """F1, F2 and the violations of a task's limits for many candidates at once.
 
-    Start, target, duration, what rings at the start, limits and the residual matrix are parameters
-    of the compiled function: an objective for another task of the same plant, profile and limited
-    quantities costs no build.
+    Start, target, duration, initial state, limits and the residual matrix are parameters
+    of the compiled function: an objective for another task with the same plant, profile and limited
+    quantities is not compiled again.
 
     Parameters
     ----------

@@ -104,12 +104,12 @@ class NamedProblem:
         return type(self), tuple(vars(self).values())
 
     def function(self, **settings: Any) -> MoveFunction:
-        """It as a function of arrays; settings as for `MoveFunction`: steps and threads."""
+        """The problem as a function of arrays; settings of `MoveFunction`: steps and threads."""
         peaks = (self.peak,) if self.peak else ()
         return MoveFunction(self.task, self.profile, bound=self.bound, peaks=peaks, **settings)
 
     def pymoo(self, **settings: Any) -> MoveProblem:
-        """It as a pymoo problem with its reference front; settings as for `function`."""
+        """The problem for pymoo, with its reference front; settings as for `function`."""
         from quietarm.metaheuristics.problems.pymoo_problem import MoveProblem
 
         return MoveProblem(self.function(**settings), *self.optimum())
@@ -150,7 +150,7 @@ class NamedProblem:
         return self.given is None and PROBLEMS.get(self.name) == self
 
     def recorded(self) -> RecordedFunction:
-        """It as a function of arrays that keeps what it is asked."""
+        """The problem as a function of arrays that records its candidates."""
         from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
         return RecordedFunction(self)
@@ -212,7 +212,7 @@ def problem_of(name: str) -> NamedProblem:
 _LINK, _ARM, _DUAL = SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()
 _LINK_BOX, _ARM_BOX = 0.2, 0.5  # eqs (12) and (17)
 _ROBUST_BOX = 0.5
-"""In the paper's box no motion leaves less than 17 mm where the frequency is 10 % wrong."""
+"""In the paper's box every motion has more than 17 mm with frequency errors of 10 %."""
 _LINK_SIXTH = PointToPoint(_LINK, pi / 6, 0.8)
 _ARM_HALF = PointToPoint(_ARM, pi / 2, 0.8)
 

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 class MoveFunction:
     """The objectives and the violations of a move, for many candidates at once.
 
-    All objectives are minimised; a candidate keeps the limits where no violation is positive.
+    All objectives are minimised; a candidate is feasible if no violation is positive.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class MoveFunction:
     bound : float, optional
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
     peaks : sequence of str
-        Quantities whose largest absolute value on the way is an objective, too, as ``"torque"``.
+        Quantities whose peak during the move is an objective, too, as ``"torque"``.
     steps : int, optional
         Steps of the simulation; those of every search by default, as of `search_steps`.
     threads : int

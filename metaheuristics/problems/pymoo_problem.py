@@ -29,7 +29,7 @@ class MoveProblem(Problem):
     Attributes
     ----------
     failed, infeasible : int
-        Candidates so far whose figures were not finite, and that broke a limit.
+        Candidates so far whose values were not finite, and that violated a limit.
     """
 
     def __init__(

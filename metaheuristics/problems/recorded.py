@@ -24,7 +24,7 @@ _ROUNDING = 1e-9
 
 
 class RecordedFunction(MoveFunction):
-    """A problem's function that keeps every candidate that none dominates, with marks on the way.
+    """A problem's function that records non-dominated candidates, and quality during the run.
 
     It has the accuracy of all searches.
 
@@ -60,7 +60,7 @@ class RecordedFunction(MoveFunction):
         return found, violations
 
     def front(self, method: str, seed: int | None = None) -> Front:
-        """What was asked until now, as the front of a method; ValueError when nothing was asked."""
+        """The candidates until now, as the front of a method; ValueError if there are none."""
         if not self.record.evaluations:
             raise ValueError("no candidate was asked for; let the library call the function first")
         seed = None if seed is None else whole("seed", seed, 0)

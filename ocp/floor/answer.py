@@ -61,8 +61,8 @@ class Floor(MotionAnswer):
     motion : Motion
         Residual, energy and diagnostics, by the independent integrator.
     levels : tuple of Level
-        The grids, coarse to fine. The motion is that of the last, or where the energy rose on the
-        way, of a coarser one that needs less.
+        The grids, coarse to fine. The motion is that of the last, or of a coarser one if that has a
+        lower energy.
     starts : tuple of float
         Energy [J] at which each solved start ended, all on the second grid.
     """
@@ -93,17 +93,17 @@ class Floor(MotionAnswer):
 
     @property
     def change(self) -> float:
-        """Fall of the energy from the last grid but one to the last [J]; below 0 where it rose."""
+        """Decrease of the energy from the last but one grid to the last [J]; may be negative."""
         return self.levels[-2].energy - self.levels[-1].energy
 
     @property
     def settled(self) -> bool:
-        """Whether that is within the tolerance; else the refinement ended before."""
+        """Whether this is within the tolerance; otherwise the refinement ended early."""
         return abs(self.change) <= self.provenance.settings.tolerance * self.levels[-1].energy
 
     @property
     def ratio(self) -> float | None:
-        """The last fall of the energy over the one before; None where two falls are not known."""
+        """The last decrease of the energy over the one before; None if there are not two."""
         falls = [one.energy - other.energy for one, other in pairwise(self.levels)][-2:]
         return falls[1] / falls[0] if len(falls) == 2 and min(falls) > 0 else None
 

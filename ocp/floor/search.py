@@ -46,10 +46,10 @@ def energy_floor(
     seed: int = 0,
     tolerance: float = 0.005,
 ) -> Floor:
-    """Find the least energy with which any joint motion does a move and arrives at rest.
+    """Find the best motion without a parametrisation: an upper estimate of the least energy.
 
-    The acceleration of the joint is free on every interval of a grid, or its jerk for a smooth
-    motion. Where the speed would best jump, the grid is finer.
+    The acceleration of the joint is a decision variable on every interval of a grid, or its jerk
+    for a smooth motion. The grid is refined where the acceleration has short pulses.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def energy_floor(
     starts, seed : int
         How many starts: the plain cycloid, the plan of six terms, then random motions of the seed.
     tolerance : float
-        Relative change of the energy at which the grid is refined no more.
+        Relative change of the energy at which the refinement of the grid ends.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def energy_floor(
     ValueError
         When an argument is out of range, or the move takes too many periods of the fastest mode.
     InfeasibleTaskError
-        When no motion meets the limits; the text says what would be feasible.
+        When no motion satisfies the limits; the text says what would be feasible.
     SolverFailedError
         When no start ended at an optimum for another reason.
     """

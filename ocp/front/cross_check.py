@@ -44,7 +44,7 @@ class CrossCheck:
     solver : str
         The other solver.
     points : tuple of Compared
-        From the still end to the cheap one.
+        From the smallest residual to the least energy.
     """
 
     solver: str
@@ -52,7 +52,7 @@ class CrossCheck:
 
     @property
     def largest(self) -> float:
-        """The largest difference, whichever is dearer; NaN where a point was not found."""
+        """The largest relative difference in energy; NaN if a point was not found."""
         return float(np.max(np.abs([point.difference for point in self.points])))
 
 
@@ -63,8 +63,7 @@ def cross_check(front: Front, points: int = 7, report: Report = no_report) -> Cr
     Parameters
     ----------
     front : Front
-        A front of any method; what no setting names was found by sequential quadratic programs or
-        by no gradient at all, and is checked by IPOPT.
+        A front of any method; if its settings name no solver, IPOPT checks it.
     points : int
         How many points: both ends, and others spread evenly between.
     report : callable, optional
@@ -73,8 +72,8 @@ def cross_check(front: Front, points: int = 7, report: Report = no_report) -> Cr
     Returns
     -------
     CrossCheck
-        What both found. Where the plain cycloid leads to a dearer minimum, random starts follow,
-        and in the end the point itself.
+        The energies of both. If the plain cycloid leads to a higher energy, random starts
+        follow, and in the end the point itself.
 
     Raises
     ------

@@ -53,12 +53,12 @@ def epsilon_front(
     report: Report = no_report,
     solver: SolverName = "sqp",
 ) -> Front:
-    """Find the front of residual and energy by the gradient, least energy at each residual limit.
+    """Find the front of residual and energy by the gradient, with the epsilon-constraint method.
 
-    Both ends are found first, from several starts. Then come a few limits between them, from both
-    ends and a random start, all at once. These tell how to space the points so that they lie
-    evenly in both objectives; all points are then solved at once, each from the solutions on either
-    side.
+    The energy is minimised for each of many residual limits. Both ends are found first, from
+    several starts. A few limits between them follow, from both ends and a random start, all at
+    once. From these the points are spaced evenly in both objectives; all points are then solved at
+    once, each from the solutions on either side.
 
     Parameters
     ----------
@@ -76,9 +76,9 @@ def epsilon_front(
     Returns
     -------
     Front
-        Method ``"epsilon"``; figures by the independent integrator. Points that could not be found
-        are in its `failures`. Of an uncertain task it is the front of the scenarios: a point's
-        residual is the largest over them.
+        Method ``"epsilon"``; values by CVODES. Points that could not be found are in its
+        `failures`. For an uncertain task it is the front of the scenarios: a point's residual is
+        the largest over them.
 
     Raises
     ------

@@ -38,7 +38,7 @@ LEAST_REFERENCE = 1e-3
 
 @dataclass(frozen=True)
 class Front(Saved):
-    """Points of which none is better than another in both residual and energy.
+    """Non-dominated points in the plane of residual and energy.
 
     Attributes
     ----------
@@ -62,15 +62,15 @@ class Front(Saved):
     iterations : int
         Iterations of the gradient's solver.
     failed : int
-        Candidates whose figures were not finite, or absurdly large; they never enter a front.
+        Candidates whose values were not finite, or absurdly large; they never enter a front.
     infeasible : int
-        Candidates that broke a limit of the task; not in the front either.
+        Candidates that violated a limit of the task; not in the front either.
     failures : tuple of FailedPoint
-        Points of a sweep that could not be found, with the reason.
+        Points that could not be found, with the reason.
     gaps : tuple of (float, float)
         Ranges of the residual [m] in which a weighted sum has no point, whatever the weight.
     history : tuple of Mark
-        What it had found on the way, the end last.
+        Its quality during the run, the end last.
     complete : bool
         Whether the method ran to its end.
     versions : dict of str to str
@@ -82,7 +82,7 @@ class Front(Saved):
     ------
     ValueError
         When an entry is not of its kind, a point has other than the profile's number of
-        coefficients or is not finite, or the points are out of order, or one beats another.
+        coefficients or is not finite, or the points are out of order, or one is dominated.
     """
 
     kind: ClassVar[str] = "front"
@@ -182,10 +182,10 @@ class Front(Saved):
         seed: int | None = None,
         evaluations: int | None = None,
     ) -> Self:
-        """The front of motions that were found elsewhere.
+        """The front of motions that another program found.
 
-        Each motion is evaluated by CVODES; those that another beats, or that break a limit of the
-        task, are left out.
+        Each motion is evaluated by CVODES; dominated motions, and those that violate a limit of the
+        task, are dropped.
 
         Parameters
         ----------
@@ -201,7 +201,7 @@ class Front(Saved):
         Returns
         -------
         Front
-            Its `failed` are those that CVODES cannot follow, `infeasible` those that break a limit.
+            Its `failed` are those at which CVODES fails, `infeasible` those that violate a limit.
 
         Raises
         ------

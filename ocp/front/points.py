@@ -24,9 +24,9 @@ at each, where they can."""
 class FrontPoint:
     """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J].
 
-    Any numbers will do, NumPy's as well. `Front` checks which points it may have. The
-    `shadow_prices` are by how much the least energy falls if a limit is widened [J by its unit], as
-    of a `Plan`: that of the residual is the front's slope. They are empty where it is not known.
+    `Front` checks its points. The `shadow_prices` are the decrease of the least energy per unit of
+    a widened limit [J by its unit], as of a `Plan`: that of the residual is the slope of the
+    front. They are empty if they are not known.
     """
 
     coefficients: tuple[float, ...]
@@ -44,7 +44,7 @@ class FrontPoint:
 
 @dataclass(frozen=True)
 class FailedPoint:
-    """A point that a sweep looked for and did not find.
+    """A point of a front that was not found.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class FailedPoint:
 
 @dataclass(frozen=True)
 class Quality:
-    """How near points come to the reference front of their problem.
+    """How close points are to the reference front of their problem.
 
     All are scaled: 0 is the reference front's least and 1 its largest value of each objective.
 
@@ -85,7 +85,7 @@ class Quality:
 
 @dataclass(frozen=True)
 class Mark:
-    """What a method had found at one moment, and what that had cost.
+    """Quality and effort of a method at one moment.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class Mark:
     quality : Quality or None
         Of the points; None without a reference front, or without a point.
     between : Quality or None
-        Once more with the motions between neighbouring points; at the end alone.
+        The same with motions between neighbouring points; only at the end.
     """
 
     evaluations: Count
@@ -113,12 +113,12 @@ class Mark:
 
 
 def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
-    """The points that no other beats in both objectives, in order of residual.
+    """The non-dominated points, in order of residual.
 
     Parameters
     ----------
     points : iterable of FrontPoint
-        Any points; those that are not finite are left out, of equal ones the first is kept.
+        Any points; those that are not finite are dropped, of equal ones the first is kept.
 
     Returns
     -------

@@ -20,7 +20,7 @@ class Gain:
     Attributes
     ----------
     residual : float
-        Residual of the point, which the improved one keeps [m].
+        Residual of the point, the limit of the improved one [m].
     before, after : float
         Energy [J]; the same where nothing better was found.
     """
@@ -68,8 +68,8 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     Returns
     -------
     Polish
-        The improved front, whose method is that of the front and ", polished"; its settings tell by
-        which solver.
+        The improved front; its method is that of the front and ", polished", and its settings name
+        the solver.
 
     Raises
     ------

@@ -48,8 +48,8 @@ def weighted_front(
 
     Both objectives are scaled to the ends of the front, which are found first. Weights are those of
     the chord between neighbouring points (the non-inferior set estimation of Cohon, Church and
-    Sheer, 1979), the longest first: where such a solve ends no further below than its chord, no
-    weight has a point between its ends, because the front bends the wrong way there.
+    Sheer, 1979), the longest first. If the minimum does not lie below the chord, no weight has a
+    point between its ends, because the front is not convex there.
 
     Parameters
     ----------
@@ -65,9 +65,8 @@ def weighted_front(
     Returns
     -------
     Front
-        Method ``"weighted"``; figures by the independent integrator. Its `gaps` are the ranges of
-        the residual that no weight reaches, where the weights were not given; given ones stand in
-        ``settings["weights"]``.
+        Method ``"weighted"``; values by CVODES. Its `gaps` are the ranges of the residual that no
+        weight reaches, unless weights were given; these are in ``settings["weights"]``.
 
     Raises
     ------

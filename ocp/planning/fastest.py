@@ -68,9 +68,9 @@ def fastest_move(
     tolerance: float = TOLERANCE,
     **settings: Any,
 ) -> Fastest:
-    """Find the shortest duration in which a move keeps its limits and arrives still.
+    """Find the shortest duration in which a move keeps its limits and arrives at rest.
 
-    Durations are tried by bisection, each from the coefficients of the last one that did.
+    Durations are found by bisection, each from the coefficients of the last feasible one.
 
     Parameters
     ----------
@@ -78,8 +78,8 @@ def fastest_move(
         The move with its limits, of which there is one at least; its duration is where the search
         begins. A plant may be uncertain.
     profile, residual_limit, bound, **settings
-        As for `plan_move`. Without a profile the duration is that of 12 terms, and the plan has as
-        many as it chooses; its record states the duration of six.
+        As for `plan_move`. Without a profile the duration is that of 12 terms, and the plan has its
+        default number of terms; its record has the duration of six.
     tolerance : float
         Share of the duration to which it is found.
 
@@ -93,7 +93,7 @@ def fastest_move(
     ValueError
         When nothing limits the move, or an argument is out of range.
     InfeasibleTaskError
-        When no duration will do.
+        When no duration is feasible.
     """
     asked, profile = profile, SIX if profile is None else profile
     positive("tolerance", tolerance)

@@ -49,10 +49,10 @@ class Moves:
     status, reasons, iterations
         How each ended, the same in the solver's words, and after how many iterations.
     shadow_prices : tuple of mapping of str to float
-        By how much each least energy falls if a limit is widened [J by the limit's unit]; of the
-        residual, too, where rest on arrival is asked for. Empty where there is no plan.
+        Decrease of each least energy per unit of a widened limit [J by the limit's unit]; of the
+        residual also if rest on arrival is required. Empty where there is no plan.
     by_cvodes : ndarray of bool, shape (moves,)
-        Whose figures CVODES computed; the others are by finer steps that it confirmed.
+        Which values are by CVODES; the others are by finer steps, which CVODES confirmed.
     """
 
     tasks: tuple[PointToPoint, ...]
@@ -93,9 +93,9 @@ def plan_moves(
     Returns
     -------
     Moves
-        The plans. Moves at rest and without limits are certified together, by a finer rule in one
+        The plans. Moves at rest and without limits are verified together, with finer steps in one
         call, and by CVODES at one in ten and wherever the two differ; all others by CVODES. A move
-        that no certified motion was found for has a status that says so, and no figures.
+        without a verified motion has a status that says so, and no values.
 
     Raises
     ------

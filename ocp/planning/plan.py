@@ -63,12 +63,12 @@ class Plan(MotionAnswer):
     provenance : Provenance
         Method, settings, versions, time.
     worst : Worst or None
-        Of a plant that is uncertain, the errors within its ranges at which the motion leaves most,
-        between the samples as well; else None.
+        For an uncertain task the worst case: the errors within its ranges with the largest
+        residual, also between the scenarios; else None.
     shadow_prices : mapping of str to float
-        By how much the least energy falls if a limit is widened [J by the limit's unit]: sums of
-        multipliers, by the limit's name. Of the residual, too, where rest on arrival was asked for;
-        empty where nothing was optimised.
+        Decrease of the least energy per unit of a widened limit [J by the limit's unit]: sums of
+        multipliers, by the limit's name. Of the residual also if rest on arrival was required;
+        empty if nothing was optimised.
     """
 
     kind: ClassVar[str] = "plan"
@@ -91,9 +91,9 @@ class Plan(MotionAnswer):
 
     @property
     def excess(self) -> float | None:
-        """Share by which `worst` passes the residual limit, negative where it keeps it.
+        """Relative excess of `worst` over the residual limit, negative if the limit is kept.
 
-        None where the plant is not uncertain, or the gradient was not asked for a limit.
+        None if the task is not uncertain, or no limit was asked for.
         """
         settings = self.provenance.settings
         if self.worst is None or settings is None or settings.residual_limit == 0:
@@ -129,7 +129,7 @@ class Plan(MotionAnswer):
 
     @property
     def turns_back(self) -> float:
-        """How far the joint goes back on its way [rad], on either side of the target."""
+        """How far the joint moves backwards [rad], on either side of the target."""
         times = np.linspace(0.0, self.task.duration, _LOOKS)
         gone = np.sign(self.task.span) * self.path(times)
         return float((np.maximum.accumulate(gone) - gone).max())
@@ -197,7 +197,7 @@ def evaluate_coefficients(
     method: str = "given coefficients",
     settings: Mapping[str, Setting] | None = None,
 ) -> Plan:
-    """The figures of one motion of a profile: a plan whose status says that nothing was optimised.
+    """Evaluate one motion of a profile: a plan whose status says that nothing was optimised.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def evaluate_coefficients(
     Raises
     ------
     ValueError, SolverFailedError
-        When coefficients or duration do not fit the profile; when CVODES cannot follow the motion.
+        When coefficients or duration do not fit the profile; when CVODES fails.
     """
     began, settings = time.perf_counter(), {} if settings is None else settings
     if profile is None:

@@ -63,8 +63,8 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
             )
     if residual_limit == 0:
         raise ValueError(
-            "residual limit is 0, but no motion arrives at rest in all scenarios; omit it (default: "
-            "5 % of the plain cycloid's largest deflection) or give one above 0"
+            "residual limit is 0, but no motion arrives at rest in all scenarios; omit it "
+            "(default: 5 % of the plain cycloid's largest deflection) or give one above 0"
         )
     return residual_limit
 
@@ -91,51 +91,48 @@ def plan_move(
         The move and its limits.
     profile : JointProfile, optional
         How the joint moves; by default the cycloid of a polynomial, of six terms without limits,
-        and of 18 or 24 within limits (`ocp.planning.terms`); the plan's record then says what six
-        would cost. The only motion of a profile without coefficients, such as `shaped_cycloid`, is
+        and of 18 or 24 with limits (`ocp.planning.terms`); the plan's record then has the energy of
+        six. The only motion of a profile without coefficients, such as `shaped_cycloid`, is
         evaluated, not optimised.
     residual_limit : float, optional
-        Largest F1 [m]; 0 asks for rest on arrival, or for the task's `final` state, where there
-        are coefficients to choose. By default 0; of an uncertain task, which hardly ever arrives
-        at rest whatever its errors, 5 % of how far the plain cycloid of the same duration bends the
-        nominal plant's tip on its way, or less: what the plan of the nominal plant leaves in the
-        worst case. Where neither can be reached, the least worst case. `Plan.residual_limit` is
-        the one that was taken.
+        Largest F1 [m]; 0, the default, requires rest on arrival, or the task's `final` state. For
+        an uncertain task, where rest in all scenarios is infeasible, the default is 5 % of the
+        largest deflection during the plain cycloid of the same duration on the nominal plant, or
+        the worst case of the nominal plant's plan if that is smaller. If neither is feasible, it is
+        the least worst case. `Plan.residual_limit` is the limit that was used.
     bound : float, optional
         Largest absolute coefficient; none by default.
     starts : int
         How many starts: the guess or the plain cycloid first, then random ones; all at once. Once
-        half of them, and more than one, have ended at the least energy found, the others are left.
-        Gaussians and networks take four random starts for each: they have many minima.
+        half of them, and more than one, have ended at the lowest energy, the others are stopped.
+        Gaussians and networks take four random starts for each: they have many local minima.
     seed : int
         Seed of the random starts.
     steps : int, optional
         Steps of the solver's discretisation, chosen from the task by default; they are doubled
         while the verification disagrees.
     guess : array_like, shape (profile.size,), optional
-        Coefficients to start from first, such as a metaheuristic's, to be improved; six without a
-        profile.
+        Coefficients of the first start, such as a metaheuristic's; six without a profile.
     solver : {"sqp", "ipopt"}
-        Sequential quadratic programs, all starts at once, or IPOPT, one after another. Where the
-        first solves no start, IPOPT takes over.
+        Sequential quadratic programming, all starts at once, or IPOPT, one after another. If the
+        first solves no start, IPOPT is tried.
     log : bool
-        Whether the solver prints a line for each of its iterations. Of the quadratic programs it is
-        about the start whose objective is least.
+        Whether the solver prints a line for each iteration; with `"sqp"` it is about the start with
+        the least objective.
 
     Returns
     -------
     Plan
-        The coefficients, with the figures of an independent integrator. Of an uncertain task the
-        residual limit holds between the scenarios as well, as its ``worst`` states; its task has
-        the scenarios that this took.
+        The coefficients, with values by CVODES. For an uncertain task the residual limit holds
+        between the scenarios as well, see ``worst``; its task has the scenarios that were used.
 
     Raises
     ------
     ValueError
         When an argument is out of range.
     InfeasibleTaskError, SolverFailedError
-        When no motion of this profile meets the task, with what would be feasible; when no start
-        ended at an optimum for another reason.
+        When no motion of this profile is feasible, with what would be; when no start ended at an
+        optimum for another reason.
     """
     chosen = profile is None and guess is None
     profile = CycloidPolynomial() if profile is None else profile

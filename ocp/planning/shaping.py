@@ -24,13 +24,13 @@ def shaped_cycloid(
     Parameters
     ----------
     task : PointToPoint
-        The move; of an uncertain plant the assumed one counts.
+        The move; of an uncertain task the nominal plant counts.
     shaper : str
         ``"zv"``, ``"zvd"`` or ``"ei"``.
     at : str, optional
         Where the plant's frequencies and damping are taken: with the joint at the target, or as
-        the average over time along the plain cycloid. They differ where the frequencies depend on
-        the joint angle; docs/physics.md, 'Input shaping', says which leaves less.
+        the average over time along the plain cycloid. They differ if the frequencies depend on
+        the joint angle; docs/physics.md, 'Input shaping', compares the two.
 
     Returns
     -------

@@ -101,7 +101,7 @@ def with_bump(fraction: Expression, p: Expression, dp: Expression, ddp: Expressi
 
 @dataclass(frozen=True)
 class CycloidPolynomial(Cycloid):
-    """A cycloid whose input is a polynomial, eqs (1)-(7), with eq (3) mended.
+    """A cycloid whose input is a polynomial, eqs (1)-(7), with eq (3) corrected.
 
     Parameters
     ----------
@@ -129,8 +129,8 @@ class CycloidSpline(Cycloid):
     """A cycloid whose input is a clamped quintic B-spline on even knots.
 
     U = t/TE + sum_j a_j B_j(t/TE), of all B-splines but the first and the last, which are not zero
-    at the ends. a_j is how far control point j lies above the straight line: linear, and each
-    coefficient acts on its own part of the move.
+    at the ends. a_j is the height of control point j above the straight line: U is linear in them,
+    and each coefficient acts on its own part of the move.
 
     Parameters
     ----------

@@ -136,7 +136,7 @@ def convolved(shapers: Sequence[Impulses]) -> Impulses:
 class ShapedCycloid(JointProfile):
     """The plain cycloid convolved with an input shaper; it has no coefficients.
 
-    Every impulse begins a cycloid of its share of the move, shorter than the duration by the
+    A cycloid begins at every impulse, scaled by the impulse, and shorter than the duration by the
     shaper's length.
 
     Parameters
@@ -144,7 +144,7 @@ class ShapedCycloid(JointProfile):
     shaper : str
         A name of `SHAPERS`, such as ``"zv"``.
     frequencies : sequence of float
-        Undamped angular frequencies of the modes to leave out [rad/s], one or more.
+        Undamped angular frequencies of the modes to suppress [rad/s], one or more.
     damping_ratios : sequence of float
         Their damping ratios, between -1 and 1.
 
@@ -199,7 +199,7 @@ class ShapedCycloid(JointProfile):
 
     @property
     def label(self) -> str:
-        """The shaper and the frequencies that it is for."""
+        """The shaper and its design frequencies."""
         frequencies = " and ".join(f"{frequency:.4g}" for frequency in self.frequencies)
         return f"{self.shaper} shaper for {frequencies} rad/s"
 

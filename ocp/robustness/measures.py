@@ -35,7 +35,7 @@ class Figures:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """A motion over the errors of one thing, all else as assumed.
+    """A motion over one parameter error, all other parameters nominal.
 
     Attributes
     ----------
@@ -44,10 +44,10 @@ class Sweep:
     errors : ndarray, shape (errors,)
         Relative errors, even from minus to plus the range; 0 in the middle.
     figures : Figures
-        What the motion leaves and costs at each.
+        Residual, energy and peak torque at each.
     insensitivity : tuple of float, or None
         The errors around 0 between which the residual stays within `Robustness.tolerated`, or the
-        ends of the sweep; None where it is above already without an error.
+        ends of the sweep; None if it is larger even without an error.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Robustness:
     ranges : dict of str to float
         Largest relative errors by name; there is one of the `sweeps` for each.
     cycloid : float
-        Residual of the plain cycloid of the same duration on the `assumed` plant [m].
+        Residual of the plain cycloid of the same duration on the nominal plant [m].
     errors : ndarray, shape (samples, names)
         Errors of the Monte Carlo `samples`, all at once, uniform within the ranges.
     """
@@ -90,7 +90,7 @@ class Robustness:
         return TOLERATED * self.cycloid
 
     def percentile(self, figure: str, share: float) -> float:
-        """What so many percent of the samples stay within, of a figure by its name."""
+        """A percentile of the samples, of a quantity by its name."""
         return float(np.percentile(getattr(self.samples, figure), share))
 
 
@@ -119,7 +119,7 @@ def evaluate_robustness(
     seed: int = 0,
     report: Report | None = None,
 ) -> Robustness:
-    """Evaluate a motion over errors of its plant.
+    """Evaluate a motion on perturbed plants.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def evaluate_robustness(
     samples, seed : int
         Monte Carlo samples, uniform within all ranges at once, and their seed.
     report : callable, optional
-        Is told how many evaluations of how many are done.
+        Called with the number of evaluations done and of all.
 
     Returns
     -------

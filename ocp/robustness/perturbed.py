@@ -76,7 +76,7 @@ def perturbed_figures(
 
 @dataclass(frozen=True)
 class Worst:
-    """The errors within a task's ranges at which a motion leaves most, and its F1 there [m]."""
+    """The worst case of a motion: the errors within a task's ranges, and F1 there [m]."""
 
     errors: Mapping[str, float] = field(hash=False)
     residual: NotNegative
@@ -149,12 +149,12 @@ def _is_peak(values: Array) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What changes with a small relative error of a parameter, over that error.
+    """Derivatives with respect to the relative error of a parameter.
 
     Attributes
     ----------
     parameter : str
-        Its name; ``"frequency"`` and ``"damping"`` are those of all modes alike.
+        Its name; ``"frequency"`` and ``"damping"`` are those of all modes.
     energy : float
         Change of F2 [J].
     residual : float

@@ -32,26 +32,26 @@ _ANGLES = 49
 
 
 class FreeVibration:
-    """How the modes vibrate on after arrival; states are W [m], then W' [m/s].
+    """Free vibration of the modes after arrival; states are W [m], then W' [m/s].
 
-    Where rest is not what is wanted on arrival, pass what a state misses of that
+    If a state other than rest is wanted on arrival, pass the difference from it
     (`PointToPoint.missed`).
 
     Parameters
     ----------
     plant : Plant
-        What vibrates. Its parameters may be columns, of a plant each.
+        The plant. Its parameters may be columns with an entry for each of several plants.
     angle : float or array_like, shape (n,)
-        Where the joint rests [rad]; n vibrations at once have arrays with a leading axis of n.
+        Joint angle [rad]; n vibrations at once have arrays with a leading axis of n.
     window : float
-        How long displacements count after arrival [s]; frequencies and states need none.
+        Time after arrival in which displacements count [s]; frequencies and states need none.
 
     Attributes
     ----------
     matrix : ndarray, shape (2 * modes, 2 * modes)
-        What gives the rates of a state by the state [1/s].
+        Derivative of a state by the state [1/s].
     tips : ndarray, shape (tips, 2 * modes)
-        What gives the tip displacements [m] by the state.
+        Tip displacements [m] by the state.
     fastest : ndarray, shape ()
         Largest angular frequency [rad/s].
 
@@ -89,7 +89,7 @@ class FreeVibration:
 
     @property
     def modes(self) -> list[tuple[float, float]]:
-        """Undamped frequency [rad/s] and damping ratio of each mode that swings, slowest first."""
+        """Undamped frequency [rad/s] and damping ratio of each oscillating mode, slowest first."""
         swinging = [complex(one) for one in self._eigenvalues if one.imag > 0]
         return [(abs(one), -one.real / abs(one)) for one in sorted(swinging, key=abs)]
 

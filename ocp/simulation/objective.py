@@ -123,27 +123,27 @@ _kept_beyond = lru_cache(maxsize=32)(_beyond)
 
 @dataclass(frozen=True)
 class Motion(Ranged):
-    """What a motion costs and asks of the joint, whichever integrator it comes from.
+    """Objectives and peaks of a motion, by any integrator.
 
     Attributes
     ----------
     residual : float
-        F1: largest tip displacement in the residual window after arrival [m], from the free
-        vibration of the state that the task asks for; of none where that is rest.
+        F1: largest tip displacement in the residual window after arrival [m]; if the task has a
+        `final` state, from the free vibration of that state.
     energy : float
         F2: the task's energy, by default the integral of abs(torque * speed) over the move [J].
     net_work : float
-        Integral of torque * speed over the move [J]: what a lossless drive would need.
+        Integral of torque * speed over the move [J]: dissipated and stored energy.
     peak_torque, peak_speed, peak_acceleration : float
         Largest absolute values during the move [N m, rad/s, rad/s^2].
     peak_deflection : float
         Largest absolute tip displacement during the move [m].
     overshoot : float
-        How far the joint passes the target on its way [rad], 0 where it does not.
+        How far the joint exceeds the target [rad], 0 if it does not.
     peak_jerk : float or None
         Largest absolute value during the move [rad/s^3]; None where the acceleration jumps.
     ranges : mapping of str to (float, float)
-        Least and largest value of what the task limits otherwise than by its peak, by quantity.
+        Least and largest value of each quantity that has a limit by direction.
     """
 
     residual: float

@@ -24,7 +24,7 @@ from quietarm.ocp.robustness.perturbed import worst_case, worst_of
 
 @dataclass(frozen=True)
 class Judged:
-    """A motion judged by CVODES, or why there is none.
+    """A motion evaluated by CVODES, or why there is none.
 
     Attributes
     ----------
@@ -63,9 +63,9 @@ def judge(
     task: PointToPoint,
     samples: int = 0,
 ) -> Judged:
-    """Judge a motion of a task's move within ranges of parameter errors, and by its limits.
+    """Evaluate a motion of a task's move within ranges of parameter errors, and by its limits.
 
-    With samples, the insensitivity and the percentiles of so many random plants as well.
+    With samples, also the insensitivity, and percentiles over that many random plants.
     """
     candidate = moved if isinstance(moved, Candidate) else moved.candidate
     nominal = Candidate(task.certain, candidate.path)

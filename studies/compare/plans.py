@@ -28,13 +28,13 @@ def compare_plans(
     *,
     task: PointToPoint | None = None,
 ) -> list[Judged]:
-    """Judge plans of one move and baselines for it, in this order.
+    """Evaluate plans of one move and baselines for it, in this order.
 
     Parameters
     ----------
     plans : mapping of str to Plan
-        By what tables call them. Baselines are those of the first one's move and limits, and all
-        are held against its limits.
+        Plans by their names in tables. Baselines have the move and limits of the first plan, and
+        all are checked against its limits.
     baselines : sequence of str
         Names of `BASELINES`.
     ranges : mapping of str to float, optional
@@ -47,12 +47,12 @@ def compare_plans(
     Returns
     -------
     list of Judged
-        A baseline that the move does not allow says why.
+        A baseline that is impossible for the move says why.
 
     Raises
     ------
     ValueError
-        When the plans are of several moves, or a name or a number is none that there is.
+        When the plans are of several moves, a name is not known or a number is out of range.
     """
     tasks = {"the move": task} if task else {}
     tasks |= {name: plan.task for name, plan in plans.items()}

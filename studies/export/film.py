@@ -48,7 +48,7 @@ Update = Callable[[int], object]
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """Motions on one clock; a notebook shows them where this is a cell's last line."""
+    """An animation of motions in the same time; a notebook shows it as the last line of a cell."""
 
     structures: Sequence[Structure]
     end: float
@@ -113,12 +113,11 @@ def animate(
     rate: float = FRAMES,
     width: int = 800,
 ) -> Film:
-    """Draw structures in motion, side by side and on one clock.
+    """Animate structures side by side in the same time.
 
-    Every link is bent as its mode bends it, and its plant says how (`Plant.structure`); dashed is
-    where it would be without bending. After arrival the path of the tips is drawn. Below are the
-    joint angle, the tips' displacements and the power, with a cursor. The clock goes on until the
-    last residual window ends.
+    Every link bends in the shape of its mode (`Plant.structure`); dashed is the rigid link. After
+    arrival the path of the tips is drawn. Below are the joint angle, the tip displacements and the
+    power, with a cursor. The film ends with the last residual window.
 
     Parameters
     ----------
@@ -126,8 +125,8 @@ def animate(
         The motions, of any plants and durations, 6 at most; a plan alone is drawn beside the plain
         cycloid of its task.
     deflection_scale : float, optional
-        How many times larger than they are deflections are drawn, which the picture says; by
-        default so that the largest is up to a fifth of the structure, but never less than 1.
+        Scale of the deflections, which is stated in the picture; by default such that the largest
+        is up to a fifth of the structure, but at least 1.
     speed : float
         Seconds of the motion in a second of the film: 0.25 is slow motion.
     rate : float

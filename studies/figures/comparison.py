@@ -45,7 +45,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class KnownPoint:
-    """A motion that a front is held against: its name, residual [m] if known, and energy [J]."""
+    """A motion that a front is compared with: its name, residual [m] if known, and energy [J]."""
 
     label: str
     residual: float | None
@@ -62,7 +62,7 @@ def comparison_figure(
     comparison : Comparison
         The fronts.
     known : sequence of KnownPoint, optional
-        Motions to hold them against, such as the paper's.
+        Motions to compare them with, such as the paper's.
     title : str, optional
         Title of the picture; the task by default.
 
@@ -102,7 +102,7 @@ def draw_whole(
     comparison : Comparison
         The fronts, by `compare_fronts`.
     known : sequence of KnownPoint, optional
-        Motions to hold them against.
+        Motions to compare them with.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
 

@@ -32,7 +32,7 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     plans : mapping of str to Robustness
         The figures of each plan by what the legend calls it.
     name : str
-        What is wrong: ``"frequency"``, ``"damping"`` or a parameter; each has a sweep of it.
+        The error: ``"frequency"``, ``"damping"`` or a parameter; each plan has a sweep of it.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
 
@@ -71,7 +71,7 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
 
 
 def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
-    """Draw the energy of motions over their residual: open as planned, filled in the worst case.
+    """Draw the energy of motions over their residual: open nominal, filled in the worst case.
 
     Parameters
     ----------

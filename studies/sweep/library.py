@@ -160,7 +160,7 @@ class MoveLibrary:
         )
 
     def between(self, samples: int = _SAMPLES) -> Between:
-        """What random moves between the cells leave and cost; kept in the dataset."""
+        """Residual and energy of random moves between the cells; kept in the dataset."""
         known = self.store.note("between the cells")
         if known.get("samples") == samples:
             return Between(**known)
@@ -203,8 +203,8 @@ def plan_from(path: str | Path, **at: float) -> tuple[Plan, Between, InfeasibleT
     Returns
     -------
     Plan, Between, InfeasibleTaskError or None
-        The move, what moves of this dataset leave and cost, and an error where this one breaks a
-        limit.
+        The move, residual and energy of moves between the cells, and an error if this one violates
+        a limit.
 
     Raises
     ------

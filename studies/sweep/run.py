@@ -39,7 +39,7 @@ def sweep(
     workers: int = 1,
     scheduler: str | None = None,
 ) -> xarray.Dataset:
-    """Plan every move of a grid; the same call goes on where one was stopped.
+    """Plan every move of a grid; after an interruption the same call continues.
 
     Parameters
     ----------
