@@ -13,8 +13,8 @@ from importlib import import_module
 import click
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import unknown
+from quietarm.ocp.interrupts import STOPS
 from quietarm.studies.cli.options import COMMON_HELP
-from quietarm.studies.cli.signals import as_ctrl_c
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
@@ -107,15 +107,24 @@ def main(arguments: Sequence[str] | None = None) -> None:
         os.environ["MPLBACKEND"] = "agg"
         warnings.filterwarnings("ignore", ".* more than a turn")  # they had a unit
         sys.unraisablehook = _unless_ctrl_c
+        _take_as_ctrl_c("SIGTERM", "SIGHUP")
     if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
         del os.environ["COLUMNS"]
     status = NOT_SOLVED
     # one more Ctrl-C may come while the first is answered
-    with suppress(KeyboardInterrupt), as_ctrl_c():
+    with suppress(KeyboardInterrupt):
         status = _run(arguments)
     if arguments is None:  # answered: nothing is left that another Ctrl-C could stop
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.exit(status)
+
+
+def _take_as_ctrl_c(*names: str) -> None:
+    """Let signals stop the command as Ctrl-C does, unless they are handled or ignored."""
+    for one in signal.Signals:
+        if one.name in names and signal.getsignal(one) is signal.SIG_DFL:
+            signal.signal(one, signal.default_int_handler)
+            STOPS.append(one)
 
 
 def _unless_ctrl_c(lost: sys.UnraisableHookArgs) -> None:

@@ -1,24 +1,31 @@
-"""The files that a command writes: --output, whose ending says what goes into each."""
+"""The files that a command writes, and its end: save what was found, show it, name the files."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from quietarm.ocp.files import check_writable, write_whole
-from quietarm.studies.cli.folders import check_folder
+from quietarm.ocp import Front, QuietarmError
+from quietarm.ocp.files import check_writable, unwritable, write_whole
+from quietarm.ocp.interrupts import note_interrupts
+from quietarm.studies.cli.options import busy
 from quietarm.studies.cli.types import Parsed
 from quietarm.studies.report.pictures import SUFFIXES
-from quietarm.studies.report.saving import STDOUT, File
+from quietarm.studies.report.saving import STDOUT, File, drawing
+from quietarm.studies.report.terminal import show, show_facts
+from quietarm.studies.report.words import print_lines
+from rich.console import Console
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from quietarm.studies.report import Report
 
 F = TypeVar("F", bound=Callable[..., Any])
-Write = Callable[[Path], object]
 PICTURE, FOLDER, DATASET = SUFFIXES[0], "", ".zarr"
 _SAME = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv"}
 """Endings that mean the same as another."""
@@ -31,13 +38,13 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> Callab
     """
 
     def check(text: str) -> Path:
-        if text == str(STDOUT):
-            if ".json" in kinds:
-                return STDOUT
-            raise ValueError(f"this cannot go to standard output; give a name, or ./{text}")
         path, kind = Path(text), ending_of(Path(text))
+        if path == STDOUT and ".json" not in kinds:
+            raise ValueError(f"this cannot go to standard output; give a name, or ./{text}")
         if kind not in kinds:
             raise ValueError(f"{text} is none of the files that it writes; give {listed}")
+        if path == STDOUT:
+            return path
         return check_folder(path) if kind in (FOLDER, DATASET) else check_writable(path)
 
     names = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
@@ -48,39 +55,106 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> Callab
     )  # fmt: skip
 
 
+def check_folder(path: str | Path) -> Path:
+    """Make sure before the work that files can be written in a folder, or that it can be made."""
+    folder = Path(path)
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{folder} is a file; give a folder")
+    check_writable(folder / "any" if folder.is_dir() else folder)
+    return folder
+
+
 def ending_of(path: Path) -> str:
     """The ending that says what goes into a file; that of JSON for standard output."""
     return ".json" if path == STDOUT else _SAME.get(path.suffix.lower(), path.suffix.lower())
 
 
-def files_of(output: Sequence[Path], writes: Mapping[str, Write]) -> list[File]:
-    """The files that were asked for, and what writes each by its ending."""
-    return [(path, writes[ending_of(path)]) for path in output]
+def files_of(output: Sequence[Path], writes: Mapping[str, Callable[..., Any]]) -> list[File]:
+    """The files that were asked for, and what writes each by its ending, or draws a picture."""
+    ways = {**writes, **({PICTURE: drawing(writes[PICTURE])} if PICTURE in writes else {})}
+    return [(path, ways[ending_of(path)]) for path in output]
+
+
+def front_files(output: Sequence[Path], front: Front, draw: Callable[[], Figure]) -> list[File]:
+    """A front as JSON, its points as a table, and a picture."""
+    return files_of(output, {".json": front.save, ".csv": front.save_csv, PICTURE: draw})
 
 
 def report_files(output: Sequence[Path], report: Report) -> list[File]:
     """A report as a folder, a page, Markdown or LaTeX, as the endings say."""
-    writes: dict[str, Callable[[], str]] = {
-        ".html": report.html, ".md": report.markdown, ".tex": report.latex,
-    }  # fmt: skip
+    writes = {".html": report.html, ".md": report.markdown, ".tex": report.latex}
     found = list[File]()
     for path in output:
-        if ending_of(path) == FOLDER:
-            found += report.files(path)
-        else:
-            text = writes[ending_of(path)]
+        if text := writes.get(ending_of(path)):
             found.append((path, lambda place, text=text: write_whole(place, text())))
+        else:
+            found += report.files(path)
     return found
 
 
-def refuse_same_file(values: Mapping[str, Any]) -> None:
+def refuse_same_file(values: Iterable[object]) -> None:
     """Refuse a line that names one file twice, so that nothing that is read is written over."""
+    every = [one for value in values for one in (value if isinstance(value, tuple) else (value,))]
     known = set[str]()
-    for value in values.values():
-        for path in value if isinstance(value, tuple | list) else [value]:
-            if not isinstance(path, Path) or path == STDOUT:
-                continue
+    for path in every:
+        if isinstance(path, Path) and path != STDOUT:
             place = os.path.realpath(path)  # of a link, too
             if place in known:
                 raise ValueError(f"{path} is given twice; give it once, or another name")
             known.add(place)
+
+
+def finish(
+    files: Sequence[File],
+    *shown: Report | Sequence[tuple[str, str]] | str,
+    trouble: Exception | None = None,
+) -> None:
+    """Save every file that was asked for, show what was found, and say what was written.
+
+    In this order, so that nothing is lost where standard output is closed. Ctrl-C waits until the
+    files are there. Words go to standard error where standard output is one of the files.
+    """
+    written, failures = list[str](), list[Exception]()
+    with note_interrupts() as came, busy("writing"):
+        for path, write in files:
+            try:
+                _save(path, write)
+                if path != STDOUT:
+                    written.append(str(path))
+            except OSError as error:  # the system's own may leave the name out
+                failures.append(unwritable(path, error))
+            except Exception as error:  # of any kind: the next file may be saved all the same
+                failures.append(error)
+    try:
+        console = Console(stderr=any(path == STDOUT for path, _ in files))
+        for part in filter(None, shown):
+            if isinstance(part, str):
+                print_lines(console, part)
+            else:
+                (show_facts if isinstance(part, Sequence) else show)(console, part)
+        for name in written:
+            print_lines(console, f"wrote {name}")
+    except KeyboardInterrupt:
+        came.append(0)
+    if came and trouble is None:
+        if not (written or failures):
+            raise KeyboardInterrupt
+        names = ", ".join(written)
+        trouble = QuietarmError(f"interrupted; {f'wrote {names}' if names else 'nothing written'}")
+    for error in failures:
+        if not isinstance(error, ValueError | QuietarmError):
+            raise error
+    if failures:
+        raise ValueError("; ".join(map(str, filter(None, [trouble, *failures]))))
+    if trouble is not None:
+        raise trouble
+
+
+def _save(path: Path, write: Callable[[Path], object]) -> None:
+    if path != STDOUT:
+        write(path)
+        return
+    with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
+        whole = Path(folder) / "output"
+        write(whole)
+        sys.stdout.write(whole.read_text(encoding="utf-8"))

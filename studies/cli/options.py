@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Collection, Iterable, Mapping
+from contextlib import AbstractContextManager
 from functools import partial
 from typing import Any, TypeVar
 
 import click
 from click.core import ParameterSource
-from quietarm.models import Plant
+from quietarm.models import Plant, load_plant_file
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
-from quietarm.studies.cli.quantities import literal, once
-from quietarm.studies.cli.types import LENGTH, PLANT_FILE, SETTING, WHOLE, Named, Parsed
+from quietarm.studies.cli.quantities import literal, once, parse_share_of_work
+from quietarm.studies.cli.types import LENGTH, SETTING, WHOLE, Named, Parsed
 from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL
+from quietarm.studies.report.progress import count, working
 from rich.console import Console
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -30,8 +32,9 @@ def _keep(name: str) -> Callable[[click.Context, click.Parameter, Any], None]:
 
 COMMON: list[click.Parameter] = [
     click.Option(
-        ["--plant-file"], type=PLANT_FILE, is_eager=True, expose_value=False, hidden=True,
-        callback=_keep(_PLANTS),  # eager: the plants in it are then known by name
+        ["--plant-file"], type=Parsed("file", load_plant_file), is_eager=True,
+        expose_value=False, hidden=True, callback=_keep(_PLANTS),
+        # eager: the plants in it are then known by name
     ),
     click.Option(
         ["--quiet"], is_flag=True, expose_value=False, hidden=True, callback=_keep(_QUIET)
@@ -54,7 +57,7 @@ class Command(click.Command):
         """Run it, unless one file is named twice."""
         from quietarm.studies.cli.files import refuse_same_file
 
-        refuse_same_file(ctx.params)
+        refuse_same_file(ctx.params.values())
         return super().invoke(ctx)
 
     def get_help_option(self, ctx: click.Context) -> click.Option | None:
@@ -82,6 +85,16 @@ def plant_file() -> Mapping[str, type[Plant]] | None:
 def quiet() -> bool:
     """Whether no progress is shown."""
     return bool(click.get_current_context().meta.get(_QUIET))
+
+
+def busy(what: str) -> AbstractContextManager[None]:
+    """Show that work goes on."""
+    return working(what, Console(stderr=True), quiet=quiet())
+
+
+def counting(total: int, what: str) -> AbstractContextManager[Callable[[int, int], None]]:
+    """Show how many of many small pieces are done."""
+    return count(total, what, Console(stderr=True), quiet=quiet())
 
 
 def options(*several: Callable[[F], F]) -> Callable[[F], F]:
@@ -200,14 +213,20 @@ workers_option = click.option(
     "--workers", type=WHOLE, default=1, show_default=True,
     help="Processes of this machine that share the work.",
 )  # fmt: skip
-scheduler_option = click.option(
-    "--scheduler", metavar="ADDRESS",
-    help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.",
+workers_options = options(
+    workers_option,
+    click.option(
+        "--scheduler", metavar="ADDRESS",
+        help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.",
+    ),
 )  # fmt: skip
-workers_options = options(workers_option, scheduler_option)
+part_option = click.option(
+    "--part", type=Parsed("i/n", parse_share_of_work), default="1/1",
+    help="Do every n-th piece of the work alone, as 2/8 in a queue's array job.",
+)  # fmt: skip
 
 
-def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
+def warn_of_workers(workers: int, pieces: int) -> None:
     """Warn where more workers start than there are cores; no more start than pieces of work."""
     # a plan by the gradient needs no workers
     from joblib import cpu_count
@@ -215,19 +234,4 @@ def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
     cores, workers = cpu_count(), min(workers, pieces)
     if workers > cores:
         words = f"{workers} workers will share {cores} core{'s' * (cores > 1)}"
-        console.print(words, highlight=False)
-
-
-def _part(text: str) -> tuple[int, int]:
-    number, slash, of = text.partition("/")
-    if not (slash and number.isdigit() and of.isdigit() and 1 <= int(number) <= int(of)):
-        raise ValueError(f"{text!r} is no part; give the second of eight as 2/8")
-    return int(number), int(of)
-
-
-def part_option(pieces: str) -> Callable[[F], F]:
-    """The option for a share of the work, as in a queue's array job."""
-    return click.option(
-        "--part", type=Parsed("i/n", _part), default="1/1",
-        help=f"Do every n-th {pieces} alone, as 2/8 in a queue's array job.",
-    )  # fmt: skip
+        Console(stderr=True).print(words, highlight=False)

@@ -9,15 +9,13 @@ from math import tau
 from quietarm.models import FlexibleBeam, Plant, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import has_no, unknown
-from quietarm.studies.cli.quantities import is_number, once, parse_pair, parse_quantity
+from quietarm.studies.cli.quantities import MEASURED, once, parse_quantity, parse_share
 from quietarm.studies.identify import Identified
 from quietarm.studies.report.words import print_lines
 from rich.console import Console
 
 Kind = type[Plant] | Identified | None
 """What PLANT names: a class of plants, an identified machine, or nothing."""
-MEASURED = "measured"
-"""In the place of errors: the intervals of an identified machine."""
 
 
 def parse_plant(name: str) -> type[Plant] | Identified:
@@ -29,20 +27,6 @@ def parse_plant(name: str) -> type[Plant] | Identified:
         also = "; your own by its --plant-file, an identified one by its .json"
         raise ValueError(unknown("plant", name, sorted(plants), also))
     return plants[name]
-
-
-def parse_error(text: str) -> tuple[str, float]:
-    """Read how far a parameter may be wrong, ``frequency=10%``.
-
-    ``measured`` stands for the intervals of an identified machine.
-    """
-    if text == MEASURED:
-        return MEASURED, 0.0
-    name, share = parse_pair(text, "an error", "frequency=10%")
-    size = parse_quantity(share, "-", "a share")
-    if size >= 1 and is_number(share):
-        raise ValueError(f"{text} is {100 * size:g} %; was {share} % meant? give {name}={share}%")
-    return name.replace("-", "_"), size
 
 
 def uncertainty_of(errors: Iterable[tuple[str, float]], kind: Kind) -> Uncertainty | None:
@@ -102,17 +86,12 @@ def values_of_plant(
     """What parameters are set to."""
     texts = once(settings, "--set ")
     units = units_of_plant(plant, texts)
-    return {name: _value(name, text, units[name]) for name, text in texts.items()}
-
-
-def _value(name: str, text: str, unit: str) -> float:
-    value = parse_quantity(text, unit, f"a value of {name}")
-    if name.startswith(("zeta", "damping")) and value >= 1 and is_number(text):
-        raise ValueError(
-            f"{name}={text} is a damping ratio of {100 * value:g} %; was {text} % meant? give "
-            f"{name}={text}%, or {name}={100 * value:g}%"
-        )
-    return value
+    return {
+        name: parse_share(text, name)
+        if name.startswith(("zeta", "damping"))
+        else parse_quantity(text, units[name], f"a value of {name}")
+        for name, text in texts.items()
+    }
 
 
 def chosen_plant(

@@ -1,20 +1,25 @@
-"""Quantities as they are typed: 30deg, -pi/2, 60deg/s, 1mm, 800ms, 10%."""
+"""What is typed: quantities with units, as 30deg, -pi/2, 60deg/s, 1mm, 800ms, 10%, and their forms.
+
+Every function raises ValueError with a message for the user.
+"""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields
-from functools import reduce
+from functools import partial, reduce
 from operator import add
 from typing import Any, TypeVar
 
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, known, unknown
 from quietarm.ocp.energy import Energy, Mix
+from quietarm.studies.reading.units import UNITS as OF_COLUMNS
+from quietarm.studies.reading.units import normal
 
-T = TypeVar("T")
+S, T = TypeVar("S"), TypeVar("T")
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
 _WITH_UNIT = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%°/]*)")
@@ -26,29 +31,32 @@ _SPEEDS = {
     **_ANGLES, "rad/s": 1.0, "deg/s": 180 / math.pi, "rpm": 30 / math.pi,
     "Hz": 0.5 / math.pi, "hz": 0.5 / math.pi, "kHz": 5e-4 / math.pi,
 }  # fmt: skip
-UNITS: Mapping[str, Mapping[str, float]] = {
-    "rad": _ANGLES, "rad/s": _SPEEDS, "rad/s^2": _ANGLES, "rad/s^3": _ANGLES,
-    "m/s": {"m/s": 1.0, "mm/s": 1e3}, "m/s^2": _LENGTHS, "m/s^3": _LENGTHS,
-    "N": {"N": 1.0, "mN": 1e3, "kN": 1e-3},
-    "m": _LENGTHS, "s": {"s": 1.0, "ms": 1e3},
-    "N m": {"Nm": 1.0, "mNm": 1e3}, "kg": {"kg": 1.0, "g": 1e3}, "-": {"%": 100.0},
-}  # fmt: skip
-"""By the SI unit of a quantity, the units that it may be typed in, and how many of each make one.
+UNITS: Mapping[str, tuple[str, Mapping[str, float]]] = {
+    "rad": ("radians (0.5), 30deg, pi/6 or -pi/2", _ANGLES),
+    "rad/s": ("rad/s (2), 60deg/s or 3.2Hz", _SPEEDS),
+    "rad/s^2": ("rad/s^2 (2) or 60deg/s^2", _ANGLES),
+    "rad/s^3": ("rad/s^3 (2) or 60deg/s^3", _ANGLES),
+    "m": ("metres (0.001) or 1mm", _LENGTHS),
+    "m/s": ("m/s (0.5) or 500mm/s", {"m/s": 1.0, "mm/s": 1e3}),
+    "m/s^2": ("m/s^2 (2) or 2000mm/s^2", _LENGTHS),
+    "m/s^3": ("m/s^3 (50)", _LENGTHS),
+    "s": ("seconds (0.8) or 800ms", {"s": 1.0, "ms": 1e3}),
+    "N": ("newtons (20) or 20N", {"N": 1.0, "mN": 1e3, "kN": 1e-3}),
+    "N m": ("newton metres (1.5) or 200mNm", {"Nm": 1.0, "mNm": 1e3}),
+    "kg": ("kilograms (0.1) or 100g", {"kg": 1.0, "g": 1e3}),
+    "-": ("a number (0.1) or 10%", {"%": 100.0}),
+}
+"""By the SI unit of a quantity: examples, and how many of each unit it is typed in make one.
 
 Dividing by 1000 is exact where multiplying by 0.001 is not.
 """
-_EXAMPLES = {
-    "rad": "radians (0.5), 30deg, pi/6 or -pi/2", "rad/s": "rad/s (2), 60deg/s or 3.2Hz",
-    "rad/s^2": "rad/s^2 (2) or 60deg/s^2", "rad/s^3": "rad/s^3 (2) or 60deg/s^3",
-    "m": "metres (0.001) or 1mm", "s": "seconds (0.8) or 800ms", "kg": "kilograms (0.1) or 100g",
-    "m/s": "m/s (0.5) or 500mm/s", "m/s^2": "m/s^2 (2) or 2000mm/s^2", "m/s^3": "m/s^3 (50)",
-    "N": "newtons (20) or 20N", "N m": "newton metres (1.5) or 200mNm",
-    "-": "a number (0.1) or 10%",
-}  # fmt: skip
+MEASURED = "measured"
+"""In the place of errors: the intervals of an identified machine."""
 
 
 def parse_quantity(text: str, unit: str, what: str) -> float:
     """Read a number in an SI unit, or with another unit of its kind: 0.6, 600mm, 3.2Hz, pi/6."""
+    examples, others = UNITS.get(unit, (f"a number in {unit}, without the unit", {}))
     plain = text.strip()
     if "^" in unit:
         plain = plain.removesuffix(unit.removeprefix("rad").removeprefix("m"))
@@ -57,14 +65,44 @@ def parse_quantity(text: str, unit: str, what: str) -> float:
         if float(divisor or 1) != 0:
             return float(f"{sign}1") * float(factor or 1) * math.pi / float(divisor or 1)
     match = _WITH_UNIT.fullmatch(plain)
-    if match and match[2] in UNITS.get(unit, {}):
-        return float(match[1]) / UNITS[unit][match[2]]
+    if match and match[2] in others:
+        return float(match[1]) / others[match[2]]
     if is_number(plain):
         return float(plain)  # nan and inf, for the task to refuse in its own words
-    examples = _EXAMPLES.get(unit, f"a number in {unit}, without the unit")
     if _COMMA.fullmatch(plain):
         examples = f"{plain.replace(',', '.')}, with a point"
     raise ValueError(f"{text!r} is not {what}; give {examples}")
+
+
+_RARE = {
+    "a position": (10.0, "metres", "millimetres", "mm"),
+    "m": (0.1, "metres", "millimetres", "mm"),
+    "rad": (2 * math.pi, "radians", "degrees", "deg"),
+    "s": (100.0, "seconds", "milliseconds", "ms"),
+}
+"""Beyond this a number alone is asked about: it was easily meant in the other unit."""
+
+
+def parse_usual(unit: str, what: str, text: str) -> float:
+    """Read a quantity; a number alone that is rarely meant in SI is asked about."""
+    value = parse_quantity(text, unit, what)
+    most, name, other, short = _RARE.get(what) or _RARE.get(unit, (math.inf, "", "", ""))
+    if math.isfinite(value) and abs(value) > most and is_number(text):
+        raise ValueError(
+            f"{text} is in {name}; were {other} meant? give {text}{short}, or {text}{unit}"
+        )
+    return value
+
+
+def parse_share(text: str, name: str) -> float:
+    """Read the share of a parameter; from 1 on a number alone is asked about."""
+    value = parse_quantity(text, "-", f"a value of {name}")
+    if value >= 1 and is_number(text):
+        raise ValueError(
+            f"{name}={text} is {100 * value:g} %; was {text} % meant? give {name}={text}%, or "
+            f"{name}={100 * value:g}%"
+        )
+    return value
 
 
 def is_number(text: str) -> bool:
@@ -76,43 +114,112 @@ def is_number(text: str) -> bool:
     return True
 
 
+def _two(
+    text: str, mark: str, one: Callable[[str], S], two: Callable[[str], T], otherwise: str
+) -> tuple[S, T]:
+    """Two values with a mark between them; `otherwise` says what it is not, and how it is given."""
+    try:
+        first, second = text.split(mark)
+        return one(first), two(second)
+    except ValueError:
+        raise ValueError(f"{text!r} is no {otherwise}") from None
+
+
 def parse_pair(text: str, what: str, example: str) -> tuple[str, str]:
     """Read a name and its value, ``omega=9``."""
-    name, equals, value = (part.strip() for part in text.partition("="))
-    if not (equals and name and value):
+    name, _, value = (part.strip() for part in text.partition("="))
+    if not (name and value):
         raise ValueError(f"{text!r} sets nothing; give {what} and its value, as {example}")
     return name, value
 
 
+def parse_error(text: str) -> tuple[str, float]:
+    """Read how far a parameter may be wrong, ``frequency=10%``, or `MEASURED`."""
+    if text == MEASURED:
+        return MEASURED, 0.0
+    name, share = parse_pair(text, "an error", "frequency=10%")
+    return name.replace("-", "_"), parse_share(share, name)
+
+
 def parse_state(text: str) -> ModalState:
     """Read amplitudes W and rates W' of the modes: ``5mm:-0.3`` or, of two modes, ``0,0:1,0``."""
-    try:
-        W, dW = (
-            tuple(parse_quantity(one.removesuffix("/s"), "m", "a length") for one in of.split(","))
-            for of in text.split(":")
+
+    def lengths(of: str) -> tuple[float, ...]:
+        return tuple(
+            parse_quantity(one.removesuffix("/s"), "m", "a length") for one in of.split(",")
         )
-    except ValueError:
-        raise ValueError(
-            f"{text!r} is no state; give W [m] of each mode, a colon, and W' [m/s] of each, as "
-            "5mm:-0.3 or 0,0:0.1,0"
-        ) from None
-    return ModalState(W, dW)
+
+    W, rates = _two(text, ":", lengths, lengths, "state; give W [m] of each mode, a colon, and W' "
+                    "[m/s] of each, as 5mm:-0.3 or 0,0:0.1,0")  # fmt: skip
+    return ModalState(W, rates)
 
 
 def parse_torque_speed(text: str) -> tuple[tuple[float, float], ...]:
     """Read what a drive gives, torques at speeds: ``1.5Nm@0,0.8Nm@20`` or ``0.8Nm@190rpm``."""
-    points = list[tuple[float, float]]()
-    for point in text.split(","):
-        torque, at, speed = point.partition("@")
-        if not at:
-            raise ValueError(
-                f"{point!r} is no torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with "
-                "speeds in rad/s, or as 190rpm"
-            )
-        points.append(
-            (parse_quantity(torque, "N m", "a torque"), parse_quantity(speed, "rad/s", "a speed"))
+    torque = partial(parse_quantity, unit="N m", what="a torque")
+    speed = partial(parse_quantity, unit="rad/s", what="a speed")
+    otherwise = (
+        "torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with speeds in rad/s, or as "
+        "190rpm"
+    )
+    return tuple(_two(point, "@", torque, speed, otherwise) for point in text.split(","))
+
+
+def parse_weights(text: str) -> tuple[float, float]:
+    """Read the weights of residual and energy: ``1:3``."""
+    otherwise = "pair of weights; give those of residual and energy as in 1:3"
+    return _two(text, ":", float, float, otherwise)
+
+
+def parse_share_of_work(text: str) -> tuple[int, int]:
+    """Read a part of the work: ``2/8``."""
+    number, of = _two(text, "/", int, int, "part; give the second of eight as 2/8")
+    if not 1 <= number <= of:
+        raise ValueError(f"{text!r} is no part; give the second of eight as 2/8")
+    return number, of
+
+
+def parse_interval(text: str) -> tuple[float, float]:
+    """Read begin and end of a part of a recording [s]: ``3.2:7.3``."""
+    otherwise = "part; give its begin and end in seconds, as 3.2:7.3"
+    begin, end = _two(text, ":", float, float, otherwise)
+    if not begin < end:
+        raise ValueError(f"{text!r} is no {otherwise}")
+    return begin, end
+
+
+def parse_units(text: str) -> dict[str, str]:
+    """Read units of a recording's quantities: ``time:ms,angle:deg``."""
+    units: dict[str, str] = {}
+    for one in text.split(","):
+        quantity, _, unit = (part.strip() for part in one.partition(":"))
+        known = _of_column(quantity)
+        if normal(unit) not in known:
+            raise ValueError(unknown(f"unit of {quantity}", unit, known))
+        units[quantity] = unit
+    return units
+
+
+def parse_scale(text: str) -> tuple[str, float]:
+    """Read what a count of a recorded quantity is in SI units: ``angle=2pi/4096``."""
+    quantity, _, factor = (part.strip() for part in text.partition("="))
+    _of_column(quantity)
+    number, _, divisor = factor.partition("/")
+    try:
+        scale = parse_quantity(number, "rad", "a scale") / float(divisor or 1)
+    except (ValueError, ZeroDivisionError):
+        scale = 0.0
+    if not scale or not math.isfinite(scale):
+        raise ValueError(
+            f"{factor!r} is no scale; give a number other than 0, as {quantity}=2pi/4096"
         )
-    return tuple(points)
+    return quantity, scale
+
+
+def _of_column(quantity: str) -> Mapping[str, float]:
+    if quantity not in OF_COLUMNS:
+        raise ValueError(unknown("quantity", quantity, OF_COLUMNS))
+    return OF_COLUMNS[quantity]
 
 
 def parse_coefficients(text: str) -> list[float]:
@@ -121,17 +228,6 @@ def parse_coefficients(text: str) -> list[float]:
         return [finite(f"coefficient {i}", one) for i, one in enumerate(text.split(","), start=1)]
     except ValueError as error:
         raise ValueError(f"{error}, and commas between several, or a file of rows") from None
-
-
-def parse_weights(text: str) -> tuple[float, float]:
-    """Read the weights of residual and energy: ``1:3``."""
-    try:
-        of_residual, of_energy = map(float, text.split(":"))
-    except ValueError:
-        raise ValueError(
-            f"{text!r} is no pair of weights; give those of residual and energy as in 1:3"
-        ) from None
-    return of_residual, of_energy
 
 
 def parse_energy(text: str) -> Energy:

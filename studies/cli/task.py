@@ -2,58 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial, wraps
 from typing import Any, TypeVar
 
 import click
+from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.limits import QUANTITIES, Quantity
-from quietarm.studies.cli.options import options, plant_file, refuse_typed, typed
-from quietarm.studies.cli.plants import check_machine, chosen_plant, uncertainty_of, units_of_plant
-from quietarm.studies.cli.quantities import parse_quantity
-from quietarm.studies.cli.types import (
-    ENERGY,
-    ERROR,
-    FASTEST,
-    MODES,
-    PLANT,
-    SETTING,
-    TIME,
-    TIMES,
-    TORQUE_SPEED,
-    parse_of_joint,
+from quietarm.ocp.limits import QUANTITIES
+from quietarm.studies.cli.options import options, plant_file, refuse_typed
+from quietarm.studies.cli.plants import (
+    check_machine,
+    chosen_plant,
+    parse_plant,
+    uncertainty_of,
+    units_of_plant,
 )
+from quietarm.studies.cli.quantities import (
+    parse_energy,
+    parse_quantity,
+    parse_state,
+    parse_torque_speed,
+)
+from quietarm.studies.cli.types import ERROR, SETTING, TIME, Parsed, parse_of_joint
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid, axis_values
 
 F = TypeVar("F", bound=Callable[..., Any])
+FASTEST = "fastest"
+"""In the place of a duration: the shortest within the limits."""
 BEGIN = 1.0
 """Duration [s] from which the shortest one is looked for."""
 _NEEDED = {"target": "30deg", "duration": "0.8"}
 
 
-def _limit_option(quantity: Quantity) -> Callable[[F], F]:
-    return click.option(
-        f"--{quantity.name}-limit", metavar=f"[{quantity.unit}]",
-        help=f"Largest {quantity.label} on the way; by direction as LEAST:LARGEST.",
-    )  # fmt: skip
+def _times(text: str) -> tuple[float, ...] | str:
+    return FASTEST if text == FASTEST else axis_values(text, TIME.parse)
 
 
 set_option = click.option(
     "--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
     help="Set a parameter of the plant, as omega=3.2Hz or length=600mm; may be repeated.",
-)  # fmt: skip
-start_option = click.option(
-    "--start", default="0", show_default=True, metavar="ANGLE", help="Joint angle at the start."
-)
-target_option = click.option(
-    "--target", metavar="ANGLE", help="Joint angle at the end; of a linear axis a length, as 300mm."
-)
-duration_option = click.option(
-    "--duration", type=TIMES,
-    help="Travelling time; quietarm plan also takes `fastest`, the shortest within the limits.",
 )  # fmt: skip
 error_option = click.option(
     "--error", "errors", type=ERROR, multiple=True, metavar="NAME=SHARE",
@@ -61,32 +51,42 @@ error_option = click.option(
     "frequency=8%; the residual is then that of the worst case. `measured` has the intervals of an "
     "identified machine. May be repeated.",
 )  # fmt: skip
-_LIMITS = tuple(map(_limit_option, QUANTITIES.values()))
 _OPTIONS = options(
-    click.argument("plant", type=PLANT, required=False, metavar="[PLANT]"),
-    set_option, start_option, target_option, duration_option,
-    *_LIMITS,
-    click.option("--torque-speed", type=TORQUE_SPEED,
+    click.argument("plant", type=Parsed("plant", parse_plant), required=False, metavar="[PLANT]"),
+    set_option,
+    click.option("--start", default="0", show_default=True, metavar="ANGLE",
+                 help="Joint angle at the start."),
+    click.option("--target", metavar="ANGLE",
+                 help="Joint angle at the end; of a linear axis a length, as 300mm."),
+    click.option("--duration", type=Parsed("time", _times),
+                 help="Travelling time; quietarm plan also takes `fastest`, the shortest within "
+                 "the limits."),
+    *(
+        click.option(f"--{one.name}-limit", metavar=f"[{one.unit}]",
+                     help=f"Largest {one.label} on the way; by direction as LEAST:LARGEST.")
+        for one in QUANTITIES.values()
+    ),
+    click.option("--torque-speed", type=Parsed("torque@speed", parse_torque_speed),
                  help="What the drive gives, torques at speeds: 1.5Nm@0,0.8Nm@190rpm."),
     click.option("--residual-window", type=TIME, default="1", show_default=True,
                  help="Time after arrival in which the residual is measured."),
-    click.option("--initial", type=MODES,
+    click.option("--initial", type=Parsed("W:W'", parse_state),
                  help="Vibration at the start, modal amplitudes W [m] and rates W' [m/s]: "
                  "5mm:-0.3, or of two modes 5mm,0:0,0.1."),
-    click.option("--final", type=MODES,
+    click.option("--final", type=Parsed("W:W'", parse_state),
                  help="Vibration wanted on arrival, likewise; none by default."),
-    click.option("--energy", type=ENERGY, default="absolute", show_default=True,
+    click.option("--energy", type=Parsed("energy", parse_energy), default="absolute",
+                 show_default=True,
                  help="What counts as energy: absolute or positive power, copper loss by the motor "
                  "constant [N m/W^0.5] as copper:0.12, or a sum as 0.5*absolute+copper:0.12."),
     error_option,
 )  # fmt: skip
-_MOVE = (
-    "start", "target", "duration", "residual_window", "initial", "final", "energy",
-    *(quantity.limit for quantity in QUANTITIES.values()), "torque_speed",
-)  # fmt: skip
 _OF_JOINT = ("start", "target", *(quantity.limit for quantity in QUANTITIES.values()))
 """Options that are read once the plant is known: in radians, or in metres of a linear axis."""
-NAMES = ("plant", "parameters", "errors", *_MOVE)
+NAMES = (
+    "plant", "parameters", "errors", "duration", "residual_window", "initial", "final", "energy",
+    "torque_speed", *_OF_JOINT,
+)  # fmt: skip
 """What the options of a task are called among a command's arguments."""
 
 
@@ -107,11 +107,6 @@ class TypedMove:
     given: Mapping[str, Any]
 
     @property
-    def typed(self) -> bool:
-        """Whether anything of a task was typed."""
-        return plant_file() is not None or any(map(typed, NAMES))
-
-    @property
     def fastest(self) -> bool:
         """Whether the shortest duration is asked for."""
         return self.given["duration"] == FASTEST
@@ -129,6 +124,11 @@ class TypedMove:
             option = f"'--{name.replace('_', '-')}'"
             raise click.BadParameter(str(error), param_hint=option) from None
 
+    def plant(self, parameters: Iterable[tuple[str, str]] | None = None) -> Plant:
+        """The plant, with the parameters that were typed."""
+        typed = self.given["parameters"] if parameters is None else parameters
+        return chosen_plant(self.given["plant"], plant_file(), typed)
+
     def task(self, **known: float) -> PointToPoint:
         """The task, with what is `known` in the place of options."""
         grid = self.grid(**known)
@@ -144,17 +144,16 @@ class TypedMove:
         """The task, and axes over what has several values."""
         given: dict[str, Any] = dict(self.given)
         kind, parameters, errors = (given.pop(name) for name in ("plant", "parameters", "errors"))
-        axes = {name: text for name, text in parameters if ":" in text or "," in text}
-        single = [(name, text) for name, text in parameters if name not in axes]
-        plant = chosen_plant(kind, plant_file(), single)
-        units = units_of_plant(plant, axes)
+        along = {name: text for name, text in parameters if ":" in text or "," in text}
+        single = [(name, text) for name, text in parameters if name not in along]
+        units = units_of_plant(self.plant(single), along)
         found = [
             Axis(name, axis_values(text, _parser(units[name], name)), units[name])
-            for name, text in axes.items()
+            for name, text in along.items()
         ]
-        firsts = [(axis.name, repr(axis.values[0])) for axis in found]
-        plant = chosen_plant(kind, plant_file(), [*single, *firsts]) if firsts else plant
-        check_machine(kind, [*single, *firsts], errors)
+        single += [(axis.name, repr(axis.values[0])) for axis in found]
+        plant = self.plant(single)
+        check_machine(kind, single, errors)
         given |= {name: self.read(name, plant.joint) for name in _OF_JOINT}
         given |= {name: (one,) for name, one in known.items()}
         if plant.joint != ROTARY and given["torque_speed"] is not None:

@@ -1,37 +1,18 @@
-"""What an option may be: quantities with units, names, pairs, files that are read."""
+"""What an option may be: quantities with units, names, files that are read or written."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.models import load_plant_file
 from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp.checks import spelling, unknown
-from quietarm.ocp.files import check_writable
 from quietarm.ocp.limits import quantities_of
-from quietarm.studies.cli.folders import check_folder
-from quietarm.studies.cli.plants import parse_error, parse_plant
-from quietarm.studies.cli.quantities import (
-    is_number,
-    parse_coefficients,
-    parse_energy,
-    parse_pair,
-    parse_quantity,
-    parse_state,
-    parse_torque_speed,
-    parse_weights,
-)
+from quietarm.studies.cli.quantities import is_number, parse_error, parse_pair, parse_usual
 from quietarm.studies.sweep.grid import axis_values
-
-_RARE = {
-    "rad": (2 * math.pi, "deg"), "m": (0.1, "mm"), "a position": (10.0, "mm"), "s": (100.0, "ms")
-}  # fmt: skip
-"""Beyond this a number alone is asked about: it was easily meant in the other unit."""
 
 
 class Parsed(click.ParamType):
@@ -69,72 +50,31 @@ class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
         return same[0]
 
 
-def quantity(unit: str, what: str, text: str) -> float:
-    """Read a quantity; a number alone that is rarely meant in SI is asked about."""
-    value = parse_quantity(text, unit, what)
-    most, other = _RARE.get(what) or _RARE.get(unit, (math.inf, ""))
-    if math.isfinite(value) and abs(value) > most and is_number(text):
-        name = {"deg": "degrees", "mm": "millimetres", "ms": "milliseconds"}[other]
-        raise ValueError(
-            f"{text} is in {_NAMES[unit]}; were {name} meant? give {text}{other}, or {text}{unit}"
-        )
-    return value
+def parse_of_joint(name: str, text: str, joint: str) -> Any:
+    """Read an end of a move, or a limit, in the units of a kind of joint.
 
-
-_NAMES = {"rad": "radians", "m": "metres", "s": "seconds"}
-
-
-def _sides(parse: Callable[[str], float], text: str) -> float | tuple[float, ...]:
-    """A limit of both directions, or one for each: ``-30:40``."""
-    values = [parse(side) for side in text.split(":")]
+    Ends have one value or several; a limit is a number, or one for each direction: ``-30:40``.
+    """
+    if name in ("start", "target"):
+        end = ("rad", "an angle") if joint == ROTARY else ("m", "a position")
+        return axis_values(text, partial(parse_usual, *end))
+    limited, sides = quantities_of(joint)[name.removesuffix("_limit")], text.split(":")
+    what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
+    values = [parse_usual(limited.unit, what, side) for side in sides]
     if len(values) > 2:
         raise ValueError(f"{text!r} is no limit; give one number, or one for each side as -30:40")
-    if len({is_number(side.strip()) for side in text.split(":")}) > 1:
+    if len({is_number(side) for side in sides}) > 1:
         raise ValueError(f"{text!r} has a unit on one side alone; give it on both, or on none")
     return tuple(values) if len(values) == 2 else values[0]
 
 
-def parse_of_joint(name: str, text: str, joint: str) -> Any:
-    """Read an end of a move, or a limit, in the units of a kind of joint.
-
-    Ends have one value or several; a limit is a number, or one for each direction.
-    """
-    if name in ("start", "target"):
-        rotary = partial(quantity, "rad", "an angle")
-        linear = partial(quantity, "m", "a position")
-        return axis_values(text, rotary if joint == ROTARY else linear)
-    limited = quantities_of(joint)[name.removesuffix("_limit")]
-    what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
-    return _sides(partial(quantity, limited.unit, what), text)
-
-
-LENGTH, TIME, TORQUE, SHARE = (
-    Parsed(name, partial(quantity, unit, f"a {name}"))
-    for name, unit in (
-        ("length", "m"), ("time", "s"), ("torque", "N m"), ("share", "-")
-    )
-)  # fmt: skip
-FASTEST = "fastest"
-"""In the place of a duration: the shortest within the limits."""
-TIMES = Parsed(
-    "time", lambda text: FASTEST if text == FASTEST else axis_values(text, parse=TIME.parse)
+LENGTH, TIME, SHARE = (
+    Parsed(name, partial(parse_usual, unit, f"a {name}"))
+    for name, unit in {"length": "m", "time": "s", "share": "-"}.items()
 )
-PLANT = Parsed("plant", parse_plant)
-PLANT_FILE = Parsed("file", load_plant_file)
 SETTING = Parsed(
     "name=value", partial(parse_pair, what="a parameter or setting", example="omega=9")
 )
 ERROR = Parsed("name=share", parse_error)
-ENERGY = Parsed("energy", parse_energy)
-MODES = Parsed("W:W'", parse_state)
-COEFFICIENTS = Parsed(
-    "numbers",
-    lambda text: Path(text) if Path(text).suffix in _TABLES else parse_coefficients(text),
-)
-_TABLES = (".csv", ".txt", ".dat", ".npy", ".npz", ".mat")
-TORQUE_SPEED = Parsed("torque@speed", parse_torque_speed)
-WEIGHTS = Parsed("weights", parse_weights)
 WHOLE = click.INT
 INPUT = click.Path(path_type=Path)
-FILE, FOLDER = Parsed("file", check_writable), Parsed("folder", check_folder)
-"""What is written, after it was made sure that it can be."""

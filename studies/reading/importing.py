@@ -15,10 +15,10 @@ from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.record import REST, Setting
 from quietarm.studies.reading.foreign import Found
-from quietarm.studies.reading.numbers import MOST_ROWS
 
 Array = NDArray[np.float64]
 
+_MOST_ROWS = 1_000_000
 _NEAR = 1e-3
 """Motions that another beats by more than this share are not evaluated a second time."""
 _NEAR_REST = 1e-6
@@ -42,7 +42,7 @@ def import_front(
 ) -> tuple[Front, list[Claim]]:
     """The front of coefficients from elsewhere, and how its claims compare."""
     table = found.coefficients
-    whole("number of motions", len(table), 1, MOST_ROWS)
+    whole("number of motions", len(table), 1, _MOST_ROWS)
     if evaluations is not None:
         evaluations = whole("evaluations", evaluations, len(table))
     rows = np.array([_checked(i, row, profile, task) for i, row in enumerate(table, start=1)])

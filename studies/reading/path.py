@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.studies.identify.recording import MOST_ANGLE
 from quietarm.studies.reading.table import read_table
-from quietarm.studies.reading.units import split_name
 
 Array = NDArray[np.float64]
 _LEAST_ROWS, _MOST_ROWS = 5, 5000
@@ -33,20 +33,19 @@ class RecordedPath:
         return float(self.motion.times[-1])
 
 
-def read_path(path: Path) -> RecordedPath:
-    """Read a CSV file with columns such as time_s and angle_deg."""
+def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
+    """Read a CSV file with columns such as time_s and angle_deg, position_mm of a linear joint."""
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
-    table = read_table(path)
-    names = {one: table.first(one) for one in ("time", "angle")}
-    time, angle = (table.in_si(name, one) for one, name in names.items())
-    _check(path, time, angle)
-    column = table.find(names["angle"])
-    turns = np.abs(angle).max() > 2 * np.pi
-    if turns and not (column.unit or split_name(column.name)[1]):
+    table, label = read_table(path), joint_label("angle", joint)
+    name = table.first(label)
+    time, angle = table.in_si(table.first("time"), "time"), table.in_si(name, label)
+    _check(path, time, angle, joint)
+    largest = np.abs(angle).max()
+    if joint == ROTARY and largest > 2 * np.pi and not table.find(name).written:
         raise FileFormatError(
-            f"{path}: column {names['angle']} reaches {np.abs(angle).max():g} and names no unit; "
-            "were degrees meant? name it angle_deg, or angle_rad"
+            f"{path}: column {name} reaches {largest:g} and names no unit; were degrees meant? "
+            "name it angle_deg, or angle_rad"
         )
     spline = CubicSpline(time - time[0], angle, bc_type="clamped")
     jerk, acceleration, *_ = spline.c
@@ -54,7 +53,8 @@ def read_path(path: Path) -> RecordedPath:
     return RecordedPath(float(angle[0]), float(angle[-1]), motion)
 
 
-def _check(path: Path, time: Array, angle: Array) -> None:
+def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
+    label, unit = joint_label("angle", joint), joint_unit("rad", joint)
     if not _LEAST_ROWS <= len(time) <= _MOST_ROWS:
         raise FileFormatError(
             f"{path} has {len(time)} rows; give {_LEAST_ROWS} to {_MOST_ROWS}, for a move of a "
@@ -68,9 +68,11 @@ def _check(path: Path, time: Array, angle: Array) -> None:
             f"{path}: the time does not increase from row {late[0] + 1} to the next; sort the rows"
         )
     if np.abs(angle).max() > MOST_ANGLE:
+        rotary = ("an angle", "degrees", "deg")
+        which, other, short = rotary if joint == ROTARY else ("a position", "millimetres", "mm")
         raise FileFormatError(
-            f"{path}: an angle of {np.abs(angle).max():g} rad; is it in degrees? name the column "
-            "angle_deg"
+            f"{path}: {which} of {np.abs(angle).max():g} {unit}; is it in {other}? name the "
+            f"column {label}_{short}"
         )
     if angle[0] == angle[-1]:
         raise FileFormatError(f"{path}: the path ends where it begins; give one that moves")
@@ -79,6 +81,6 @@ def _check(path: Path, time: Array, angle: Array) -> None:
     beside = [*speed[max(k - 6, 0) : max(k - 2, 0)], *speed[k + 3 : k + 7]]
     if speed[k] > _JUMP * max(beside, default=np.inf):
         raise FileFormatError(
-            f"{path}: the angle jumps by {abs(angle[k + 1] - angle[k]):.3g} rad after "
+            f"{path}: the {label} jumps by {abs(angle[k + 1] - angle[k]):.3g} {unit} after "
             f"{time[k]:.4g} s; give a path without jumps"
         )

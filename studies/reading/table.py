@@ -5,8 +5,10 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +27,13 @@ _LIKE = 4
 _MARKS = "#%!/ \t"
 """What a comment begins with, also where it names the columns."""
 _SHOWN = 12
-_TIMES = ("time", "t", "x_value", "x value", "timestamp", "zeit", "seconds")
-_ANGLES = ("angle", "theta", "position", "q")
+_HEAD = 2000
+"""Lines in which the numbers have to begin."""
+_CALLED = {
+    "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds"},
+    "angle": {"angle", "theta", "position", "q"},
+    "position": {"position", "x", "s", "q"},
+}
 
 
 @dataclass(frozen=True)
@@ -36,6 +43,11 @@ class Column:
     name: str
     unit: str
     values: Array
+
+    @property
+    def written(self) -> str:
+        """Its unit, wherever it is written; empty where it is nowhere."""
+        return self.unit or split_name(self.name)[1]
 
 
 @dataclass(frozen=True)
@@ -66,10 +78,10 @@ class Table:
         )
 
     def first(self, quantity: str) -> str:
-        """The first column that is called as a time or an angle is."""
-        begins = {"time": _TIMES, "angle": _ANGLES}[quantity]
+        """The first column that is called as a time, an angle or a position is."""
         for one in self.columns:
-            if {one.name.strip().lower(), split_name(one.name)[0].strip().lower()} & set(begins):
+            names = (one.name, split_name(one.name)[0])
+            if {name.strip().lower() for name in names} & _CALLED[quantity]:
                 return one.name
         names = ", ".join(one.name for one in self.columns[:_SHOWN])
         raise FileFormatError(
@@ -79,63 +91,66 @@ class Table:
 
     def in_si(self, name: str, quantity: str, unit: str = "", scale: float | None = None) -> Array:
         """A column in SI units: by a scale, a unit, that of its name, or as it is."""
-        column = self.find(name)
+        column, known = self.find(name), UNITS[quantity]
         if scale is not None:
             return column.values * scale
-        written = column.unit or split_name(column.name)[1]
-        known = UNITS[quantity]
-        if (
-            unit
-            and written
-            and normal(written) in known
-            and known[normal(unit)] != known[normal(written)]
-        ):
+        written = normal(column.written)
+        if unit and written in known and known[normal(unit)] != known[written]:
             raise FileFormatError(
-                f"{self.path}: column {column.name} is in {written} by its name and in {unit} as "
-                "given; leave the unit out, or rename the column"
+                f"{self.path}: column {column.name} is in {column.written} by its name and in "
+                f"{unit} as given; leave the unit out, or rename the column"
             )
-        if not unit and written and normal(written) not in known:
+        if written and not unit and written not in known:
             raise FileFormatError(
-                f"{self.path}: is {written!r} of column {column.name} a unit? give the "
+                f"{self.path}: is {column.written!r} of column {column.name} a unit? give the "
                 f"{quantity}'s by --units {quantity}:{next(iter(known))}, or by --scale"
             )
-        unit = normal(unit or written)
-        return column.values * known[unit] if unit else column.values
+        return column.values * known.get(normal(unit) or written, 1.0)
 
 
-def read_table(path: Path) -> Table:
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Say of which file an error is, whatever a parser makes of a damaged one."""
+    try:
+        yield
+    except FileFormatError as error:
+        raise FileFormatError(f"{path}: {error}") from None
+    except Exception as error:
+        raise FileFormatError(
+            f"{path}: it is no whole {path.suffix} file of numbers ({error}); save it again"
+        ) from None
+
+
+def read_table(path: Path, *, strict: bool = False) -> Table:
     """Read a file by its ending: .npy, .npz, .mat (up to version 7), and text for any other.
 
     In text the last row with as many cells before the first row of numbers names the columns; a row
-    of units may stand between. Nothing in a file is run.
+    of units may stand between. A `strict` table has its rows as they are, be it one row or column,
+    and in a text nothing but a heading above them. Nothing in a file is run.
     """
-    content, kind = read_bytes(path), path.suffix.lower()
-    try:
-        if kind == ".npy":
-            columns = _of_array("", np.load(io.BytesIO(content), allow_pickle=False))
-        elif kind == ".npz":
-            with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-                columns = _of_variables(dict(arrays))
-        elif kind == ".mat":
-            columns = _of_variables(_matlab(content))
-        else:
-            columns = _of_text(_decoded(content))
-    except FileFormatError as error:
-        raise FileFormatError(f"{path}: {error}") from None
-    except Exception as error:  # whatever their parsers make of a damaged file
-        raise FileFormatError(
-            f"{path}: it is no whole {kind} file of numbers ({error}); save it again"
-        ) from None
+    content = read_bytes(path)
+    with reading(path):
+        arrays = _arrays(path.suffix.lower(), content, strict)
+        columns = _of_text(content, strict) if arrays is None else _of_variables(arrays, strict)
     if not columns:
         raise FileFormatError(f"{path}: it has no vectors of numbers; save the time and what rings")
     return Table(path, tuple(columns))
 
 
-def _matlab(content: bytes) -> dict[str, Any]:
+def _arrays(kind: str, content: bytes, strict: bool) -> dict[str, Any] | None:
+    """Named arrays of a file of this ending, "" of one alone; None where it is a text."""
+    file = io.BytesIO(content)
+    if kind == ".npy":
+        return {"": np.load(file, allow_pickle=False)}
+    if kind == ".npz":
+        with np.load(file, allow_pickle=False) as arrays:
+            return dict(arrays)
+    if kind != ".mat":
+        return None
     from scipy.io import loadmat  # not at the top: it takes long to load
 
     try:
-        values = loadmat(io.BytesIO(content), simplify_cells=True)
+        values = loadmat(file, simplify_cells=not strict)
     except NotImplementedError:
         raise FileFormatError(
             "it is of MATLAB's version 7.3; save it by save(..., '-v7')"
@@ -143,28 +158,29 @@ def _matlab(content: bytes) -> dict[str, Any]:
     return {name: value for name, value in values.items() if not name.startswith("__")}
 
 
-def _of_variables(values: Mapping[str, Any], front: str = "") -> list[Column]:
+def _of_variables(values: Mapping[str, Any], strict: bool, front: str = "") -> list[Column]:
     """Vectors by name, a matrix by name and column (``X:2``), a structure by field (``a.b``)."""
     found: list[Column] = []
     for name, value in values.items():
+        array = np.asarray(value)
         if isinstance(value, Mapping):
-            found += _of_variables(value, f"{front}{name}.")
+            found += _of_variables(value, strict, f"{front}{name}.")
+        elif array.dtype.names:
+            fields = {field: np.ravel(array[field]) for field in array.dtype.names}
+            found += _of_variables(fields, strict, front)
         else:
-            found += _of_array(front + name, np.asarray(value))
+            found += _of_array(front + name, array if strict else np.squeeze(array), strict)
     return found
 
 
-def _of_array(name: str, values: NDArray[Any]) -> list[Column]:
-    if values.dtype.names:
-        return [Column(one, "", np.ravel(values[one]).astype(float)) for one in values.dtype.names]
-    values = np.squeeze(values)
-    if values.dtype.kind not in "fiu" or values.size < 2:
+def _of_array(name: str, values: NDArray[Any], strict: bool) -> list[Column]:
+    if values.dtype.kind not in "fiu" or values.ndim not in (1, 2):
+        return []
+    if values.size < 2 and not strict:
         return []
     if values.ndim == 1:
         return [Column(name or "0", "", values.astype(float))]
-    if values.ndim > 2:
-        return []
-    rows = values.T if values.shape[0] < values.shape[1] else values
+    rows = values.T if values.shape[0] < values.shape[1] and not strict else values
     first = 0 if not name else 1  # MATLAB counts from 1
     return [
         Column(f"{name}:{k}" if name else str(k), "", column.astype(float))
@@ -172,43 +188,46 @@ def _of_array(name: str, values: NDArray[Any]) -> list[Column]:
     ]
 
 
-def _decoded(content: bytes) -> str:
-    encodings = (
-        ("utf-16",) if content[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252")
-    )
-    for encoding in encodings:
-        try:
+def _decode(content: bytes) -> str:
+    utf16 = content[:2] in (b"\xff\xfe", b"\xfe\xff")
+    for encoding in ("utf-16",) if utf16 else ("utf-8-sig", "cp1252"):
+        with suppress(UnicodeDecodeError):
             text = content.decode(encoding)
-        except UnicodeDecodeError:
-            continue
-        if "\0" not in text:
-            return text
+            if "\0" not in text:
+                return text
     raise FileFormatError("it is no text; give .npy, .npz and .mat files their ending")
 
 
-def _of_text(text: str) -> list[Column]:
+def _of_text(content: bytes, strict: bool) -> list[Column]:
     """Columns of a text: separator, decimal mark, heading and units are found."""
-    lines = text.splitlines()
+    lines = [line.strip(" ") for line in _decode(content).splitlines()]
     filled = [k for k, line in enumerate(lines) if line.strip()]
     if not filled:
         raise FileFormatError("it is empty; give rows of numbers")
     data = [k for k in filled if lines[k].lstrip()[0] not in "#%"]
-    begins = {one: begin for one in _SEPARATORS if (begin := _begin(lines, data, one))}
+    head = [lines[k] for k in data[:_HEAD]]
+    marks = [one for one in _SEPARATORS if one is None or any(one in line for line in head)]
+    begins = {one: found for one in marks if (found := _begin(head, one, 1 if strict else 2))}
     if not begins:
         raise FileFormatError(
             f"no rows of numbers in it (its first line: {lines[filled[0]][:60]!r}); give columns "
             "of numbers, with semicolons between numbers with decimal commas"
         )
-    separator = min(begins, key=lambda one: begins[one][1])
-    data = data[begins[separator][0] :]
+    separator = min(begins, key=lambda one: begins[one][:2])
+    above, data = data[: begins[separator][2]], data[begins[separator][2] :]
     width = len(_cells(lines[data[0]], separator))
     before = [lines[k].lstrip(_MARKS) for k in filled if k < data[0]]
-    names, units = _heading(before, separator, width)
-    values = _numbers([(k, lines[k]) for k in data], separator, width)
+    heading = _heading(before, separator, width)
+    if strict and above and not heading:
+        raise FileFormatError(
+            f"line {data[0] + 1} has {width} columns, the first "
+            f"{len(_cells(lines[above[0]], separator))}; give as many in every line"
+        )
+    names, units = heading or ([str(k) for k in range(width)], [""] * width)
     return [
-        Column(name.strip(), unit, column)
-        for name, unit, column in zip(names, units, values, strict=True)
-        if column is not None and (name.strip() or np.isfinite(column).any())
+        Column(names[k].strip(), units[k], column)
+        for k, column in _numbers([(k, lines[k]) for k in data], separator, width).items()
+        if names[k].strip() or np.isfinite(column).any()
     ]
 
 
@@ -226,33 +245,31 @@ def _is_number(cell: str, separator: str | None) -> bool:
     return True
 
 
-def _begin(lines: list[str], data: list[int], separator: str | None) -> tuple[int, int] | None:
-    """Where rows begin with numbers in the same places, and how many cells there are words."""
-    kinds: list[tuple[bool, ...]] = []
-    run = 0
-    for k, row in enumerate(data):
-        cells = _cells(lines[row], separator)
-        kinds.append(tuple(bool(cell) and not _is_number(cell, separator) for cell in cells))
-        run = run + 1 if k and kinds[-1] == kinds[-2] else 1
-        if run == _LIKE or k + 1 == len(data):
-            texts = sum(kinds[-1])
-            if sum(map(bool, cells)) - texts >= 2:
-                return k + 1 - run, texts
+def _begin(lines: list[str], separator: str | None, least: int) -> tuple[int, int, int] | None:
+    """Words and numbers, negative, in the first row of numbers, and which row that is.
+
+    It is the first of several that have their words in the same places.
+    """
+    rows = [_cells(line, separator) for line in lines]
+    words = [[bool(cell) and not _is_number(cell, separator) for cell in row] for row in rows]
+    begin = 0
+    for where, alike in groupby(words):
+        count = len(list(alike))
+        numbers = sum(map(bool, rows[begin + min(count, _LIKE) - 1])) - sum(where)
+        if numbers >= least and (count >= _LIKE or begin + count == len(rows)):
+            return sum(where), -numbers, begin
+        begin += count
     return None
 
 
 def _heading(
     before: list[str], separator: str | None, width: int
-) -> tuple[Sequence[str], Sequence[str]]:
+) -> tuple[list[str], list[str]] | None:
     """Names and units of the columns, of the last rows above them that have as many cells."""
-    rows = [_named(line, separator, width) for line in before]
-    filled = [row for row in rows if row]
-    none = [""] * width
-    if not filled:
-        return [str(k) for k in range(width)], none
-    if len(filled) > 1 and all(is_unit(cell) for cell in filled[-1] if cell):
-        return filled[-2], [cell.strip("()[]{} ") for cell in filled[-1]]
-    return filled[-1], none
+    rows = [row for line in before if (row := _named(line, separator, width))]
+    if len(rows) > 1 and all(is_unit(cell) for cell in rows[-1] if cell):
+        return rows[-2], [cell.strip("()[]{} ") for cell in rows[-1]]
+    return (rows[-1], [""] * width) if rows else None
 
 
 def _named(line: str, separator: str | None, width: int) -> list[str] | None:
@@ -269,33 +286,28 @@ def _named(line: str, separator: str | None, width: int) -> list[str] | None:
 
 def _numbers(
     rows: Sequence[tuple[int, str]], separator: str | None, width: int
-) -> list[Array | None]:
-    """The columns' numbers, not a number where a cell is blank; None for columns of words."""
+) -> dict[int, Array]:
+    """The columns' numbers, not a number where a cell is blank; without columns of words."""
     import pandas as pd  # not at the top: it takes half a second to load
 
     for k, line in rows:
-        if separator and line.count(separator) >= width and '"' not in line:
-            count = line.count(separator) + 1
+        if separator and (count := line.count(separator)) >= width and '"' not in line:
             raise FileFormatError(
-                f"line {k + 1} has {count} columns, the first {width}; give as many in every line"
+                f"line {k + 1} has {count + 1} columns, the first {width}; give as many in every "
+                "line"
             )
-    table = pd.read_csv(
-        io.StringIO("\n".join(line.strip(" ") for _, line in rows)), sep=separator or r"\s+",
-        header=None, names=range(width), index_col=False, dtype=str, skipinitialspace=True,
+    cells = pd.read_csv(
+        io.StringIO("\n".join(line for _, line in rows)), sep=separator or r"\s+", header=None,
+        names=range(width), index_col=False, dtype=str, skipinitialspace=True,
     )  # fmt: skip
-    found: list[Array | None] = []
-    for k in range(width):
-        text = table[k] if separator == "," else table[k].str.replace(",", ".", regex=False)
-        numbers: Any = pd.to_numeric(text, errors="coerce")
-        wrong = np.flatnonzero((text.notna() & numbers.isna()).to_numpy())
-        if len(wrong) > len(rows) / 2:
-            found.append(None)
-            continue
-        if len(wrong):
-            row = int(wrong[0])
-            raise FileFormatError(
-                f"line {rows[row][0] + 1}: {table[k].iloc[row]!r} is no number; mend it, or leave "
-                "the cell empty"
-            )
-        found.append(numbers.to_numpy(float))
-    return found
+    plain = cells if separator == "," else cells.apply(lambda text: text.str.replace(",", "."))
+    numbers: Any = plain.apply(pd.to_numeric, errors="coerce")
+    wrong = cells.notna() & numbers.isna()
+    wrong = wrong.loc[:, wrong.mean() <= 0.5]
+    if wrong.any(axis=None):
+        row, column = np.argwhere(wrong.to_numpy())[0]
+        raise FileFormatError(
+            f"line {rows[row][0] + 1}: {cells[wrong.columns[column]].iloc[row]!r} is no number; "
+            "mend it, or leave the cell empty"
+        )
+    return {k: numbers[k].to_numpy(float) for k in wrong.columns}

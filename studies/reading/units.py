@@ -25,6 +25,7 @@ _SENSORS = dict.fromkeys(("v", "mv", "counts", "strain", "ue", "pixel", "px"), 1
 UNITS: Mapping[str, Mapping[str, float]] = {
     "time": _TIMES,
     "angle": _ANGLES,
+    "position": _LENGTHS,
     "tip": {**_LENGTHS, **_ANGLES, **_SENSORS},
     "acceleration": {"m/s^2": 1.0, "mps2": 1.0, "mm/s^2": 1e-3, "g": 9.80665, "mg": 9.80665e-3,
                      "v": 1.0, "mv": 1.0, "counts": 1.0},

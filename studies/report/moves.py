@@ -92,10 +92,11 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
     candidate = Candidate.of_free_motion(task.certain, free)
     ends = (f"{1e3 * gap:.3g}" for gap in (free.lengths.min(), free.lengths.max()))
     jump = np.abs(np.diff(free.acceleration)).max(initial=0.0)
+    unit = joint_unit("rad/s^2", task.plant.joint)
     rows = [
         *_move_rows(task, candidate.motion),
         ("path", f"{free.steps + 1} points, {' to '.join(dict.fromkeys(ends))} ms apart"),
-        ("smoothness", f"acceleration changes by up to {jump:.3g} rad/s^2 from point to point"),
+        ("smoothness", f"acceleration changes by up to {jump:.3g} {unit} from point to point"),
         *_figure_rows(task, candidate.motion),
     ]
     for scenario in task.scenarios[1:]:

@@ -76,7 +76,7 @@ class Report:
             for name, table in self.tables.items()
         )  # fmt: skip
 
-    def files(self, folder: Path | None, name: str = "report.md") -> list[File]:
+    def files(self, folder: Path, name: str = "report.md") -> list[File]:
         """The text, a CSV file for each table, and the pictures; none without a folder."""
         writes: dict[str, Callable[[Path], object]] = {
             name: lambda path: write_whole(path, self.markdown())

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-File = tuple[Path | None, Callable[[Path], object]]
-"""A file that was asked for, or None, and what writes it."""
+File = tuple[Path, Callable[[Path], object]]
+"""A file that was asked for, and what writes it."""
 STDOUT = Path("-")
 """Stands for standard output; a file of this name is given as ./-"""
 
@@ -27,16 +27,11 @@ def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
     return write
 
 
-def inside(folder: Path | None, writes: Mapping[str, Callable[[Path], object]]) -> list[File]:
-    """Files of a folder by their names; the folder is made when the first is written.
-
-    None where no folder was asked for.
-    """
+def inside(folder: Path, writes: Mapping[str, Callable[[Path], object]]) -> list[File]:
+    """Files of a folder by their names; the folder is made when the first is written."""
 
     def write_inside(write: Callable[[Path], object], path: Path) -> None:
         path.parent.mkdir(exist_ok=True)
         write(path)
 
-    return [
-        (folder and folder / name, partial(write_inside, write)) for name, write in writes.items()
-    ]
+    return [(folder / name, partial(write_inside, write)) for name, write in writes.items()]

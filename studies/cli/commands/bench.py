@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
+from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.options import (
     command,
     part_option,
@@ -15,7 +16,7 @@ from quietarm.studies.cli.options import (
     warn_of_workers,
     workers_options,
 )
-from quietarm.studies.cli.types import FOLDER, INPUT, WHOLE
+from quietarm.studies.cli.types import INPUT, WHOLE, Parsed
 from rich.console import Console
 
 
@@ -38,10 +39,10 @@ from rich.console import Console
     help="A run of another library that a recorded function wrote; may be repeated.",
 )  # fmt: skip
 @click.option(
-    "--output", type=FOLDER, required=True,
+    "--output", type=Parsed("folder", check_folder), required=True,
     help="Folder for runs and report; runs that are there are not done again.",
 )  # fmt: skip
-@part_option("run")
+@part_option
 @workers_options
 def bench(
     problems: tuple[str, ...],
@@ -92,7 +93,7 @@ def bench(
     given = [Front.load(path) for path in imported]
     if not quiet():
         print_lines(errors, *left_out, say_power(runs, len(names)))
-        warn_of_workers(errors, workers, len(jobs))
+        warn_of_workers(workers, len(jobs))
     write_references(chosen, output)
     trouble: QuietarmError | None = None
     with progress(len(jobs), errors, quiet=quiet()) as begin:
@@ -108,8 +109,7 @@ def bench(
     report = bench_report(Results.of_jobs(fronts, given), typed_line())
     files = report.files(output)
     for path, write in files:
-        if path is not None:
-            write(path)
+        write(path)
     show(Console(), brief_report(Results.of_jobs(fronts, given)))
     click.echo(f"wrote report.md and {len(files) - 1} tables and pictures to {output}")
     if trouble is not None:

@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.files import FOLDER, output_option, report_files
-from quietarm.studies.cli.options import command, quiet, refuse_typed
+from quietarm.studies.cli.files import FOLDER, finish, output_option, report_files
+from quietarm.studies.cli.options import busy, command, refuse_typed
 from quietarm.studies.cli.quantities import once
-from quietarm.studies.cli.types import ERROR, INPUT, WHOLE, Parsed
+from quietarm.studies.cli.task import error_option
+from quietarm.studies.cli.types import INPUT, WHOLE, Parsed
 from quietarm.studies.report import Report
-from quietarm.studies.report.progress import working
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -41,11 +40,7 @@ def _names(text: str) -> tuple[str, ...]:
     "--baselines", type=Parsed("names", _names), default=(),
     help="Plans: add these for the same move, as zvd,ruckig,zvd-ruckig; or all.",
 )  # fmt: skip
-@click.option(
-    "--error", "errors", type=ERROR, multiple=True, metavar="NAME=SHARE",
-    help="Plans: by how much the frequency, the damping or a parameter may be wrong, as "
-    "frequency=8%; may be repeated. [default: what the plans are made for]",
-)  # fmt: skip
+@error_option
 @click.option(
     "--samples", type=WHOLE, default=2000, show_default=True,
     help="Plans: random plants for the percentiles.",
@@ -82,7 +77,7 @@ def compare(
     from quietarm.ocp import Front, Plan
     from quietarm.studies.compare.opening import open_answers
 
-    with working("comparing", Console(stderr=True), quiet=quiet()):
+    with busy("comparing"):
         answers = open_answers(files)
         plans = {name: one for name, one in answers.items() if isinstance(one, Plan)}
         fronts = {name: one for name, one in answers.items() if isinstance(one, Front)}

@@ -3,42 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.ocp import evaluate_coefficients
+from quietarm.ocp import PointToPoint, evaluate_coefficients
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
-from quietarm.studies.cli.commands.plan import plan_files
-from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.files import PICTURE, files_of, output_option
+from quietarm.studies.cli.commands.plan import plan_files, shown_plan
+from quietarm.studies.cli.files import PICTURE, finish, front_files, output_option
 from quietarm.studies.cli.options import (
     bound_option,
+    busy,
     command,
     profile_options,
-    quiet,
     refuse_typed,
     sensitivities_option,
 )
+from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.task import TypedMove, task_options
-from quietarm.studies.cli.types import COEFFICIENTS, INPUT, WHOLE
+from quietarm.studies.cli.types import INPUT, WHOLE, Parsed
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.report.fronts import search_lines
-from quietarm.studies.report.moves import path_rows, plan_rows, sensitivity_rows
-from quietarm.studies.report.progress import working
-from quietarm.studies.report.saving import drawing
-from rich.console import Console
+from quietarm.studies.report.moves import path_rows
 
+_TABLES = (".csv", ".txt", ".dat", ".npy", ".npz", ".mat")
 _OF_TABLES = ("bound", "evaluations")
 _NOT_OF_PATHS = ("coefficients", "profile", "terms", "sensitivities", "output", *_OF_TABLES)
+
+
+def _coefficients(text: str) -> list[float] | Path:
+    return Path(text) if Path(text).suffix in _TABLES else parse_coefficients(text)
 
 
 @command()
 @task_options
 @profile_options(*SHAPERS, words="; or the plain cycloid through an input shaper")
 @click.option(
-    "--coefficients", type=COEFFICIENTS, metavar="NUMBERS|FILE",
+    "--coefficients", type=Parsed("numbers", _coefficients), metavar="NUMBERS|FILE",
     help="Those of the profile with commas between, as --coefficients=-0.0019,-0.14; or a file "
     "with a row a motion (.csv, .txt, .npy, .npz, .mat), which gives a front.",
 )  # fmt: skip
@@ -59,10 +62,9 @@ def evaluate(
     terms: int | None,
     coefficients: Sequence[float] | Path | None,
     path: Path | None,
-    bound: float | None,
-    evaluations: int | None,
     sensitivities: bool,
     output: Sequence[Path],
+    **of_table: Any,
 ) -> None:
     """Compute residual, energy and peaks of coefficients, an input shaper, a path or a table.
 
@@ -80,13 +82,11 @@ def evaluate(
     """  # noqa: D301  # \b is click's: do not rewrap
     if path is not None:
         refuse_typed(_NOT_OF_PATHS, "is not for a --path; leave it out")
-        _evaluate_path(move, path)
-        return
+        return _evaluate_path(move, path)
     task = move.task()
     if isinstance(coefficients, Path):
         refuse_typed(["sensitivities"], "is not for a table; leave it out")
-        _evaluate_table(move, coefficients, profile, terms, bound, evaluations, output)
-        return
+        return _evaluate_table(task, coefficients, profile, terms, output, **of_table)
     refuse_typed(_OF_TABLES, "is for a table of results; leave it out")
     if profile in SHAPERS:
         refuse_typed(["coefficients", "terms"], f"is not for {profile}; leave it out")
@@ -95,32 +95,30 @@ def evaluate(
         raise click.UsageError("Missing option '--coefficients'.")
     else:
         motions = FAMILIES[profile].of_size(len(coefficients))
-    with working("integrating", Console(stderr=True), quiet=quiet()):
+    with busy("integrating"):
         found = evaluate_coefficients(task, coefficients or [], profile=motions)
-    sensitive = sensitivity_rows(found) if sensitivities else []
-    title = "\nwhat a parameter that is 1 % larger adds to residual and energy:" * bool(sensitive)
-    finish(plan_files(output, found), plan_rows(found), title, sensitive)
+    return finish(plan_files(output, found), *shown_plan(found, sensitivities))
 
 
 def _evaluate_path(move: TypedMove, path: Path) -> None:
     from quietarm.studies.reading.path import read_path
 
-    move.refuse("is in the file of --path; leave it out", "start", "target", "duration")
-    recorded = read_path(path)
+    refuse_typed(["start", "target", "duration"], "is in the file of --path; leave it out")
+    recorded = read_path(path, move.plant().joint)
     task = move.task(start=recorded.start, target=recorded.target, duration=recorded.duration)
-    with working("integrating", Console(stderr=True), quiet=quiet()):
+    with busy("integrating"):
         rows = path_rows(task, recorded)
     finish([], rows)
 
 
 def _evaluate_table(
-    move: TypedMove,
+    task: PointToPoint,
     file: Path,
     profile: str,
     terms: int | None,
+    output: Sequence[Path],
     bound: float | None,
     evaluations: int | None,
-    output: Sequence[Path],
 ) -> None:
     """A front of coefficients that another program found, beside what it states of them."""
     from quietarm.studies.reading.foreign import read_found
@@ -128,18 +126,17 @@ def _evaluate_table(
 
     if profile in SHAPERS:
         raise ValueError(f"{profile} has no coefficients; give one of {', '.join(FAMILIES)}")
-    task, found = move.task(), read_found(file)
+    found = read_found(file)
     columns = found.coefficients.shape[1]
     if terms is not None and FAMILIES[profile](terms).size != columns:
         raise ValueError(
             f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
             f"{FAMILIES[profile](terms).size}; leave --terms out, or transpose the table"
         )
-    settings: dict[str, Any] = {
-        "imported": file.name,
-        **({} if bound is None else {"bound": bound}),
-    }
-    with working("evaluating", Console(stderr=True), quiet=quiet()):
+    settings: dict[str, Any] = {"imported": file.name}
+    if bound is not None:
+        settings["bound"] = bound
+    with busy("evaluating"):
         try:
             motions = FAMILIES[profile].of_size(columns)
             front, claims = import_front(task, motions, found, file.stem, settings, evaluations)
@@ -150,6 +147,5 @@ def _evaluate_table(
     ]
     if found.ignored:
         notes.append(f"ignored: {', '.join(found.ignored)[:200]}")
-    picture = drawing(lambda: figures.front_figure([front]))
-    writes = {".json": front.save, ".csv": front.save_csv, PICTURE: picture}
-    finish(files_of(output, writes), search_lines([front], notes))
+    draw = partial(figures.front_figure, [front])
+    finish(front_files(output, front, draw), search_lines([front], notes))

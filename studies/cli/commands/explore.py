@@ -10,7 +10,7 @@ from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp.checks import install
 from quietarm.studies.cli.options import command, plant_file
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
-from quietarm.studies.cli.types import SETTING
+from quietarm.studies.cli.task import set_option
 
 _USUAL = "single-link"
 """The plant where none is given."""
@@ -18,8 +18,7 @@ _USUAL = "single-link"
 
 @command()
 @click.argument("what", required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]")
-@click.option("--set", "parameters", type=SETTING, multiple=True,
-              help="Set a parameter of the PLANT, as omega=9; may be repeated.")  # fmt: skip
+@set_option
 @click.option("--no-browser", is_flag=True, help="Print the page's address alone.")
 def explore(what: str | None, parameters: tuple[tuple[str, str], ...], no_browser: bool) -> None:
     """Show a page on which a move is changed by hand, and its figures and motion at once.

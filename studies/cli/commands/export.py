@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.options import command, quiet, typed
-from quietarm.studies.cli.types import FILE, INPUT, SHARE, WHOLE
+from quietarm.ocp.files import check_writable
+from quietarm.studies.cli.files import finish
+from quietarm.studies.cli.options import command, counting, typed
+from quietarm.studies.cli.types import INPUT, SHARE, WHOLE, Parsed
 from quietarm.studies.export.formats import (
     COLUMNS,
     FORMATS,
@@ -21,18 +22,13 @@ from quietarm.studies.export.formats import (
 )
 from quietarm.studies.figures.motion import Line
 from quietarm.studies.reading.saved import load_plans
-from quietarm.studies.report.progress import count
-from rich.console import Console
 
 
 @command()
 @click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
-@click.option(
-    "--output",
-    type=FILE,
-    required=True,
-    help="The file, whose ending is the format; move.c has move.h beside it.",
-)
+@click.option("--output", type=Parsed("file", check_writable), required=True,
+              help="The file, whose ending is the format; move.c has move.h beside it."
+              )  # fmt: skip
 @click.option("--columns", default=COLUMNS, show_default=True,
               help="Of csv and mat, with units: time:ms,angle:deg,speed,acceleration,jerk,tip:mm,"
               "torque,power.")  # fmt: skip
@@ -93,6 +89,6 @@ def _write_film(plans: tuple[Path, ...], output: Path, form: str, settings: dict
 
     lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
     film = animate(lines if len(lines) > 1 else lines[0].plan, **settings)
-    with count(film.frames, "frames", Console(stderr=True), quiet=quiet()) as report:
+    with counting(film.frames, "frames") as report:
         film.save(output, form, report)
     return f"{film.frames} frames, {film.seconds:.1f} s, {output.stat().st_size / 1e3:.0f} kB"

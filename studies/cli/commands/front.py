@@ -3,34 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 from quietarm.ocp import SolverFailedError, cross_check, polish_front
 from quietarm.studies import figures
-from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.files import PICTURE, files_of, output_option
+from quietarm.studies.cli.files import PICTURE, finish, front_files, output_option
 from quietarm.studies.cli.options import (
     bound_option,
+    busy,
     command,
+    counting,
     profile_options,
-    quiet,
     refuse_typed,
     seed_option,
     solver_option,
     starts_option,
-    typed,
 )
-from quietarm.studies.cli.task import TypedMove, task_options
-from quietarm.studies.cli.types import INPUT, WEIGHTS, WHOLE, Named
+from quietarm.studies.cli.quantities import parse_weights
+from quietarm.studies.cli.task import NAMES, TypedMove, task_options
+from quietarm.studies.cli.types import INPUT, WHOLE, Named, Parsed
 from quietarm.studies.reading.saved import load_front
 from quietarm.studies.registry.methods import EPSILON, METHODS, WEIGHTED, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.report.fronts import failure_lines, gradient_lines, polish_lines
-from quietarm.studies.report.progress import count, working
-from quietarm.studies.report.saving import drawing
-from rich.console import Console
 
 _GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 _SEARCHES = {
@@ -58,7 +56,7 @@ _OF_CURVES = (
     help="Points of the front; epsilon has three more, at 0.1, 1 and 5 mm.",
 )  # fmt: skip
 @click.option(
-    "--weights", type=WEIGHTS, multiple=True, metavar="R:E",
+    "--weights", type=Parsed("weights", parse_weights), multiple=True, metavar="R:E",
     help="weighted: weights of residual and energy, both scaled to the ends of the front, in place "
     "of --points; may be repeated, as --weights 1:1 --weights 1:3.",
 )  # fmt: skip
@@ -99,18 +97,16 @@ def front(
       quietarm front --polish nsga2.json --output polished.json --output polished.png
     """  # noqa: D301  # \b is click's: do not rewrap
     if polish is not None:
-        refuse_typed(_OF_CURVES, "is in the front of --polish; leave it out")
-        move.refuse("is in the front of --polish; leave it out")
-        _polish(polish, output)
-        return
+        refuse_typed((*_OF_CURVES, *NAMES), "is in the front of --polish; leave it out")
+        return _polish(polish, output)
     if weights and method != WEIGHTED.name:
         raise ValueError(f"--weights is for weighted, not for {method}; leave it out")
-    if weights and typed("points"):
-        raise ValueError("--points is for weights that are chosen by the method; leave it out")
-    task, errors = move.task(), Console(stderr=True)
+    if weights:
+        refuse_typed(["points"], "is for weights that are chosen by the method; leave it out")
+    task, total = move.task(), len(weights) or points
+    asked = {"weights": weights} if weights else {"points": points}
     settings["profile"] = profile_of(profile, task, terms)
-    asked, total = ({"weights": weights}, len(weights)) if weights else ({"points": points}, points)
-    with count(total, "weights" if weights else "points", errors, quiet=quiet()) as report:
+    with counting(total, *asked) as report:
         found = METHODS[method].sweep(task, report=report, **asked, **settings)
     # the ends come with weights, and epsilon has residuals of its own
     asked_for = max(total + 2 * bool(weights), len(found.points) + len(found.failures))
@@ -119,20 +115,17 @@ def front(
         raise SolverFailedError(f"no point was found: {reasons}")
     checked = None
     if check:
-        with count(_CHECKED, "checked points", errors, quiet=quiet()) as report:
+        with counting(_CHECKED, "checked points") as report:
             checked = cross_check(found, _CHECKED, report)
-    picture = drawing(lambda: figures.sweep_figure(found))
-    writes = {".json": found.save, ".csv": found.save_csv, PICTURE: picture}
-    finish(files_of(output, writes), gradient_lines(found, asked_for, checked))
+    draw = partial(figures.sweep_figure, found)
+    return finish(front_files(output, found, draw), gradient_lines(found, asked_for, checked))
 
 
 def _polish(file: Path, output: Sequence[Path]) -> None:
-    errors = Console(stderr=True)
-    with working("checking", errors, quiet=quiet()):
+    with busy("checking"):
         given = load_front(file)
-    with count(len(given.points), "points", errors, quiet=quiet()) as report:
+    with counting(len(given.points), "points") as report:
         polished = polish_front(given, report=report)
-    found, gains = polished.front, polished.gains
-    picture = drawing(lambda: figures.polish_figure(given, polished))
-    writes = {".json": found.save, ".csv": found.save_csv, PICTURE: picture}
-    finish(files_of(output, writes), polish_lines(given, found, gains))
+    draw = partial(figures.polish_figure, given, polished)
+    lines = polish_lines(given, polished.front, polished.gains)
+    finish(front_files(output, polished.front, draw), lines)

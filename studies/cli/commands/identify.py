@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import click
 from quietarm.models import Plant
 from quietarm.studies import figures
 from quietarm.studies import identify as identification
-from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.files import PICTURE, files_of, output_option
-from quietarm.studies.cli.options import command, plant_file, quiet
+from quietarm.studies.cli.files import PICTURE, files_of, finish, output_option
+from quietarm.studies.cli.options import busy, command, plant_file
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
-from quietarm.studies.cli.types import INPUT, SETTING, Parsed
-from quietarm.studies.reading.recording import part_of, read_recording, scale_of, units_of
+from quietarm.studies.cli.quantities import parse_interval, parse_scale, parse_units
+from quietarm.studies.cli.task import set_option
+from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.studies.reading.recording import read_recording
 from quietarm.studies.report.machines import machine_notes, machine_rows, prediction_rows
-from quietarm.studies.report.progress import working
-from quietarm.studies.report.saving import drawing
-from rich.console import Console
 
 
 def _plant_at_the_end(name: str) -> type[Plant] | identification.Identified:
@@ -30,20 +29,19 @@ def _plant_at_the_end(name: str) -> type[Plant] | identification.Identified:
 
 @command()
 @click.argument("files", type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT")
-@click.option("--set", "parameters", type=SETTING, multiple=True,
-              help="What is known of the plant, as length=0.6 (SI); may be repeated.")  # fmt: skip
+@set_option
 @click.option("--time", help="Column of the time.  [default: the one that is called so]")
 @click.option("--angle", help="Column of the joint's angle; without it the joint was held.")
 @click.option("--tip", multiple=True, help="Column of the tip's displacement; one for each tip.")
 @click.option("--acceleration", multiple=True,
               help="Column of an accelerometer at the tip, across; one for each tip.")  # fmt: skip
 @click.option("--torque", help="Column of the joint's torque.")
-@click.option("--units", type=Parsed("units", units_of), default={},
+@click.option("--units", type=Parsed("units", parse_units), default={},
               help="Of columns whose names do not have them, as time:ms,angle:deg,tip:mm,"
               "acceleration:g. [default: SI]")  # fmt: skip
-@click.option("--scale", "scales", type=Parsed("scale", scale_of), multiple=True,
+@click.option("--scale", "scales", type=Parsed("scale", parse_scale), multiple=True,
               help="What a count is in SI units, as angle=2pi/4096; may be repeated.")  # fmt: skip
-@click.option("--part", "parts", type=Parsed("begin:end", part_of), multiple=True,
+@click.option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
               help="Where a ring-down begins and ends [s], as 3.2:7.3; may be repeated. "
               "[default: they are found]")  # fmt: skip
 @click.option("--free", type=Parsed("names", lambda text: [one.strip() for one in text.split(",")]),
@@ -100,8 +98,11 @@ def identify(
         note = "The state is taken from two periods, and the five after them are predicted."
         finish([], prediction_rows(known, identification.predict(known, read)), note)
         return
-    with working("fitting", Console(stderr=True), quiet=quiet()):
+    with busy("fitting"):
         found = identification.identify(read, known, free, parts)
-    picture = drawing(lambda: figures.identification_figure(found, read))
-    written = files_of(output, {".json": found.save, PICTURE: picture})
-    finish(written, machine_rows(found), *machine_notes(found))
+    draw = partial(figures.identification_figure, found, read)
+    finish(
+        files_of(output, {".json": found.save, PICTURE: draw}),
+        machine_rows(found),
+        *machine_notes(found),
+    )

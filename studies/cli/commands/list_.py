@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, Field, fields
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +14,9 @@ from quietarm.metaheuristics.problems.card import card_of
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant, known_plants
 from quietarm.ocp.checks import unknown
-from quietarm.studies.cli.ending import Together, finish
-from quietarm.studies.cli.files import FOLDER, output_option
+from quietarm.studies.cli.files import FOLDER, finish, output_option
 from quietarm.studies.cli.options import command, plant_file
 from quietarm.studies.registry.methods import METHODS
-from quietarm.studies.report.saving import inside
 from quietarm.studies.report.words import counted, error_words
 
 Row = tuple[str, str]
@@ -51,19 +50,17 @@ def list_(names: Sequence[str], output: Sequence[Path]) -> None:
     problems = [PROBLEMS[name] for name in names if name in PROBLEMS]
     if not names or "problems" in names:
         problems = list(PROBLEMS.values())
-    together = None
-    if output:
-        writes = {
-            f"{name}.json": front.save
-            for problem in problems
-            for name, front in zip(problem.tasks(), problem.fronts(), strict=True)
-        }
-        if not writes:
+    wrote = list[str]()
+    for folder in output:
+        if not problems:
             raise ValueError("--output is for the reference fronts of problems; name one")
-        (folder,) = output
-        what = counted(len(writes), "front").partition(" ")[2]
-        together = Together(what, folder, inside(folder, writes))
-    finish([], *shown, together=together)
+        fronts = [zip(one.tasks(), one.fronts(), strict=True) for one in problems]
+        found = dict(chain.from_iterable(fronts))
+        folder.mkdir(exist_ok=True)
+        for name, front in found.items():
+            front.save(folder / f"{name}.json")
+        wrote.append(f"wrote {counted(len(found), 'front')} to {folder}")
+    finish([], *shown, *wrote)
 
 
 def _rows(name: str, plants: Mapping[str, type[Plant]]) -> list[list[Row] | str]:

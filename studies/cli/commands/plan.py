@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +18,12 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
-from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.files import PICTURE, ending_of, files_of, output_option
+from quietarm.studies.cli.files import PICTURE, ending_of, files_of, finish, output_option
 from quietarm.studies.cli.options import (
     bound_option,
+    busy,
     command,
     profile_options,
-    quiet,
     refuse_typed,
     residual_limit_option,
     seed_option,
@@ -36,10 +37,8 @@ from quietarm.studies.cli.task import NAMES, TypedMove, task_options
 from quietarm.studies.cli.types import INPUT
 from quietarm.studies.registry.profiles import FAMILIES, chooses_terms, profile_of
 from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
-from quietarm.studies.report.progress import working
-from quietarm.studies.report.saving import File, drawing
+from quietarm.studies.report.saving import File
 from quietarm.studies.sweep.grid import OF_MOVES
-from rich.console import Console
 
 FREE = {"free": False, "free-smooth": True}
 """Profiles without a parametrisation, and whether the acceleration is continuous."""
@@ -92,8 +91,7 @@ def plan(
     if dataset is not None:
         idle = (*_OF_COEFFICIENTS, *_OF_SOLVERS, "profile")
         refuse_typed(idle, "is not for --from; leave it out")
-        _look_up(move, dataset, output)
-        return
+        return _look_up(move, dataset, output)
     if profile not in FAMILIES:
         idle = _OF_COEFFICIENTS if profile in FREE else (*_OF_COEFFICIENTS[:-1], *_OF_SOLVERS)
         why = f"is not for {profile}, only for profiles with coefficients"
@@ -101,51 +99,49 @@ def plan(
         if move.fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
     if profile in FREE:
-        _plan_freely(move, FREE[profile], asked["starts"], asked["seed"], output)
-        return
+        return _plan_freely(move, FREE[profile], asked["starts"], asked["seed"], output)
     task, notes = move.task(), list[str]()
     motions = None if chooses_terms(profile, terms) else profile_of(profile, task, terms)
-    errors = Console(stderr=True)
     if move.fastest:
-        if typed("starts"):
-            raise ValueError("--starts is not for --duration fastest; leave it out")
+        refuse_typed(["starts"], "is not for --duration fastest; leave it out")
         del asked["starts"]
-        with working("looking for the shortest duration", errors, quiet=quiet()):
+        with busy("looking for the shortest duration"):
             shortest = fastest_move(task, motions, **asked)
         found = shortest.plan
         notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
     else:
-        with working("solving", errors, quiet=quiet()):
+        with busy("solving"):
             found = plan_move(task, motions, **asked)
-    sensitive = sensitivity_rows(found) if sensitivities else []
-    title = "\nwhat a parameter that is 1 % larger adds to residual and energy:" * bool(sensitive)
-    finish(plan_files(output, found), plan_rows(found), title, sensitive, *notes)
+    return finish(plan_files(output, found), *shown_plan(found, sensitivities), *notes)
+
+
+def shown_plan(found: Plan, sensitivities: bool) -> Sequence[Sequence[tuple[str, str]] | str]:
+    """The figures of a plan, and how they change with the parameters of the plant."""
+    if not sensitivities:
+        return [plan_rows(found)]
+    title = "\nwhat a parameter that is 1 % larger adds to residual and energy:"
+    return [plan_rows(found), title, sensitivity_rows(found)]
 
 
 def plan_files(output: Sequence[Path], plan: Plan) -> list[File]:
     """A plan as JSON, its path as CSV, and its picture."""
-    picture = drawing(lambda: figures.motion_figure(plan))
-    return files_of(output, {".json": plan.save, ".csv": plan.save_csv, PICTURE: picture})
+    draw = partial(figures.motion_figure, plan)
+    return files_of(output, {".json": plan.save, ".csv": plan.save_csv, PICTURE: draw})
 
 
 def _plan_freely(
     move: TypedMove, smooth: bool, starts: int, seed: int, output: Sequence[Path]
 ) -> None:
     """The least energy over all joint motions, beside the plan of a polynomial."""
-    task = move.task()
+    task, beside = move.task(), None
     if any(ending_of(path) == ".csv" for path in output):
         raise ValueError("a free motion is written as .json or as a picture, not as .csv")
-    with working("refining the grid", Console(stderr=True), quiet=quiet()):
+    with busy("refining the grid"):
         found = energy_floor(task, smooth=smooth, starts=starts, seed=seed)
-        try:
+        with suppress(SolverFailedError):
             beside = plan_move(task)
-        except SolverFailedError:
-            beside = None
-    writes = {
-        ".json": found.save,
-        PICTURE: drawing(lambda: figures.floor_figure(found, beside)),
-    }
-    finish(files_of(output, writes), floor_rows(found, beside))
+    draw = partial(figures.floor_figure, found, beside)
+    finish(files_of(output, {".json": found.save, PICTURE: draw}), floor_rows(found, beside))
 
 
 def _look_up(move: TypedMove, dataset: Path, output: Sequence[Path]) -> None:
@@ -154,12 +150,11 @@ def _look_up(move: TypedMove, dataset: Path, output: Sequence[Path]) -> None:
     from quietarm.studies.sweep.store import Store
 
     kept = [name for name in NAMES if name not in ("parameters", *OF_MOVES)]
-    move.refuse("is in the dataset of --from; leave it out", *kept)
-    with working("interpolating between the cells", Console(stderr=True), quiet=quiet()):
+    refuse_typed(kept, "is in the dataset of --from; leave it out")
+    with busy("interpolating between the cells"):
         plant = Store(dataset).definition.grid.task.plant
         at = values_of_plant(plant, move.given["parameters"])
         ends = {name: move.read(name, plant.joint) for name in ("start", "target")}
-        given = {**move.given, **ends}
-        at |= {name: given[name][0] for name in OF_MOVES if typed(name)}
+        at |= {name: {**move.given, **ends}[name][0] for name in OF_MOVES if typed(name)}
         found, between, trouble = plan_from(dataset, **at)
     finish(plan_files(output, found), plan_rows(found), between.words, trouble=trouble)

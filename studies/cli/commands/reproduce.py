@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.files import FOLDER, ending_of, output_option, report_files
+from quietarm.studies.cli.files import FOLDER, ending_of, finish, output_option, report_files
 from quietarm.studies.cli.options import command, quiet
 from quietarm.studies.cli.types import WHOLE
 from rich.console import Console
@@ -30,7 +30,6 @@ def reproduce(full: bool, seeds: int | None, workers: int | None, output: Sequen
     """  # noqa: D301  # \b is click's: do not rewrap
     import joblib
     from quietarm.ocp.checks import whole
-    from quietarm.studies.cli.ending import finish
     from quietarm.studies.report.progress import progress
     from quietarm.studies.reproduce.recompute import Effort, number_of_pieces, recompute_paper
     from quietarm.studies.reproduce.report import reproduction_report

@@ -12,8 +12,7 @@ from quietarm.metaheuristics.algorithms.presets import PAPER_BOX
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
-from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.files import PICTURE, ending_of, files_of, output_option
+from quietarm.studies.cli.files import PICTURE, ending_of, finish, front_files, output_option
 from quietarm.studies.cli.options import (
     bound_option,
     command,
@@ -31,7 +30,7 @@ from quietarm.studies.reading.saved import load_front
 from quietarm.studies.registry.methods import NSGA2, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.report.fronts import search_lines
-from quietarm.studies.report.saving import STDOUT, File, drawing
+from quietarm.studies.report.saving import STDOUT, File
 from quietarm.studies.report.search_progress import search_display
 from rich.console import Console
 
@@ -91,7 +90,7 @@ def search(
     # not at the top: --help needs it not
     from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 
-    task, errors = move.task(), Console(stderr=True)
+    task = move.task()
     settings["profile"] = profile_of(profile, task, terms)
     settings["settings"] = settings_given(setting)
     if settings["bound"] is None and settings["profile"].default_bound is None:
@@ -101,12 +100,12 @@ def search(
         )
     seed, workers = settings.pop("seed"), whole("workers", settings.pop("workers"), 1)
     seeds = range(whole("seed", seed, 0), seed + whole("runs", runs, 1, 10_000))
-    warn_of_workers(errors, workers, runs)
+    warn_of_workers(workers, runs)
     if given is not None:
         settings["start"] = load_front(given)
     fronts, trouble = list[Front](), None
 
-    with search_display(errors, quiet=quiet()) as display:
+    with search_display(Console(stderr=True), quiet=quiet()) as display:
         if not several and workers == 1:
             settings["report"] = display
         try:
@@ -133,14 +132,9 @@ def _search(task: PointToPoint, method: str, settings: dict[str, Any], seed: int
 def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> list[File]:
     """Every front as JSON and CSV, of several seeds with the seed in the name; one picture."""
     pictures = [path for path in output if ending_of(path) == PICTURE]
-    files = [
-        (path.with_stem(f"{path.stem}-seed{front.seed}") if several else path, write)
-        for front in fronts
-        for path, write in files_of(
-            [path for path in output if path not in pictures],
-            {".json": front.save, ".csv": front.save_csv},
-        )
-        if path is not None
-    ]
-    draw = drawing(lambda: figures.front_figure(fronts))
-    return [*files, *((path, draw) for path in pictures)]
+    others = [path for path in output if path not in pictures]
+    draw, found = partial(figures.front_figure, fronts), list[File]()
+    for front in fronts:
+        names = [path.with_stem(f"{path.stem}-seed{front.seed}") for path in others]
+        found += front_files(names if several else others, front, draw)
+    return [*found, *front_files(pictures, fronts[0], draw)]

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 import click
 from quietarm.ocp import QuietarmError, SolveSettings
 from quietarm.ocp.planning.terms import choose_profile
-from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.files import DATASET, PICTURE, ending_of, files_of, output_option
+from quietarm.studies.cli.files import DATASET, PICTURE, ending_of, files_of, finish, output_option
 from quietarm.studies.cli.options import (
     bound_option,
     command,
+    counting,
     part_option,
     profile_options,
-    quiet,
     residual_limit_option,
     warn_of_workers,
     workers_options,
@@ -24,9 +23,6 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import SHARE
 from quietarm.studies.registry.profiles import chooses_terms, profile_of
-from quietarm.studies.report.progress import count
-from quietarm.studies.report.saving import drawing
-from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,7 +42,7 @@ _MOST_POINTS = 1000
               "keep it.")  # fmt: skip
 @click.option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
               help="Find a front of so many points for every move as well.")  # fmt: skip
-@part_option("chunk")
+@part_option
 @click.option("--yes", is_flag=True, help="Do more than a million cells.")
 @workers_options
 @output_option(
@@ -98,7 +94,7 @@ def sweep(
             f"the grid has {grid.cells} cells, some {hours:.0f} hours on a core; give wider steps, "
             "or --yes"
         )
-    motions, errors = profile_of(profile, grid.task, terms), Console(stderr=True)
+    motions = profile_of(profile, grid.task, terms)
     if chooses_terms(profile, terms):
         motions = choose_profile(grid.task)
     definition = Definition(
@@ -110,9 +106,9 @@ def sweep(
     )
     store = Store.of(datasets[0], definition)
     missing, trouble = len(store.missing(part)), None
-    warn_of_workers(errors, workers, missing)
+    warn_of_workers(workers, missing)
     try:
-        with count(missing, "chunks", errors, quiet=quiet()) as report:
+        with counting(missing, "chunks") as report:
             run_sweep(store, part, workers=workers, scheduler=scheduler, report=report)
     except KeyboardInterrupt:
         done = missing - len(store.missing(part))
@@ -126,5 +122,9 @@ def sweep(
         return fronts_figure(store) if front else grid_figure(store)
 
     pictures = [path for path in output if path not in datasets]
-    files = files_of(pictures, {PICTURE: drawing(picture)})
-    finish(files, sweep_rows(store), cells_along(store), trouble=trouble)
+    finish(
+        files_of(pictures, {PICTURE: picture}),
+        sweep_rows(store),
+        cells_along(store),
+        trouble=trouble,
+    )

@@ -81,6 +81,17 @@ def test_a_path_in_degrees_without_a_unit_is_asked_about(refused, folder):
     assert "were degrees meant? name it angle_deg" in message
 
 
+@pytest.mark.parametrize(("column", "target"), [("position_mm", "9.5"), ("position", "9500")])
+def test_a_path_of_a_linear_axis_is_in_metres(call, refused, folder, column, target):
+    rows = [f"{k / 10},{x}" for k, x in enumerate([0, 1, 3, 6, 8, 9, 9.5])]
+    (folder / "path.csv").write_text("\n".join([f"time_s,{column}", *rows]))
+    code, out, err = call("evaluate linear-axis --path path.csv")
+    assert (code, err) == (0, "")
+    assert f"linear-axis, 0 to {target} mm in 0.6 s" in out
+    assert "m/s^2 from point to point" in out
+    refused("evaluate single-link --path path.csv")
+
+
 # A table of results
 
 (REFERENCE,) = problem_of("single-link-30deg-0.8s-2-terms").fronts()
