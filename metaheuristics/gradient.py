@@ -31,7 +31,7 @@ def multistart_front(
 ) -> Front:
     """Solve from random starts, one for each of as many residual limits, drawn at random.
 
-    The first has no limit; the others are between zero and the residual that it leaves.
+    The first has no limit; the others are between zero and the residual of the first.
     """
     starts = whole("starts", starts, 2)
     began = time.perf_counter()

@@ -124,7 +124,7 @@ class Plant(ABC):
 
     @property
     def measured(self) -> dict[str, float]:
-        """The parameters that may be wrong by a share, all but counts."""
+        """The parameters that may have relative errors: all but counts."""
         counts = [entry.name for entry in fields(self) if entry.metadata.get("unit") == COUNT]
         return {name: value for name, value in self.parameters.items() if name not in counts}
 

@@ -118,7 +118,7 @@ def refuse_unknown(plant: Plant, names: Iterable[str], also: Sequence[str] = _OF
 
 
 def _refuse_beyond(name: str, error: float) -> None:
-    """Refuse an error that turns a sign, or leaves nothing of anything but the damping."""
+    """Refuse an error that changes a sign, or makes anything but the damping zero."""
     if error < -1 or (error == -1 and name != DAMPING):
         becomes = "negative" if error < -1 else "0"
         least = "100 % or less" if name == DAMPING else "less than 100 %"

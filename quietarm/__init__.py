@@ -1,4 +1,4 @@
-"""Point-to-point moves of flexible robot arms that arrive still and spend little energy.
+"""Point-to-point moves of flexible robot arms that arrive at rest and take little energy.
 
     import quietarm as qa
 

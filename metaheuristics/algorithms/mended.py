@@ -1,6 +1,6 @@
-"""Algorithms of pymoo 0.6.2 that draw random numbers of their own, or share what a run leaves.
+"""Algorithms of pymoo 0.6.2 that draw random numbers without the seed, or keep state between runs.
 
-With these, the seed of a search decides about everything. Nothing else is changed.
+With these, the seed of a search determines its result. Nothing else is changed.
 """
 
 from __future__ import annotations

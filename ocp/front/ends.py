@@ -14,9 +14,9 @@ from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution
 from quietarm.ocp.solvers.transcription import ENERGY, STILL, Transcription
 
 _ENERGY_WEIGHTS = (1.0, 0.1, 0.02, 2e-3)
-"""Weights of the energy beside the residual, one solve after the other, on the way to the still end
-of an uncertain plant. At the last one, another hundredth of the cheapest end's residual less would
-cost five times the energy of the nominal plant's motion at rest."""
+"""Weights of the energy beside the residual, one solve after the other, on the way to the end of
+least residual of an uncertain task. At the last one, reducing the residual by a further hundredth
+of the cheapest end's would cost five times the energy of the nominal plant's motion at rest."""
 _SAMPLING = 1e-4
 """Share by which the residual between its samples may exceed that at them."""
 
@@ -28,7 +28,7 @@ class Ends:
     Attributes
     ----------
     curve : Curve
-        On the steps that the still end takes.
+        On the steps that the end of least residual needs.
     still, cheapest : Solution
         The ends.
     certificates : tuple of Certificate
@@ -52,16 +52,16 @@ class Ends:
 
     @property
     def are_one(self) -> bool:
-        """Whether the cheapest motion is the still one, and there is no front between."""
+        """Whether the two ends are the same motion, and there is no front between."""
         return self.width <= STILL or self.height <= SAME * self.still.energy
 
 
 def find_ends(curve: Curve) -> Ends:
     """Find the motion of least energy that arrives at rest, and that whose residual is free.
 
-    The number of steps is raised until the independent integrator agrees with the still end. Where
-    no motion arrives at rest, that end is the motion of least residual; of an uncertain task it is
-    where less residual would cost too much energy.
+    The number of steps is raised until CVODES agrees at the end of least residual. If no motion
+    arrives at rest, this end is the motion of least residual; for an uncertain task it is where a
+    smaller residual would cost too much energy.
 
     Raises
     ------

@@ -186,7 +186,7 @@ class _Search:
     def _refusal(self, task: PointToPoint, guess: tuple[float, ...] | None) -> str:
         """Why the solver finds no motion of the nominal plant from the last one and the cycloid.
 
-        What an uncertain plant may leave by default is not known yet: there the limits count.
+        The default residual limit of an uncertain task is not known yet; other limits count.
         """
         residual = 1.0 if task.uncertainty else self.settings["residual_limit"] or 0.0
         asked = Scalarization((Limit.of_residual(residual), *task.limits), self.settings["bound"])

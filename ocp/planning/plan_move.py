@@ -42,7 +42,7 @@ _ROUNDS, _ADDED, _KEPT = 6, 4, 4
 _SAME = 1e-6
 """Errors that differ by less than this share of their range are one scenario."""
 _TIGHTENINGS = 4
-"""Most times that the limit is tightened by what is left of the excess."""
+"""Most times that the limit is tightened by the remaining excess."""
 
 Array = NDArray[np.float64]
 
@@ -173,10 +173,10 @@ def _plan_within(
 def _hold_default(
     task: PointToPoint, profile: JointProfile, settings: SolveSettings, largest: float
 ) -> Plan:
-    """The plan within the default limit, which is what the nominal plant's plan leaves at most.
+    """The plan within the default limit, at most the worst case of the nominal plant's plan.
 
-    Where neither can be reached, the limit is near the least residual over the scenarios, and where
-    not even that holds between them, it is what the plan leaves.
+    If neither is feasible, the limit is near the least residual over the scenarios; if that does
+    not hold between them, it is the worst case of the plan.
     """
     starts = start_coefficients(profile, settings)
     try:
@@ -219,8 +219,8 @@ def _hold(
     """The plan whose residual limit holds between the scenarios as well, if that can be had.
 
     Where its residual exceeds the limit between them by more than `EXCESS`, those peaks become
-    scenarios, and the motions that were found are the next starts. What is left of the excess is
-    then taken off the limit.
+    scenarios, and the motions that were found are the next starts. The remaining excess is
+    then subtracted from the limit.
     """
     plan, others = plan_from_starts(task, profile, settings, starts)
     if task.uncertainty is None:

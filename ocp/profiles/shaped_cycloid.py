@@ -1,4 +1,4 @@
-"""Input shapers, impulses whose convolution with a motion leaves a vibration out, and the cycloid.
+"""Input shapers, impulses whose convolution with a motion suppresses a vibration, and the cycloid.
 
 Formulas and their sources: docs/physics.md, 'Input shaping'.
 """
@@ -17,7 +17,7 @@ from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
 TOLERATED = 0.05
-"""Share of the unshaped vibration that EI leaves at the frequency that it is made for."""
+"""Residual of EI at its design frequency, as a share of the unshaped vibration."""
 _LEAST_DECAY_OF_EI = math.sqrt(TOLERATED / (2 - TOLERATED))
 """K at which EI's weight V' reaches 1, so that its middle impulse 2 (1 - V') K vanishes."""
 MOST_DAMPING_OF_EI = 1 / math.hypot(1, math.pi / math.log(_LEAST_DECAY_OF_EI))
@@ -36,7 +36,7 @@ class Impulses(NamedTuple):
 
 
 def _decay(damping_ratio: float) -> float:
-    """K: what is left of an amplitude after half a damped period."""
+    """K: the ratio of amplitudes half a damped period apart."""
     return math.exp(-math.pi * damping_ratio / math.sqrt(1 - damping_ratio**2))
 
 
@@ -71,7 +71,7 @@ def _fitted(
 ) -> Impulses:
     """Klipper's fits of September 2025: times over the period and amplitudes by powers of damping.
 
-    They leave `TOLERATED` or less over a wider range than EI.
+    Their residual is within `TOLERATED` over a wider range than EI's.
     """
     _refuse_damping(name, damping_ratio, most)
 
@@ -85,10 +85,10 @@ def _fitted(
 
 
 def _ei(frequency: float, damping_ratio: float) -> Impulses:
-    """Extra insensitive: `TOLERATED` of the vibration is left."""
+    """Extra insensitive: a residual of `TOLERATED` at the design frequency."""
     _refuse_damping("ei", damping_ratio, MOST_DAMPING_OF_EI)
     decay = _decay(damping_ratio)
-    # So that TOLERATED is left at the frequency itself whatever the damping; undamped V = TOLERATED
+    # so that the residual at the frequency is TOLERATED for any damping; undamped V = TOLERATED
     V = TOLERATED * (1 + decay) ** 2 / (4 * decay**2 - TOLERATED * (1 - decay) ** 2)
     return _apart(1.0, [1 + V, 2 * (1 - V), 1 + V], frequency, damping_ratio)
 

@@ -1,5 +1,5 @@
-"""What a motion leaves and costs when the plant is not the assumed one.
+"""Residual and energy of a motion on perturbed plants.
 
-From one motion on plants with errors (`perturbed`) to the figures (`measures`). May import
+From one motion on perturbed plants (`perturbed`) to the measures (`measures`). May import
 `simulation`, `profiles`, `solvers.batch`.
 """

@@ -64,7 +64,7 @@ class Sweep:
 
 @dataclass(frozen=True, eq=False)
 class Robustness:
-    """What a motion leaves and costs when the plant is not the assumed one.
+    """Residual and energy of a motion on perturbed plants.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ class Robustness:
 
 
 def tolerated_residual(task: PointToPoint) -> float:
-    """What the plain cycloid leaves on the assumed plant [m], times `TOLERATED`."""
+    """The plain cycloid's residual on the nominal plant [m], times `TOLERATED`."""
     return TOLERATED * _plain(task).residual
 
 

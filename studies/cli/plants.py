@@ -30,7 +30,7 @@ def parse_plant(name: str) -> type[Plant] | Identified:
 
 
 def uncertainty_of(errors: Iterable[tuple[str, float]], kind: Kind) -> Uncertainty | None:
-    """How far a plant may be wrong, by these errors; None where there are none."""
+    """The uncertainty by these errors; None without any."""
     ranges = once(errors, "--error ")
     if ranges.pop(MEASURED, None) is not None:
         if not isinstance(kind, Identified):

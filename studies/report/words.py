@@ -54,12 +54,12 @@ def plant_words(plant: Plant) -> str:
 
 
 def error_words(task: PointToPoint) -> str:
-    """How far the plant of a task may be wrong: "frequency +-10 %"; nothing where it is certain."""
+    """The ranges of the parameter errors of a task: "frequency +-10 %"; empty without any."""
     return ", ".join(f"{name} +-{100 * size:g} %" for name, size in task.ranges.items())
 
 
 def moved(task: PointToPoint) -> str:
-    """The plant of a task, and how far it may be wrong."""
+    """The plant of a task, and the ranges of its parameter errors."""
     return ", ".join(filter(None, [plant_words(task.plant), error_words(task)]))
 
 
