@@ -96,12 +96,12 @@ class Candidate(Ranged):
 
     @property
     def energy(self) -> float:
-        """F2: the task's energy [J]."""
+        """The task's energy F2 [J]."""
         return self._run.energy
 
     @cached_property
     def residual(self) -> float:
-        """F1: largest tip displacement after arrival, from the wanted free vibration [m]."""
+        """Largest tip displacement after arrival from the wanted free vibration, F1 [m]."""
         missed = self.task.missed(self.arrival)
         each = zip(self.scenarios, missed, strict=True)
         return max(float(one._vibration.peak(state)) for one, state in each)

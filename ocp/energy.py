@@ -119,7 +119,7 @@ class Mix(Energy):
 
     @property
     def label(self) -> str:
-        """As it is typed: the parts' labels with their weights."""
+        """The labels of the parts with their weights, as they are typed."""
         weights = ("" if weight == 1 else f"{weight:.12g}*" for weight, _ in self.parts)
         labels = (part.label for _, part in self.parts)
         return "+".join(map("".join, zip(weights, labels, strict=True)))

@@ -35,7 +35,7 @@ class SolveStatus(Enum):
 
     @property
     def solved(self) -> bool:
-        """Whether there is an answer: a local optimum, or a feasible motion close to one."""
+        """Whether there is a local optimum, or a feasible motion close to one."""
         return self in (SolveStatus.OPTIMAL, SolveStatus.ACCEPTABLE)
 
     @property

@@ -95,7 +95,7 @@ class FreeVibration:
 
     @cached_property
     def rows(self) -> Array:
-        """Shape (rows, 2 * modes): F1 is the largest absolute product with a state, to 5e-5."""
+        """F1 is the largest absolute product of a row and a state, to 5e-5; (rows, 2 * modes)."""
         samples = max(2, math.ceil(self._radians / _RADIANS_OF_ROWS) + 1)  # both ends at least
         step = exponential(self.matrix, self.window / (samples - 1), self._most)
         rows = extreme_rows(powers(self.tips, step, samples), len(self.tips))

@@ -56,7 +56,7 @@ class SymbolicRollout:
 
     @property
     def weights(self) -> list[Expression]:
-        """Quadrature weights of the nodes [s]: the sum of weight times value is the integral."""
+        """Quadrature weights of the nodes [s], so that sums of weight times value are integrals."""
         return [weight * self.h for weight in GAUSS_WEIGHTS]
 
     @property

@@ -57,7 +57,7 @@ class Group:
 
     @property
     def by_gradient(self) -> bool:
-        """Whether the gradient found them: the points are then some of a line."""
+        """Whether the gradient found them, so that the points lie on a line."""
         return method_of(self.runs[0].front.method).kind is Kind.GRADIENT
 
     @property
