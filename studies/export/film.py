@@ -19,8 +19,8 @@ from PIL import Image
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, format_of
-from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
-from quietarm.studies.figures.motion import Motions, draw_lines, lines_of
+from quietarm.studies.figures.axes import TITLE, new_figure
+from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
 from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.pictures import as_written
 from quietarm.studies.report.words import move_of, moved, residual_words, title_of
@@ -225,7 +225,7 @@ def _draw(film: Film) -> tuple[Figure, list[Update]]:
                 ax.update_datalim(other.corners)
         updates += _draw_structure(ax, one)
     for ax, quantity in zip(lower.subplots(1, len(_CURVES)), _CURVES, strict=True):
-        draw_lines([one.line for one in structures], quantity, axes_or_new(ax))
+        draw_quantity([one.line for one in structures], quantity, ax)
         ax.set_xlim(0.0, film.end)
         ax.xaxis.label.set_fontsize(9)
         cursor = ax.axvline(0.0, color="0.2", linewidth=1.2)

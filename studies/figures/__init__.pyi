@@ -1,12 +1,12 @@
 from .comparison import KnownPoint as KnownPoint
 from .comparison import comparison_figure as comparison_figure
+from .comparison import draw_comparison as draw_comparison
 from .comparison import draw_gaps as draw_gaps
-from .comparison import draw_small_residuals as draw_small_residuals
-from .comparison import draw_whole as draw_whole
 from .fronts import draw_fronts as draw_fronts
 from .fronts import draw_hypervolume as draw_hypervolume
 from .fronts import draw_seed_energies as draw_seed_energies
 from .fronts import front_figure as front_figure
+from .fronts import polish_figure as polish_figure
 from .identification import identification_figure as identification_figure
 from .looks import BLUE as BLUE
 from .looks import COLOURS as COLOURS
@@ -24,8 +24,3 @@ from .motion import motion_figure as motion_figure
 from .robustness import draw_motions as draw_motions
 from .robustness import draw_robustness as draw_robustness
 from .robustness import motions_figure as motions_figure
-from .sweep import draw_polish as draw_polish
-from .sweep import draw_savings as draw_savings
-from .sweep import draw_sweep as draw_sweep
-from .sweep import polish_figure as polish_figure
-from .sweep import sweep_figure as sweep_figure

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
+from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 TITLE: dict[str, Any] = {"loc": "left", "fontsize": 10}
 """How the title of a panel is set."""
-_LOGARITHMIC_FROM = 5.0
-"""Residuals that span less than this factor are drawn on a linear axis."""
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -87,26 +85,20 @@ def legend_of(axes: Sequence[Axes]) -> tuple[list[Artist], list[str]]:
     return list(entries.values()), list(entries)
 
 
-def scale_residuals(ax: Axes, residuals: Sequence[float]) -> None:
-    """Make the axis of residuals logarithmic, or linear where their range is narrow."""
-    positive = [residual for residual in residuals if residual > 0]
-    span = max(positive) / min(positive) if positive else 1.0
-    if not positive:
-        ax.text(0.5, 0.5, "no point", transform=ax.transAxes, ha="center")
-    if span < _LOGARITHMIC_FROM or len(positive) < len(residuals):
-        ax.xaxis.set_major_locator(MaxNLocator(6))
-        return
-    logarithmic(ax, span)
-
-
-def logarithmic(ax: Axes, span: float, which: str = "x") -> None:
-    """Make an axis logarithmic; its largest value is `span` times the least.
+def logarithmic(
+    ax: Axes, values: Sequence[float] | Array, which: Literal["x", "y"] = "x", least_span: float = 1
+) -> None:
+    """Make an axis logarithmic, unless its positive values span less than a factor.
 
     Its ticks are plain numbers: saved pictures hold no formulas, so that a name with $ is a name.
     """
-    getattr(ax, f"set_{which}scale")("log")
+    positive = [value for value in values if value > 0] or [1.0]
+    span = max(positive) / min(positive)
+    if span < least_span:
+        return
+    ax.set(**{f"{which}scale": "log"})
     axis = ax.xaxis if which == "x" else ax.yaxis
     subs = (1.0, 2.0, 5.0) if span < 100 else (1.0,)
     axis.set_major_locator(LogLocator(subs=subs, numticks=7))
-    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    axis.set_minor_formatter(NullFormatter())
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter("")

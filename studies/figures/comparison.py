@@ -6,12 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import cycle
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 from quietarm.studies.figures.axes import (
     TITLE,
@@ -29,10 +28,6 @@ from quietarm.studies.report.words import title_of
 if TYPE_CHECKING:
     from quietarm.studies.compare.fronts import Comparison, Group
 
-_MOST_NAMED = 10
-"""More fronts than this are drawn without a name."""
-_LEAST_SPAN = 0.01
-"""The axis of energies spans at least this share of their median: seeds that agree lie close."""
 _LEAST, _ASIDE = 1e-6, 0.9
 """A logarithmic axis begins at this residual [m], or at this multiple of the least of all."""
 _END = 5.0
@@ -52,9 +47,7 @@ class KnownPoint:
     energy: float
 
 
-def comparison_figure(
-    comparison: Comparison, known: Sequence[KnownPoint] = (), title: str | None = None
-) -> Figure:
+def comparison_figure(comparison: Comparison, known: Sequence[KnownPoint] = ()) -> Figure:
     """Draw fronts over each other.
 
     Parameters
@@ -63,20 +56,17 @@ def comparison_figure(
         The fronts.
     known : sequence of KnownPoint, optional
         Motions to compare them with, such as the paper's.
-    title : str, optional
-        Title of the picture; the task by default.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Three panels: whole fronts; small residuals, logarithmic; points above the best of all. Of
-        several seeds the median attainment surface, in a band from the best to the worst. The
+        Three panels: whole fronts; small residuals, logarithmic; points above the best of all. The
         legend stands beside the third.
     """
     figure = new_figure(10, 7.4)
     axes: list[Axes] = list(figure.subplots(2, 2).flat)
-    draw_whole(comparison, known, axes[0])
-    draw_small_residuals(comparison, known, axes[1])
+    draw_comparison(comparison, known, axes[0])
+    draw_comparison(comparison, known, axes[1], small=True)
     draw_gaps(comparison, axes[2])
     letter(axes[:3])
     axes[3].axis("off")
@@ -88,14 +78,21 @@ def comparison_figure(
         title="Several seeds: the line is what half of them reach\n"
         "(of two, the better one), the band best to worst" if several else None,
     )  # fmt: skip
-    figure.suptitle(title_of(comparison.task) if title is None else title, fontsize=12)
+    figure.suptitle(title_of(comparison.task), fontsize=12)
     return figure
 
 
-def draw_whole(
-    comparison: Comparison, known: Sequence[KnownPoint] = (), ax: Axes | None = None
+def draw_comparison(
+    comparison: Comparison,
+    known: Sequence[KnownPoint] = (),
+    ax: Axes | None = None,
+    *,
+    small: bool = False,
 ) -> Axes:
-    """Draw energy against residual, both linear.
+    """Draw energy against residual.
+
+    A search's front is the staircase of what it found; that of the gradient is a line, of which it
+    computed some points: motions between these lie on it.
 
     Parameters
     ----------
@@ -105,6 +102,9 @@ def draw_whole(
         Motions to compare them with.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
+    small : bool
+        Small residuals, logarithmic, up to the largest of the comparison's levels, or further where
+        no front reaches these; the whole fronts by default.
 
     Returns
     -------
@@ -112,71 +112,14 @@ def draw_whole(
         The axes; of several seeds there is the median attainment surface, in a band from the best
         to the worst.
     """
-    ax, right = axes_or_new(ax), 1.04 * _right(comparison)
-    _draw_compared(ax, comparison, known, right)
-    ax.set_xlim(0, right * 1e3)
-    ax.set_title("the whole fronts", **TITLE)
-    return ax
-
-
-def draw_small_residuals(
-    comparison: Comparison, known: Sequence[KnownPoint] = (), ax: Axes | None = None
-) -> Axes:
-    """Draw energy against small residuals, logarithmic.
-
-    Parameters, and what is returned, are those of `draw_whole`. The end reaches to the largest of
-    the comparison's levels, or further where no front reaches these.
-    """
-    ax, least = axes_or_new(ax), float(comparison.best_front[0, 0])
-    right = min(max(*comparison.levels, _END * least), _right(comparison))
-    _draw_compared(ax, comparison, known, right)
-    _logarithmic(ax, comparison, right)
-    ax.set_title("small residuals", **TITLE)
-    return ax
-
-
-def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
-    """Draw how far points are above the best of all filled fronts, residual logarithmic.
-
-    Points rather than staircases: the steps of a coarse front would make it look bad between its
-    points. Parameters, and what is returned, are those of `draw_whole`.
-    """
-    ax = axes_or_new(ax)
+    ax, right = axes_or_new(ax), _right(comparison)
+    if small:
+        right = min(max(*comparison.levels, _END * float(comparison.best_front[0, 0])), right)
     for group, own, wider in _drawn(comparison):
-        ax.plot(
-            np.maximum(group.median[:, 0], _left(comparison)) * 1e3,
-            100 * comparison.above_best(group.median), own.mark, color=own.colour,
-            markersize=3.2 + wider, markeredgewidth=0, label=group.label,
-        )  # fmt: skip
-    ax.set_yscale("symlog", linthresh=0.1, linscale=0.5)
-    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    ax.set_ylim(-0.008, None)
-    _logarithmic(ax, comparison, _right(comparison))
-    ax.set_ylabel("energy above the best [%]")
-    ax.set_title("each point above the best of all", **TITLE)
-    return ax
-
-
-def _drawn(comparison: Comparison) -> Iterator[tuple[Group, Look, float]]:
-    """Every group, its look, and how much wider it is drawn, to be seen below the next ones."""
-    last = len(comparison.groups) - 1
-    for place, group in enumerate(comparison.groups):
-        yield group, look(place), 0.35 * (last - place)
-
-
-def _draw_compared(
-    ax: Axes, comparison: Comparison, known: Sequence[KnownPoint], right: float
-) -> None:
-    """Draw fronts up to a residual [m], known points and the best free motion.
-
-    A search's front is the staircase of what it found; that of the gradient is a line, of which it
-    computed some points: motions between these lie on it.
-    """
-    for group, own, wider in _drawn(comparison):
-        style: dict[str, Any] = {"color": own.colour, "linestyle": own.dash, "label": group.label}
         line = group.by_gradient and len(group.runs) == 1 and comparison.fill
         shown = _up_to(group.runs[0].between if line else group.median, right)
-        draw_front(ax, *shown.T, exact=line, width=1.2 + wider, **style)
+        draw_front(ax, *shown.T, exact=line, width=1.2 + wider, color=own.colour,
+                   linestyle=own.dash, label=group.label)  # fmt: skip
         if len(group.runs) > 1:
             residuals, best, worst = group.band
             shown = residuals <= right
@@ -195,8 +138,44 @@ def _draw_compared(
     if comparison.floor is not None:
         label = f"any joint motion at rest{' (nominal plant)' * bool(comparison.task.ranges)}"
         ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
-    ax.set_ylim(*_energies_shown(comparison, known, right))
+    highest = max([_TALLEST * comparison.best_front[0, 1], *(1.05 * one.energy for one in known)])
+    ax.set_ylim(top=min(ax.get_ylim()[1], highest))
     name_objectives(ax)
+    ax.set_title("small residuals" if small else "the whole fronts", **TITLE)
+    if small:
+        _logarithmic(ax, comparison, right)
+    else:
+        ax.set_xlim(0, right * 1e3)
+    return ax
+
+
+def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
+    """Draw how far points are above the best of all filled fronts, residual logarithmic.
+
+    Points rather than staircases: the steps of a coarse front would make it look bad between its
+    points. Parameters, and what is returned, are those of `draw_comparison`.
+    """
+    ax = axes_or_new(ax)
+    for group, own, wider in _drawn(comparison):
+        ax.plot(
+            np.maximum(group.median[:, 0], _left(comparison)) * 1e3,
+            100 * comparison.above_best(group.median), own.mark, color=own.colour,
+            markersize=3.2 + wider, markeredgewidth=0, label=group.label,
+        )  # fmt: skip
+    ax.set_yscale("symlog", linthresh=0.1, linscale=0.5)
+    ax.yaxis.set_major_formatter("{x:g}")
+    ax.set_ylim(-0.008, None)
+    _logarithmic(ax, comparison, _right(comparison))
+    ax.set_ylabel("energy above the best [%]")
+    ax.set_title("each point above the best of all", **TITLE)
+    return ax
+
+
+def _drawn(comparison: Comparison) -> Iterator[tuple[Group, Look, float]]:
+    """Every group, its look, and how much wider it is drawn, to be seen below the next ones."""
+    last = len(comparison.groups) - 1
+    for place, group in enumerate(comparison.groups):
+        yield group, look(place), 0.35 * (last - place)
 
 
 def _up_to(points: Array, right: float) -> Array:
@@ -205,32 +184,17 @@ def _up_to(points: Array, right: float) -> Array:
     return inside if not len(inside) else np.vstack([inside, [right, inside[-1, 1]]])
 
 
-def _energies_shown(
-    comparison: Comparison, known: Sequence[KnownPoint], right: float
-) -> tuple[float, float]:
-    """The least and the largest energy on the axis: the whole best front, and others near it."""
-    most = float(comparison.best_front[0, 1])
-    top = min(max(group.median[0, 1] for group in comparison.groups), _TALLEST * most)
-    marks = [point.energy for point in known]
-    marks += [] if comparison.floor is None else [comparison.floor]
-    reached = [_up_to(group.best, right) for group in comparison.groups]
-    ends = [points[-1, 1] for points in reached if len(points)]
-    low, high = min([*marks, *ends, most]), max([*marks, top, most])
-    margin = 0.06 * ((high - low) or high)
-    return low - margin, high + margin
-
-
 def _left(comparison: Comparison) -> float:
     return max(_LEAST, _ASIDE * float(comparison.best_front[0, 0]))
 
 
 def _right(comparison: Comparison) -> float:
-    return max([*(group.best[-1, 0] for group in comparison.groups), *comparison.levels])
+    return 1.04 * max([*(one.best[-1, 0] for one in comparison.groups), *comparison.levels])
 
 
 def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
     left = _left(comparison)
-    logarithmic(ax, right / left)
+    logarithmic(ax, [left, right])
     ax.set_xlim(left * 1e3, right * 1e3)
     ax.set_xlabel("residual F1 [mm], logarithmic")
     for level in comparison.levels:

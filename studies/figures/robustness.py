@@ -96,7 +96,7 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
         for end, fill in zip(ends, ("none", "full"), strict=True):
             ax.plot(end, energy, how.mark, color=how.colour, markersize=5, fillstyle=fill)
         ax.annotate(f" {judged.name}", (ends[1], energy), va="center", fontsize=8)
-    logarithmic(ax, 1 / REST)
+    logarithmic(ax, [REST, 1.0])
     ax.margins(x=0.18)
     name_objectives(ax)
     return ax

@@ -117,7 +117,7 @@ def front(
     if check:
         with counting(_CHECKED, "checked points") as report:
             checked = cross_check(found, _CHECKED, report)
-    draw = partial(figures.sweep_figure, found)
+    draw = partial(figures.front_figure, [found])
     return finish(front_files(output, found, draw), gradient_lines(found, asked_for, checked))
 
 

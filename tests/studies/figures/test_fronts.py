@@ -48,7 +48,7 @@ def test_the_hypervolume_is_drawn_with_its_quartiles(fronts):
         heights = corners[corners[:, 0] == x, 1]
         assert (heights.min(), heights.max()) == (lower, upper)
     # of 0.5, 0.625, 0.75 and 1, values that there are
-    assert panel.get_title() == "hypervolume: 0.6250 (0.5000 to 0.7500)"
+    assert panel.get_title("left") == "hypervolume: 0.6250 (0.5000 to 0.7500)"
 
 
 def test_the_energy_of_each_seed_is_drawn_over_its_quartiles(fronts):
@@ -58,4 +58,6 @@ def test_the_energy_of_each_seed_is_drawn_over_its_quartiles(fronts):
     assert [line.get_ydata()[0] for line in seeds[:3]] == [0.25, 0.5, 0.375]
     # of 0.25, 0.375, 0.5 and one that never arrives
     np.testing.assert_array_equal(median.get_ydata(), 0.375)
-    assert panel.get_title() == "energy at 1 mm: 0.375 J (0.25 to 0.5)\n3 of 4 seeds reach 1 mm"
+    assert (
+        panel.get_title("left") == "energy at 1 mm: 0.375 J (0.25 to 0.5)\n3 of 4 seeds reach 1 mm"
+    )
