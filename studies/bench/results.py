@@ -22,6 +22,8 @@ AT_REST = LEVELS[0]
 TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Shares of the reference front's hypervolume that may be missing for a target to count as
 reached."""
+_RESAMPLED, _INTERVAL = 1000, (0.025, 0.975)
+"""How often runs are drawn again for an interval, and the quantiles that are its ends."""
 _LABELS = {"epsilon": "epsilon-constraint", "weighted": "weighted sum", "multistart": "multistart"}
 _SOLVERS = {"": "SQP", "ipopt": "IPOPT"}
 
@@ -41,6 +43,15 @@ class Run:
                 "recorded function wrote, or import its coefficients by quietarm evaluate"
             )
 
+    @cached_property
+    def missing(self) -> Array:
+        """Share of the reference front's hypervolume that it lacked at each mark."""
+        return np.array([_missing(mark.quality) for mark in self.front.history])
+
+    def cost(self, by: str) -> Array:
+        """Processor seconds or evaluations at each mark."""
+        return np.array([getattr(mark, by) for mark in self.front.history], dtype=float)
+
 
 class Results:
     """Runs of methods on problems.
@@ -55,26 +66,23 @@ class Results:
         if not runs:
             raise ValueError("no run was done; give jobs, or a folder that has some")
         self.runs = tuple(sorted(runs, key=lambda run: (run.problem.name, run.front.seed or 0)))
-        seen = set[tuple[str, str, int | None]]()
+        self._groups: dict[tuple[str, str], list[Run]] = {}
         for run in self.runs:
-            key = run.problem.name, run.method, run.front.seed
-            if key in seen:
+            group = self._groups.setdefault((run.problem.name, run.method), [])
+            if group and group[-1].front.seed == run.front.seed:
                 raise ValueError(
                     f"{run.method} on {run.problem.name} has seed {run.front.seed} twice; give "
                     "every run once, with the seed that it had"
                 )
-            seen.add(key)
+            group.append(run)
 
     @classmethod
     def of_jobs(cls, fronts: Mapping[Job, Front], imported: Sequence[Front] = ()) -> Results:
         """Those of jobs, and recorded runs of other libraries, which name a problem of the jobs."""
         problems = {job.problem.name: job.problem for job in fronts}
-        budgets = {(job.label, job.budget) for job in fronts}
-        labels = [label for label, _ in budgets]
-        runs = [
-            Run(job.problem, _method(job.label, job.budget, labels.count(job.label)), front)
-            for job, front in fronts.items()
-        ]
+        labels = [label for label, _ in {(job.label, job.budget) for job in fronts}]
+        several = {label for label in labels if labels.count(label) > 1}
+        runs = [Run(job.problem, _method(job, several), front) for job, front in fronts.items()]
         for front in imported:
             name = front.settings.get("problem")
             if name not in problems:
@@ -100,7 +108,7 @@ class Results:
 
     def of(self, problem: str, method: str) -> list[Run]:
         """The runs of a method on a problem."""
-        return [run for run in self.runs if (run.problem.name, run.method) == (problem, method)]
+        return self._groups.get((problem, method), [])
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -111,7 +119,11 @@ class Results:
         run has none; seconds are processor time, ``seconds`` of the search alone, ``all_seconds``
         with builds and checks.
         """
-        return pd.DataFrame([_row(run) for run in self.runs])
+        best = {
+            problem.name: [problem.reference().front.least_energy(level) for level in LEVELS]
+            for problem in self.problems
+        }
+        return pd.DataFrame([_row(run, best[run.problem.name]) for run in self.runs])
 
     def missing(self, problem: str, method: str, by: str = "seconds") -> tuple[Array, Array]:
         """Where the missing share changes, in processor seconds or evaluations, for every run.
@@ -124,56 +136,70 @@ class Results:
             Share after each; 1 before a run's first mark.
         """
         runs = self.of(problem, method)
-        at = np.unique([getattr(mark, by) for run in runs for mark in run.front.history])
-        rows = list[Array]()
-        for run in runs:
-            places = np.array([getattr(mark, by) for mark in run.front.history], dtype=float)
-            shares = np.append(1.0, [_missing(mark.quality) for mark in run.front.history])
-            rows.append(shares[np.searchsorted(places, at, side="right")])
+        at = np.unique(np.concatenate([run.cost(by) for run in runs]))
+        rows = [
+            np.append(1.0, run.missing)[np.searchsorted(run.cost(by), at, side="right")]
+            for run in runs
+        ]
         return at, np.array(rows)
 
-    def hits(self, problem: str, method: str, target: float, by: str = "seconds") -> Array:
-        """Where each run first missed no more than a target; infinite where it never did."""
-        found = list[float]()
+    def hits(
+        self, problem: str, method: str, targets: Sequence[float], by: str = "seconds"
+    ) -> Array:
+        """Where each run first missed no more than each target, shape (runs, targets).
+
+        Infinite where it never did.
+        """
+        rows = list[Array]()
         for run in self.of(problem, method):
-            marks = [mark for mark in run.front.history if _missing(mark.quality) <= target]
-            found.append(float(getattr(marks[0], by)) if marks else np.inf)
-        return np.array(found)
+            first = np.searchsorted(-np.minimum.accumulate(run.missing), -np.array(targets))
+            rows.append(np.append(run.cost(by), np.inf)[first])
+        return np.array(rows)
 
     def expected_running_time(
         self, problem: str, method: str, target: float, by: str = "seconds"
-    ) -> float:
+    ) -> tuple[float, float, float]:
         """What all runs spent until the target, or in all, over the number that reached it.
 
         As COCO defines it: runs that did not reach it are censored, not left out; infinite where
         none did.
+
+        Returns
+        -------
+        time, low, high : float
+            The expected running time, and the ends of its interval of 95 %: runs drawn again with
+            replacement.
         """
-        hits = self.hits(problem, method, target, by)
-        ends = [getattr(run.front.history[-1], by) for run in self.of(problem, method)]
-        reached = np.isfinite(hits)
+        hits = self.hits(problem, method, [target], by)[:, 0]
+        ends = np.array([run.cost(by)[-1] for run in self.of(problem, method)])
+        reached, drawn = np.isfinite(hits), _drawn_again(len(hits))
         if not reached.any():
-            return np.inf
-        return float(np.where(reached, hits, ends).sum() / reached.sum())
+            return np.inf, np.inf, np.inf
+        spent, count = np.where(reached, hits, ends)[drawn].sum(axis=1), reached[drawn].sum(axis=1)
+        times = np.where(count, spent / np.maximum(count, 1), np.inf)
+        low, high = np.quantile(times[1:], _INTERVAL, method="inverted_cdf").tolist()
+        return float(times[0]), low, high
 
     @cached_property
     def running_times(self) -> pd.DataFrame:
-        """Expected running times to `TARGETS`, a row each, and how many runs reached it."""
-        rows = []
-        for problem in self.problems:
-            for method in self.methods:
-                if not (runs := self.of(problem.name, method)):
-                    continue
-                for target in TARGETS:
-                    where = problem.name, method, target
-                    reached = int(np.isfinite(self.hits(*where)).sum())
-                    rows.append({
-                        "problem": problem.name, "method": label_of(method), "target": target,
-                        "reached": reached, "runs": len(runs),
-                        "seconds": self.expected_running_time(*where),
-                        "evaluations": self.expected_running_time(*where, by="evaluations")
-                        if derivative_free(method) else np.nan,
-                    })  # fmt: skip
+        """Expected running times to `TARGETS`, with intervals, and how many runs reached each."""
+        rows = list[dict[str, Any]]()
+        for (problem, method), runs in self._groups.items():
+            reached = np.isfinite(self.hits(problem, method, TARGETS)).sum(axis=0)
+            for target, count in zip(TARGETS, reached.tolist(), strict=True):
+                row = {"problem": problem, "method": label_of(method), "target": target,
+                       "reached": count, "runs": len(runs)}  # fmt: skip
+                for by in ("seconds", "evaluations") if derivative_free(method) else ("seconds",):
+                    found = self.expected_running_time(problem, method, target, by)
+                    row |= zip((by, f"{by}_low", f"{by}_high"), found, strict=True)
+                rows.append(row)
         return pd.DataFrame(rows).replace(np.inf, np.nan)
+
+
+def _drawn_again(runs: int) -> NDArray[np.int64]:
+    """Numbers of runs: all of them, then drawn again with replacement, a row each."""
+    again = np.random.default_rng(0).integers(0, runs, (_RESAMPLED, runs))
+    return np.vstack([np.arange(runs), again])
 
 
 def derivative_free(method: str) -> bool:
@@ -202,18 +228,19 @@ def quartiles(values: ArrayLike) -> tuple[float, float, float]:
     return spread.lower, spread.median, spread.upper
 
 
-def _method(label: str, budget: int | None, budgets: int) -> str:
-    """A method's name, with its budget where it has several."""
-    return label if budgets == 1 or budget is None else f"{label}(budget={budget})"
+def _method(job: Job, several: set[str]) -> str:
+    """A job's method, with its budget where it has several."""
+    plain = job.budget is None or job.label not in several
+    return job.label if plain else f"{job.label}(budget={job.budget})"
 
 
 def _missing(quality: Any) -> float:
     return 1.0 if quality is None else 1.0 - quality.hypervolume
 
 
-def _row(run: Run) -> dict[str, Any]:
+def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
+    """The figures of a run; energies as shares above the best."""
     front, last = run.front, run.front.history[-1]
-    best = run.problem.reference().front
     row: dict[str, Any] = {
         "problem": run.problem.name, "method": run.method, "seed": front.seed,
         "points": len(front.points), "missing": _missing(last.quality),
@@ -222,10 +249,11 @@ def _row(run: Run) -> dict[str, Any]:
     for name, quality in (("", last.quality), ("_between", last.between)):
         row[f"igd_plus{name}"] = np.nan if quality is None else quality.igd_plus
         row[f"epsilon{name}"] = np.nan if quality is None else quality.epsilon
-    for level in LEVELS:
-        energy = front.least_energy(level) / best.least_energy(level) - 1
-        row[f"energy_{1e3 * level:g}mm"] = energy
-    row["at_rest"] = bool(np.isfinite(front.least_energy(AT_REST)))
+    residuals, energies = front.residuals, front.energies
+    for level, least in zip(LEVELS, best, strict=True):
+        own = energies[residuals <= level].min(initial=np.inf)
+        row[f"energy_{1e3 * level:g}mm"] = own / least - 1 if np.isfinite(own) else np.nan
+    row["at_rest"] = bool((residuals <= AT_REST).any())
     return row | {
         "evaluations": last.evaluations, "gradients": last.gradients, "hessians": last.hessians,
         "seconds": last.seconds, "all_seconds": front.seconds,

@@ -75,7 +75,7 @@ def fronts_figure(store: Store) -> Figure:
         ax.set_title(_words(axes, place), loc="left", fontsize=9)
         name_objectives(ax)
         ax.grid(alpha=0.25)
-        logarithmic(ax, float(np.nanmax(energy) / np.nanmin(energy)), "y")
+        logarithmic(ax, energy.ravel(), "y")
     figure.colorbar(colours, ax=list(panels), label=name)
     return figure
 
@@ -89,9 +89,7 @@ def _over_one(store: Store, axis: Axis) -> Figure:
     for number, (ax, (label, shown, _)) in enumerate(zip(panels, variables, strict=True)):
         own = look(number)
         ax.plot(values, shown, own.mark + "-", color=own.colour)
-        positive = shown[shown > 0]
-        if positive.size:
-            logarithmic(ax, float(positive.max() / positive.min()), "y")
+        logarithmic(ax, shown, "y")
         ax.plot(values[without], np.full(without.sum(), 0.02), "x", color="0.4",
                 transform=ax.get_xaxis_transform())  # fmt: skip
         ax.set_ylabel(label)

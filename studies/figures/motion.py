@@ -106,7 +106,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
         ax.axvline(duration, color="0.6", linewidth=0.8, linestyle="--")
     _draw_limits(ax, lines, quantity, np.concatenate(drawn))
     if _cut_off_pulses(ax, lines, quantity):
-        title += ", short pulses cut off"
+        title += ", pulses cut off"
     ax.set_title(title, **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
     ax.margins(x=0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from functools import cache
 from math import pi
 
 from quietarm.metaheuristics import PAPER_BOX, PRESETS
@@ -11,6 +12,11 @@ from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients, task_difference
 from quietarm.studies.figures import KnownPoint
+
+SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
+_OF_PLANT = {SINGLE_LINK.name: ("vepso", 23, "network"), ARM.name: ("nsga2-paper", 24, "Gaussians")}
+"""The paper's search, sections 3.1 and 3.2, and the earlier study, sections 1 and 3: its reference,
+and its input of the cycloid."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +38,8 @@ class Case:
 
     @property
     def search(self) -> str:
-        """The paper's search for its plant: sections 3.1 and 3.2."""
-        return {SINGLE_LINK.name: "vepso", ARM.name: "nsga2-paper"}[self.task.plant.name]
+        """The paper's search for its plant."""
+        return _OF_PLANT[self.task.plant.name][0]
 
     @property
     def search_label(self) -> str:
@@ -42,12 +48,8 @@ class Case:
 
     @property
     def earlier(self) -> tuple[int, str]:
-        """The earlier study of its plant, sections 1 and 3: reference, and input of the cycloid."""
-        of_plant = {SINGLE_LINK.name: (23, "network"), ARM.name: (24, "Gaussians")}
-        return of_plant[self.task.plant.name]
-
-
-SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
+        """The earlier study of its plant: reference, and input of the cycloid."""
+        return _OF_PLANT[self.task.plant.name][1:]
 
 
 def _condition(plant: Plant, start: float, target: float, duration: float, label: str) -> Case:
@@ -130,16 +132,17 @@ def paper_points(task: PointToPoint, terms: Collection[int]) -> list[KnownPoint]
     return points
 
 
-def paper_plan(case: Case, terms: int) -> Plan | None:
+@cache
+def paper_plan(case: Case, terms: int, mended: bool = True) -> Plan | None:
     """The printed coefficients evaluated, a misprint mended; None where the paper prints none."""
-    key = (case, terms)
-    coefficients = MENDED.get(key, COEFFICIENTS.get(key))
+    coefficients = COEFFICIENTS.get((case, terms))
+    if mended:
+        coefficients = MENDED.get((case, terms), coefficients)
     return None if coefficients is None else evaluate_coefficients(case.task, coefficients)
 
 
 def residual_level(case: Case, terms: int) -> float:
     """Residual [m] at which a search is judged: that of the paper's coefficients for the plant."""
-    same_plant = (c for c, n in COEFFICIENTS if (c.task.plant, n) == (case.task.plant, terms))
-    printed = case if (case, terms) in COEFFICIENTS else next(same_plant, None)
-    plan = None if printed is None else paper_plan(printed, terms)
+    same_plant = [c for c, n in COEFFICIENTS if (c.task.plant, n) == (case.task.plant, terms)]
+    plan = paper_plan(case, terms) or next((paper_plan(c, terms) for c in same_plant), None)
     return SEARCH_RESIDUAL if plan is None else plan.residual

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import partial
+from statistics import median
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -11,7 +11,7 @@ from quietarm.ocp import Plan
 from quietarm.studies.compare.front_report import spread_words
 from quietarm.studies.compare.plans import motions_table, remarks, shown
 from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
-from quietarm.studies.figures.looks import ORANGE, PINK
+from quietarm.studies.figures.looks import ORANGE, PINK, WINE
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import title_of
 from quietarm.studies.reproduce.claims import claims
@@ -20,13 +20,12 @@ from quietarm.studies.reproduce.paper import (
     MENDED,
     ROWS,
     SINGLE_LINK_SIXTH,
-    SIX,
     Case,
     Row,
     paper_plan,
 )
 from quietarm.studies.reproduce.recompute import FREQUENCY_ERROR, Reproduction
-from quietarm.studies.reproduce.searched import SIX_TERMS, Input, Searched
+from quietarm.studies.reproduce.searched import SIX_TERMS, Input
 
 TITLES = {
     2: "Table 2: number of terms, single link",
@@ -34,146 +33,114 @@ TITLES = {
     5: "Table 5: number of terms, arm on a flexible link",
     6: "Table 6: against ref. [24], arm on a flexible link",
 }
-_STYLES = {2: (GREEN, "-."), 4: (RED, "--"), 6: (BLUE, "-")}  # hues of the paper's Figs 2 and 5
+_PICTURES = {
+    "2": (SINGLE_LINK_SIXTH, False), "3": (SINGLE_LINK_SIXTH, True), "5": (ARM_HALF, False),
+    "6": (ARM_HALF, True),
+}  # fmt: skip
+"""The paper's figures: their condition, and whether they show the earlier study's input."""
 
 
 def paper_table(result: Reproduction, number: int) -> pd.DataFrame:
     """One of the paper's tables, the recomputed figures beside the printed ones."""
-    return pd.DataFrame([dict(_cells(result, r)) for r in ROWS if r.table == number]).dropna(
-        axis=1, how="all"
-    )
+    rows = [_row(result, row) for row in ROWS if row.table == number]
+    return pd.DataFrame(rows).dropna(axis=1, how="all")
 
 
-def _cells(result: Reproduction, row: Row) -> Iterator[tuple[str, object]]:
+def _row(result: Reproduction, row: Row) -> dict[str, object]:
     """Names and figures of a row; energies [J], residuals [mm]."""
-    case, terms = row.condition, row.terms
-    found = result.searched[case, terms]
-    yield "move", case.label
-    yield "terms N", terms
-    reference, name = case.earlier
+    case, terms, full = row.condition, row.terms, result.effort.full
+    (reference, name), found = case.earlier, result.searched[case, terms]
+    printed = paper_plan(case, terms, mended=False)
+    mended = paper_plan(case, terms) if (case, terms) in MENDED else None
+    figures: dict[str, object] = {
+        "condition": case.name,
+        "terms N": terms,
+        "paper, printed [J]": row.energy,
+        "printed coefficients [J]": printed and printed.energy,
+        "  residual [mm]": printed and 1e3 * printed.residual,
+        "a_5 mended [J]": mended and mended.energy,
+        "  residual of it [mm]": mended and 1e3 * mended.residual,
+        "search": case.search_label,
+        "  searched [J]": spread_words(found.energies, ".4g"),
+        "  within [mm]": 1e3 * found.level,
+        "  time of a run [s]": median(found.seconds),
+        "gradient, in the box [J]": result.in_box(case, terms).energy,
+        "gradient, no box [J]": result.free(case, terms).energy,
+    }
     if row.earlier_energy is not None:
-        yield f"ref. [{reference}], printed [J]", row.earlier_energy
-        yield f"{name} as read here, gradient [J]", _energy(result.earlier(case))
-    yield "paper, printed [J]", row.energy
-    printed, mended = result.printed(case, terms), paper_plan(case, terms)
-    yield "printed coefficients [J]", _energy(printed)
-    yield "  residual [mm]", printed and 1e3 * printed.residual
-    if (case, terms) in MENDED and mended:
-        yield "a_5 mended [J]", mended.energy
-        yield "  residual of it [mm]", 1e3 * mended.residual
-    yield f"{case.search_label} [J]", spread_words(found.energies, ".4g")
-    yield "  within [mm]", 1e3 * found.level
-    yield "  time of a run [s]", found.seconds
-    yield "gradient, in the box [J]", result.in_box(case, terms).energy
-    yield "gradient, no box [J]", result.free(case, terms).energy
-
-
-def _energy(plan: Plan | None) -> float | None:
-    return None if plan is None else plan.energy
-
-
-def six_table(result: Reproduction) -> pd.DataFrame:
-    """The six conditions: what is printed, the paper's search with both inputs, the gradient."""
-    rows: list[dict[str, object]] = []
-    for row in SIX:
-        case, (reference, name) = row.condition, row.condition.earlier
-        earlier, six = result.searched[case, name], result.searched[case, SIX_TERMS]
-        floor = result.floor(case)
-        rows.append({
-            "condition": case.name,
-            "search": case.search_label,
-            "within [mm]": 1e3 * six.level,
+        before, earlier = result.searched.get((case, name)), result.earlier(case)
+        figures |= {
             "earlier study": f"{name}, ref. [{reference}]",
-            "printed there [J]": row.earlier_energy,
-            "its input, searched [J]": spread_words(earlier.energies, ".4f"),
-            "its input, gradient [J]": _energy(result.earlier(case)),
-            "paper, printed [J]": row.energy,
-            "six terms, searched [J]": spread_words(six.energies, ".4f"),
-            "six terms, gradient in the box [J]": result.in_box(case, SIX_TERMS).energy,
-            "six terms, gradient [J]": result.free(case, SIX_TERMS).energy,
-            "any motion at rest [J]": floor.energy,
-            "both solvers differ by": result.checks[case].largest,
-        })  # fmt: skip
-    return pd.DataFrame(rows)
+            "  printed there [J]": row.earlier_energy,
+            "  its input, searched [J]": before and spread_words(before.energies, ".4g"),
+            "  its input, gradient [J]": earlier and earlier.energy,
+            "any motion at rest [J]": result.floor(case).energy if full else None,
+            "both solvers differ by": result.check(case).largest if full else None,
+        }
+    return figures
 
 
 def reproduction_report(result: Reproduction) -> Report:
     """The paper's tables and figures; of full effort the six conditions, systems and claims."""
     tables = {f"table_{number}": paper_table(result, number) for number in TITLES}
     judged = claims(result) if result.effort.full else []
-    systems = {case: motions_table(every) for case, every in result.systems.items()}
+    systems = {case.name: motions_table(every) for case, every in result.systems.items()}
     if result.effort.full:
-        tables["six"] = six_table(result)
-        tables["claims"] = pd.DataFrame(
-            {"claim": one.claim, "verdict": one.word, "figures": "; ".join(one.figures)}
-            for one in judged
+        tables["six"] = pd.concat([tables["table_3"], tables["table_6"]])
+        tables["claims"] = pd.concat(
+            one.evidence.assign(claim=one.claim, verdict=one.word) for one in judged
         )
-        tables["systems"] = pd.concat(
-            table.assign(condition=case.name) for case, table in systems.items()
-        )
-    pictures = {
-        "figure_2.png": partial(_redrawn, result, SINGLE_LINK_SIXTH, "Fig. 2"),
-        "figure_3.png": partial(_against_earlier, result, SINGLE_LINK_SIXTH, "Fig. 3"),
-        "figure_5.png": partial(_redrawn, result, ARM_HALF, "Fig. 5"),
-        "figure_6.png": partial(_against_earlier, result, ARM_HALF, "Fig. 6"),
+        tables["systems"] = pd.concat(one.assign(condition=name) for name, one in systems.items())
+    figures = {
+        f"figure_{number}.png": partial(_redrawn, result, f"Fig. {number}", *shows)
+        for number, shows in _PICTURES.items()
     }
-    return Report(
-        "reproduce/report.md",
-        {
-            "titles": TITLES,
-            "seeds": result.effort.seeds,
-            "full": result.effort.full,
-            "claims": judged,
-            "error": f"{100 * FREQUENCY_ERROR['frequency']:g} %",
-            "systems": [
-                (case.name, shown(table), remarks(result.systems[case]))
-                for case, table in systems.items()
-            ],
-            "pictures": list(pictures),
-        },
-        tables,
-        pictures,
-    )
+    values = {
+        "titles": TITLES, "seeds": result.effort.seeds, "full": result.effort.full,
+        "claims": judged, "error": f"{100 * FREQUENCY_ERROR['frequency']:g} %",
+        "systems": [
+            (case.name, shown(systems[case.name]), remarks(every))
+            for case, every in result.systems.items()
+        ],
+        "pictures": list(figures),
+    }  # fmt: skip
+    return Report("reproduce/report.md", values, tables, figures)
 
 
-def _redrawn(result: Reproduction, case: Case, title: str) -> Figure:
-    """Fig. 2 or 5 from the printed coefficients, with what search and gradient find for N = 6."""
-    lines = [Line(result.cycloid(case), "cycloid", "black")]
-    lines += [_of_paper(case, terms, *style) for terms, style in _STYLES.items()]
-    lines += _by_search(result, case, SIX_TERMS, PINK)
-    lines.append(
-        Line(result.in_box(case, SIX_TERMS), "gradient, N = 6, same box", ORANGE, (0, (7, 2)))
-    )
-    return motion_figure(lines, f"{title} redrawn: {title_of(case.task)}", PAPER_PANELS)
+def _redrawn(result: Reproduction, title: str, case: Case, against_earlier: bool) -> Figure:
+    """The paper's motions of a condition; with what search and gradient find for N = 6.
 
-
-def _against_earlier(result: Reproduction, case: Case, title: str) -> Figure:
-    """Fig. 3 or 6: the paper's coefficients over the earlier study's input as read here."""
-    (reference, name), earlier = case.earlier, result.earlier(case)
-    lines = _by_search(result, case, name, ORANGE)
-    if earlier is not None:
-        lines.append(
-            Line(earlier, f"{name} of ref. [{reference}] as read here, gradient", RED, ":")
-        )
-    lines.append(_of_paper(case, SIX_TERMS, BLUE, "-"))
-    lines += _by_search(result, case, SIX_TERMS, PINK)
-    lines.append(
-        Line(result.in_box(case, SIX_TERMS), "gradient, N = 6, same box", GREEN, (0, (7, 2)))
-    )
+    In Figs 2 and 5 over the numbers of terms; in Figs 3 and 6 over the earlier study's input, as it
+    is read here.
+    """
+    reference, name = case.earlier
+    earlier, lines = result.earlier(case), [Line(result.cycloid(case), "cycloid", "black")]
+    if against_earlier and earlier is not None:
+        label = f"{name} of ref. [{reference}] as read here, gradient"
+        lines = [*_by_search(result, case, name, ORANGE), Line(earlier, label, RED, ":")]
+    else:
+        lines += [_of_paper(case, 2, GREEN, "-."), _of_paper(case, 4, RED, "--")]
+    gradient = result.in_box(case, SIX_TERMS)
+    lines += [
+        _of_paper(case, SIX_TERMS, BLUE, "-"),
+        *_by_search(result, case, SIX_TERMS, PINK),
+        Line(gradient, "gradient, N = 6, same box", WINE, (0, (7, 2))),
+    ]
     return motion_figure(lines, f"{title} redrawn: {title_of(case.task)}", PAPER_PANELS)
 
 
 def _by_search(result: Reproduction, case: Case, which: Input, colour: str) -> list[Line]:
     """The middle seed of the paper's search; none where that did not come near enough."""
-    found: Searched | None = result.searched.get((case, which))
+    found = result.searched.get((case, which))
     label = f"{f'N = {which}' if isinstance(which, int) else which}, {case.search_label}"
-    return (
-        [] if found is None or found.middle is None else [Line(found.middle, label, colour, "--")]
-    )
+    middle = found and found.middle
+    return [Line(middle, label, colour, "--")] if middle else []
 
 
 def _of_paper(case: Case, terms: int, colour: str, style: str) -> Line:
     """The paper's own coefficients, a misprint mended."""
-    plan, mended = paper_plan(case, terms), ", a_5 mended" * ((case, terms) in MENDED)
+    plan: Plan | None = paper_plan(case, terms)
     assert plan is not None  # it prints those of these figures
-    return Line(plan, f"paper, N = {terms}{mended}", colour, style)
+    return Line(
+        plan, f"paper, N = {terms}{', a_5 mended' * ((case, terms) in MENDED)}", colour, style
+    )

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from statistics import median
 
 import numpy as np
-from quietarm.metaheuristics.spread import Spread, energies_at, energy_at
+from quietarm.metaheuristics.spread import Spread, energies_at
 from quietarm.ocp import (
     CycloidGaussians,
     CycloidNetwork,
@@ -51,20 +50,15 @@ class Searched:
         terms = min(self.which, SIX_TERMS) if isinstance(self.which, int) else SIX_TERMS
         return residual_level(self.case, terms)
 
-    @cached_property
-    def each(self) -> list[float]:
-        """Least energy [J] of every seed within the level; NaN where there is none."""
-        return [energy_at(front, self.level) for front in self.fronts]
-
     @property
     def energies(self) -> Spread:
-        """Their quartiles; a seed that does not come so near counts as infinite."""
+        """Quartiles of the least energies [J] within it; a seed without one counts as infinite."""
         return energies_at(self.fronts, self.level)
 
     @property
-    def seconds(self) -> float:
-        """What a seed takes, at the median."""
-        return median(front.seconds for front in self.fronts)
+    def seconds(self) -> list[float]:
+        """What each seed took."""
+        return [front.seconds for front in self.fronts]
 
     @cached_property
     def middle(self) -> Plan | None:
@@ -72,9 +66,9 @@ class Searched:
 
         Of an even number of seeds the dearer one of the two in the middle.
         """
-        order = np.argsort(self.each, kind="stable")  # those that did not are last
-        place = order[len(order) // 2]
-        if np.isnan(self.each[place]):
+        energies = [front.least_energy(self.level) for front in self.fronts]
+        place = np.argsort(energies, kind="stable")[len(energies) // 2]  # those without are last
+        if np.isnan(energies[place]):
             return None
         front = self.fronts[place]
         found = front.cheapest(self.level)

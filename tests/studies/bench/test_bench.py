@@ -165,15 +165,27 @@ def test_problems_of_one_move_count_once():
 def test_missing_values_are_censored(fronts):
     assert quartiles([1.0, 2.0, np.nan]) == (1.0, 2.0, np.inf)
     results = Results.of_jobs(fronts)
-    hits = results.hits(NAME, "random", 1e-9)
-    assert np.isinf(hits).all()
-    assert np.isinf(results.expected_running_time(NAME, "random", 1e-9))
-    hits = results.hits(NAME, "random", 0.5, "evaluations")
-    if np.isfinite(hits).any():  # COCO: all that was spent over the runs that reached it
-        spent = np.where(np.isfinite(hits), hits, 200).sum() / np.isfinite(hits).sum()
-        found = results.expected_running_time(NAME, "random", 0.5, "evaluations")
-        assert found == pytest.approx(spent)
+    assert np.isinf(results.hits(NAME, "random", [1e-9])).all()
+    assert np.isinf(results.expected_running_time(NAME, "random", 1e-9)).all()
     assert ranking_over(results) is None  # one move
+
+
+@pytest.mark.parametrize("by", ["seconds", "evaluations"])
+@pytest.mark.parametrize("target", [0.9, 0.6, 0.4, 0.2])
+def test_the_expected_running_time_is_cocos_with_an_interval_about_it(fronts, by, target):
+    results, spent, reached = Results.of_jobs(fronts), [], []
+    for job, front in fronts.items():
+        if job.method == "nsga2":
+            costs = [getattr(mark, by) for mark in front.history]
+            shares = [mark.quality.hypervolume if mark.quality else 0 for mark in front.history]
+            until = [cost for cost, share in zip(costs, shares, strict=True) if 1 - share <= target]
+            spent.append(until[0] if until else costs[-1])
+            reached.append(bool(until))
+    time, low, high = results.expected_running_time(NAME, "nsga2(population=20)", target, by)
+    assert time == pytest.approx(sum(spent) / sum(reached) if any(reached) else np.inf)
+    assert low <= time <= high
+    row = results.running_times.query("method == 'NSGA-II (population=20)'").iloc[0]
+    assert (row["target"], row["runs"]) == (0.1, 5)
 
 
 def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):

@@ -56,16 +56,14 @@ def test_energies_by_number_of_terms(number, table, move):
     assert printed(number) == typed
 
 
-def test_energies_against_the_neural_network_of_ref_23():
+def test_energies_against_the_earlier_studies():
+    link, arm = SingleLinkManipulator(), ArmOnFlexibleLink()
     assert printed(3) == [
-        (SingleLinkManipulator(), 0.0, target, duration, 6, float(present), float(earlier))
+        (link, 0.0, target, duration, 6, float(present), float(earlier))
         for target, duration, earlier, present in TABLE_3
     ]
-
-
-def test_energies_against_the_radial_basis_functions_of_ref_24():
     assert printed(6) == [
-        (ArmOnFlexibleLink(), start, target, duration, 6, float(present), float(earlier))
+        (arm, start, target, duration, 6, float(present), float(earlier))
         for start, target, duration, earlier, present in TABLE_6
     ]
 
