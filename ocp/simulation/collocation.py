@@ -20,20 +20,20 @@ from quietarm.models.joint_motion import Modes
 NODES = 3
 
 
-def _gauss() -> tuple[list[float], list[float], list[list[float]], list[list[float]]]:
-    """Nodes and weights on [0, 1]; single and double integrals of the nodes' polynomials."""
-    points, weights = np.polynomial.legendre.leggauss(NODES)
-    nodes = (points + 1) / 2
-    powers = np.arange(NODES)
-    to_coefficients = np.linalg.inv(nodes[:, None] ** powers)
-    integrals = nodes[:, None] ** (powers + 1) / (powers + 1) @ to_coefficients
-    to_end = weights / 2
-    once = np.vstack([integrals, to_end])  # the last row integrates over the whole step
-    return nodes.tolist(), to_end.tolist(), once.tolist(), (once @ integrals).tolist()
-
-
 # Plain floats: a numpy number on the left of a casadi symbol would try to make an array of it.
-GAUSS_NODES, GAUSS_WEIGHTS, _ONCE, _TWICE = _gauss()
+_points, _weights = np.polynomial.legendre.leggauss(NODES)
+_nodes, _powers = (_points[:, None] + 1) / 2, np.arange(NODES)
+_to_quadratic = np.linalg.inv(_nodes**_powers)
+_once = np.vstack([_nodes ** (_powers + 1) / (_powers + 1) @ _to_quadratic, _weights / 2])
+GAUSS_NODES: list[float] = _nodes.ravel().tolist()
+"""Where the nodes are on a step from 0 to 1."""
+GAUSS_WEIGHTS: list[float] = _once[NODES].tolist()
+"""What values at the nodes count for in the integral over the step."""
+TO_QUADRATIC: list[list[float]] = _to_quadratic.tolist()
+"""From values at the nodes to the coefficients of the quadratic through them, lowest first."""
+_ONCE: list[list[float]] = _once.tolist()
+_TWICE: list[list[float]] = (_once @ _once[:NODES]).tolist()
+"""Its single and double integrals up to each node, and in the last row up to the end."""
 
 
 class ModalSystem(NamedTuple):
@@ -157,23 +157,42 @@ class Step:
         ]
 
 
-def step(plant: Plant, joints: Sequence[JointMotion], h: Expression, forced: bool = False) -> Step:
-    """One step of length h [s] from the joint at its nodes; if forced, it can be `driven_by`."""
-    modes, count = range(plant.modes), NODES * plant.modes
+def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
+    """One step of length h [s] from the joint at its nodes."""
+    fields = zip(*(joint[:3] for joint in joints), strict=True)
+    joint = JointMotion(*(ca.horzcat(*(0 * h + x for x in field)) for field in fields))
+    return collocate(modal_system(plant, joint), h)
+
+
+def collocate(system: ModalSystem, h: Expression, forced: bool = False) -> Step:
+    """One step of length h [s] from the modes at its nodes; if forced, it can be `driven_by`.
+
+    All that holds at the first nodes stands in the first columns, then that at the second ones.
+    """
+    modes = range(len(system.g))
+    count = NODES * len(modes)
+    g = [at_each_node(x, h) for x in system.g]
+    K, D = ([[at_each_node(x, h) for x in row] for row in part] for part in system[1:])
     matrix: list[list[Expression]] = []
     right: list[list[Expression]] = []
-    for j, joint in enumerate(joints):
-        g, K, D = modal_system(plant, joint)
+    for j in range(NODES):
         for i in modes:
-            own, terms = len(matrix), list(zip(K[i], D[i], strict=True))
+            own, terms = len(matrix), [(k[j], d[j]) for k, d in zip(K[i], D[i], strict=True)]
             weights = zip(_ONCE[j], _TWICE[j], strict=True)
             implicit = [_held(h, k, d, once, twice) for once, twice in weights for k, d in terms]
             matrix.append([float(own == at) + entry for at, entry in enumerate(implicit)])
             by_rate = [_negative(d, GAUSS_NODES[j] * h, k) for k, d in terms]
             unit = [float(own == at) for at in range(count)] if forced else []
-            right.append([g[i], *(-k for k in K[i]), *by_rate, *unit])
-    rows, size = eliminate(matrix, right), 1 + 2 * plant.modes
-    return Step(h, [row[:size] for row in rows], plant.modes, [row[size:] for row in rows])
+            right.append([g[i][j], *(-k for k, _ in terms), *by_rate, *unit])
+    rows, size = eliminate(matrix, right), 1 + 2 * len(modes)
+    return Step(h, [row[:size] for row in rows], len(modes), [row[size:] for row in rows])
+
+
+def at_each_node(entry: Expression, h: Expression) -> list[Expression]:
+    """What stands side by side for the first, second and third nodes of steps of length h."""
+    if is_zero(entry):
+        return [entry] * NODES
+    return ca.horzsplit(ca.DM.zeros(h.shape[0], NODES * h.shape[1]) + entry, h.shape[1])
 
 
 def _held(h: Expression, k: Expression, d: Expression, once: float, twice: float) -> Expression:

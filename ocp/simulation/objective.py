@@ -12,12 +12,9 @@ import numpy as np
 from quietarm.models import Expression
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, Ranged
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
+from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, TO_QUADRATIC
 from quietarm.ocp.simulation.grid import Grid
 
-_TO_QUADRATIC: list[list[float]] = np.linalg.inv(
-    np.array(GAUSS_NODES)[:, None] ** np.arange(3)
-).tolist()
 _TINY = 1e-300
 _MOST_KEPT = 4000
 """Steps up to which `beyond_quadratic` is kept, in 160 bytes a step: at most 20 MB in all."""
@@ -53,21 +50,17 @@ def resolved_energy(
     Where the power keeps its sign, a split changes nothing. Terms of third and fourth degree vanish
     at the nodes: they move work across a zero and add none to the step.
     """
-    c, zeros = quadratic(power), power_zeros(power)
-    return ca.sum2(h * _parted_energy(c, cubic, quartic, zeros))
+    c = quadratic(power)
+    return ca.sum2(h * _parted_energy(c, cubic, quartic, quadratic_zeros(c)))
 
 
 def quadratic(power: Sequence[Expression]) -> list[Expression]:
     """Coefficients, lowest first, of the quadratic through the values at a step's nodes."""
-    return [sum(w * p for w, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC]
+    return [sum(w * p for w, p in zip(row, power, strict=True)) for row in TO_QUADRATIC]
 
 
-def power_zeros(power: Sequence[Expression]) -> list[Expression]:
-    """The zeros of that quadratic on a step, in order; without zeros its extreme's place, twice.
-
-    Under the root stands no 0, at which its derivative is infinite.
-    """
-    c = quadratic(power)
+def quadratic_zeros(c: Sequence[Expression]) -> list[Expression]:
+    """The zeros of that quadratic on a step, in order; without zeros its extreme's place, twice."""
     discriminant = c[1] * c[1] - 4 * c[0] * c[2]
     root = ca.sqrt(ca.fmax(discriminant, _TINY))  # at 0 its derivative is infinite
     half = -(c[1] + ca.copysign(root, c[1])) / 2  # no cancellation

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import casadi as ca
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, power_of
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NodeState, is_zero, step
+from quietarm.ocp.simulation.collocation import (
+    GAUSS_WEIGHTS,
+    NodeState,
+    at_each_node,
+    collocate,
+    is_zero,
+    modal_system,
+)
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import spent
 
@@ -87,9 +95,9 @@ def symbolic_rollout(
         What moves, and how the joint does.
     coefficients : Expression or sequence of Expression
         The profile's coefficients: a column (SX, MX or DM) of the decision variables, or one
-        expression each, of shape (candidates, steps) or a scalar.
+        expression each, a scalar or of shape (candidates, 3 * steps).
     move : sequence of Expression
-        start [rad], target [rad], duration [s]; scalars.
+        start [rad], target [rad], duration [s]; of such shapes.
     steps, candidates : int
         Number of steps, and of rows.
     jerk : bool
@@ -111,23 +119,25 @@ def symbolic_rollout(
         coefficients = ca.vertsplit(coefficients)
     grid = Grid(steps, breaks)
     times, length = grid.columns(candidates)
-    joints = [profile.motion(coefficients, at, *move) for at in times]
+    at = ca.horzcat(*times)
+    joint = profile.motion(coefficients, at, *move)
     if jerk:
-        ends = map(grid.stretch, times)
-        of_jerk = [profile.motion(coefficients, at, *move, jerk=True) for at in ends]
-        joints = [
-            joint._replace(jerk=there.jerk) for joint, there in zip(joints, of_jerk, strict=True)
-        ]
-    h = move[2] * length
-    every_step = step(plant, joints, h)
+        there = profile.motion(coefficients, grid.stretch(at), *move, jerk=True)
+        joint = joint._replace(jerk=there.jerk)
+    h = at_each_node(move[2], length)[0] * length
+    every_step = collocate(modal_system(plant, joint), h)
     W, dW, arrival = march(*every_step.transition(), h.shape, initial)
-    ddW = every_step.accelerations(W, dW)
-    states = every_step.nodes(W, dW, ddW)
-    torque = [
-        plant.torque(joint, node.W, node.dW, node.ddW)
-        for joint, node in zip(joints, states, strict=True)
-    ]
-    return SymbolicRollout(joints, states, torque, arrival, h, not breaks, energy)
+    states = every_step.nodes(W, dW, every_step.accelerations(W, dW))
+    torque = plant.torque(joint, *modes_at_nodes(states))
+    fields = zip(*(at_each_node(x, h) for x in joint if x is not None), strict=True)
+    joints = [JointMotion(*field) for field in fields]
+    return SymbolicRollout(joints, states, at_each_node(torque, h), arrival, h, not breaks, energy)
+
+
+def modes_at_nodes(states: Sequence[NodeState]) -> NodeState:
+    """The modes at all nodes of the steps: the first nodes', then the second ones' beside these."""
+    parts = zip(*states, strict=True)
+    return NodeState(*([ca.horzcat(*x) for x in zip(*part, strict=True)] for part in parts))
 
 
 def march(
@@ -135,33 +145,33 @@ def march(
     columns: Sequence[Sequence[Expression]],
     shape: tuple[int, int],
     initial: Sequence[Expression] = (),
+    width: int = 1,
 ) -> tuple[list[Expression], list[Expression], Expression]:
     """States before every step (rows, steps), by mode, and the state at arrival; from rest or else.
 
-    Only this recursion is sequential: everything else is computed for all steps at once.
+    Only this recursion is sequential: everything else is computed for all steps at once. A row may
+    have several states side by side, of another constant: that then has `width` columns a step.
     """
-    rows, steps = shape
-    size = len(constant)
-    offsets = [_by_step(row, steps) for row in constant]
-    by_row = [
-        {c: _by_step(column[row], steps) for c, column in enumerate(columns)
-         if not is_zero(column[row])}
-        for row in range(size)
-    ]  # fmt: skip
-    state: list[Expression] = [ca.DM.zeros(rows, 1) + x for x in initial or [0.0] * size]
-    before: list[list[Expression]] = [[] for _ in range(size)]
-    for k in range(steps):
-        for row in range(size):
-            before[row].append(state[row])
-        state = [
-            offsets[row][k] + sum(gain[k] * state[column] for column, gain in by_row[row].items())
-            for row in range(size)
-        ]
-    after = [ca.horzcat(*entry) for entry in before]
-    return after[: size // 2], after[size // 2 :], ca.horzcat(*state)
+    (rows, steps), size = shape, len(constant)
+    acting = tuple((i, k) for k in range(size) for i in range(size) if not is_zero(columns[k][i]))
+    given = [ca.horzsplit(ca.DM.zeros(rows, steps * width) + x, width) for x in constant]
+    given += [ca.horzsplit(ca.DM.zeros(rows, steps) + columns[k][i], 1) for i, k in acting]
+    affine = _affine_step(rows, width, size, acting)
+    states = [[ca.DM.zeros(rows, width) + x for x in initial or [0.0] * size]]
+    for at_step in zip(*given, strict=True):
+        states.append(affine.call([*states[-1], *at_step], True, False))  # inline
+    *before, arrival = states
+    by_mode = [ca.horzcat(*state) for state in zip(*before, strict=True)]
+    return by_mode[: size // 2], by_mode[size // 2 :], ca.horzcat(*arrival)
 
 
-def _by_step(entry: Expression, steps: int) -> list[Expression]:
-    """A column for each step; what does not depend on the step is a single one."""
-    columns = ca.horzsplit(ca.DM.zeros(1, 1) + entry, 1)
-    return columns if len(columns) == steps else columns * steps
+@lru_cache(maxsize=32)
+def _affine_step(
+    rows: int, width: int, size: int, acting: tuple[tuple[int, int], ...]
+) -> ca.Function:
+    """(states, constants, entries of the matrix that are not zero) -> states after."""
+    before, given = ([ca.MX.sym("x", rows, width) for _ in range(size)] for _ in range(2))
+    gains, after = [ca.MX.sym("a", rows) for _ in acting], [*given]
+    for (i, k), gain in zip(acting, gains, strict=True):
+        after[i] = after[i] + ca.repmat(gain, 1, width) * before[k]
+    return ca.Function("step", [*before, *given, *gains], after)

@@ -202,17 +202,13 @@ class Batch:
     @cached_property
     def _speeds(self) -> Array | None:
         """The path's speed at the nodes by each coefficient; None if it is not linear in them."""
-        steps, size = self.kind.steps, self.kind.profile.size
-        path = Path(self.kind.profile, steps, False, (1, steps))
+        size, grid = self.kind.profile.size, Grid(self.kind.steps)
+        path = Path(self.kind.profile, grid, jerk=False)
         if not path.linear:
             return None
-        times, length = Grid(steps).columns()
-        speeds = np.zeros((size, NODES, steps))
-        for j, at in enumerate(times):
-            for (value, n), entry in path.jacobian([], at, []).items():
-                if value == 1:
-                    speeds[n, j] = ca.evalf(entry).full() * np.sqrt(length.full())
-        return speeds.reshape(size, -1).T
+        table, weights = path.jacobian([0.0] * size, []), np.sqrt(np.tile(grid.lengths, NODES))
+        speeds = [table.get((1, n), ca.DM.zeros(1, len(weights))).full()[0] for n in range(size)]
+        return (weights * np.array(speeds)).T
 
     @keep_interrupts()  # casadi loses a Ctrl-C
     def values(self, coefficients: Array, move: Array, errors: Array, threads: int = 1) -> Values:

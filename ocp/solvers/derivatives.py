@@ -6,6 +6,7 @@ of all steps stand once for each coefficient.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -15,16 +16,17 @@ from quietarm.models import Plant
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.limits import Quantity, ask_for_jerk
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.collocation import NODES, Step, step
+from quietarm.ocp.simulation.collocation import NODES, Step, collocate, modal_system
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.simulation.rollout import march, symbolic_rollout
-from quietarm.ocp.solvers.energy import energy_with_derivatives
-from quietarm.ocp.solvers.node import Node, Path, product, repeat, repeat_table, transpose
+from quietarm.ocp.simulation.rollout import march, modes_at_nodes, symbolic_rollout
+from quietarm.ocp.solvers.energy import EnergyDerivatives, differentiate_energy
+from quietarm.ocp.solvers.node import Node, Path, Table, product, transpose
 from quietarm.ocp.uncertainty import perturb_plant
 
-_STEPS_OF_CSE = 48
-"""Common terms are looked for up to these steps, where many rows gain by it: that takes a fifth off
-a call, but a time that grows with the square of the steps."""
+_STEPS_OF_CSE, _ROWS_OF_CSE = 48, 4
+"""Common terms are looked for up to these steps, and for more rows of derivatives than these: that
+takes a tenth off a call, but doubles the time to build it, and grows with the square of the steps.
+"""
 
 
 class Kind(NamedTuple):
@@ -58,21 +60,21 @@ def compile_values(kind: Kind, rows: int) -> ca.Function:
     counts = profile.size, 3 + 2 * plant.modes, len(names)
     inputs = [ca.MX.sym("x", rows, count) for count in counts]
     columns = len(Grid(steps, breaks).lengths)
-    a, row, errors = (_widen(one, columns) for one in inputs)
-    perturbed = perturb_plant(plant, dict(zip(names, errors, strict=True)))
+    a, row, errors = (_widen(one, NODES * columns) for one in inputs)
     rollout = symbolic_rollout(
-        perturbed, profile, a, row[:3], steps, rows, ask_for_jerk(quantities), breaks,
-        initial=ca.horzsplit(inputs[1], 1)[3:], energy=energy,
+        perturb_plant(plant, dict(zip(names, errors, strict=True))), profile, a, row[:3], steps,
+        rows, ask_for_jerk(quantities), breaks, ca.horzsplit(inputs[1], 1)[3:], energy,
     )  # fmt: skip
-    at_nodes = [
-        [
-            value
-            for quantity in quantities
-            for value in quantity.of(joint, perturbed.tip_displacements(state.W), torque)
-        ]
-        for joint, state, torque in zip(rollout.joints, rollout.states, rollout.torque, strict=True)
+    perturbed = perturb_plant(
+        plant, dict(zip(names, (one[:, :columns] for one in errors), strict=True))
+    )
+    nodes = zip(rollout.joints, rollout.states, rollout.torque, strict=True)
+    limited = [
+        [x for one in quantities for x in one.of(joint, perturbed.tip_displacements(at.W), torque)]
+        for joint, at, torque in nodes
     ]
-    found = [[rollout.energy], [rollout.arrival], _by_value(at_nodes)]
+    by_value = [ca.MX.zeros(rows, columns) + x for of in zip(*limited, strict=True) for x in of]
+    found = [[rollout.energy], [rollout.arrival], by_value]
     options = {"cse": steps <= _STEPS_OF_CSE}
     return ca.Function("values", inputs, [_join(one, rows) for one in found], options)
 
@@ -94,184 +96,194 @@ class _Differentiated:
     def __init__(self, kind: Kind, rows: int) -> None:
         plant, profile, steps, quantities, names, self.definition, _ = kind
         self.size, self.modes, self.shape = profile.size, plant.modes, (rows, steps)
-        self.path = Path(profile, steps, ask_for_jerk(quantities), self.shape)
-        self.node = Node(plant, self.path, quantities, names, self.definition, self.shape)
-        self.point = self.path.count + 3 * plant.modes
-        limited = (self.node.count - self.node.own) * NODES * steps
+        grid, nodes = Grid(steps), NODES * steps
+        self.path = Path(profile, grid, ask_for_jerk(quantities), rows)
+        self.node = Node(plant, self.path, quantities, names, self.definition, (rows, nodes))
+        limited = (self.node.count - self.node.own) * nodes
         counts = [self.size, 3 + 2 * plant.modes, len(names), 1, 1, 2 * plant.modes, limited]
         self.inputs = [ca.MX.sym("x", rows, count) for count in counts]
         self.a, row, errors, (self.width,), (self.of_energy,) = (
-            _widen(one, steps) for one in self.inputs[:5]
+            _widen(one, nodes) for one in self.inputs[:5]
         )
         self.move, self.initial = row[:3], ca.horzsplit(self.inputs[1], 1)[3:]
-        self.times, self.length = Grid(steps).columns(rows)
-        self.h = self.move[2] * self.length
+        _, self.length = grid.columns(rows)
+        self.h = self.move[2][:, :steps] * self.length
         self.simulate(perturb_plant(plant, dict(zip(names, errors, strict=True))), errors)
         self.differentiate()
 
     def simulate(self, plant: Plant, errors: list[ca.MX]) -> None:
         """The motion, and what happens at its nodes with first derivatives."""
-        y = [self.path.value(self.a, at, self.move) for at in self.times]
-        joints = [self.path.motion(values, self.move) for values in y]
-        self.step = step(plant, joints, self.h, forced=True)
+        y = self.path.value(self.a, self.move)
+        system = modal_system(plant, self.path.motion(y, self.move))
+        self.step = collocate(system, self.h, forced=True)
         constant, self.columns = self.step.transition()
         W, dW, self.arrival = march(constant, self.columns, self.shape, self.initial)
-        modes = _modes_at_nodes(self.step, W, dW)
-        self.points = [[*y[j], *modes[j], *self.move, *errors] for j in range(NODES)]
-        self.outputs, self.f_y, self.o_v = zip(*map(self.node.evaluate, self.points), strict=True)
+        v = [*y, *_modes_at_nodes(self.step, W, dW)]
+        self.count, self.point = len(v), [*v, *self.move, *errors]
+        self.outputs, self.f_y, self.o_v = self.node.evaluate(self.point)
 
     def differentiate(self) -> None:
         """Forward sensitivities: the same steps for each coefficient, driven by f_y y_a."""
-        y_a = [self.path_sensitivity(at) for at in self.times]
-        along = self.steps_along_coefficients().driven_by([
-            force
-            for j in range(NODES)
-            for force in product(repeat_table(self.f_y[j], self.size), y_a[j], self.modes)
-        ])  # fmt: skip
-        W, dW, arrival = self.march_along(along)
-        modes = _modes_at_nodes(along, W, dW)
-        self.arrival_a = ca.horzcat(
-            *(ca.reshape(state, self.shape[0], self.size) for state in ca.horzsplit(arrival, 1))
+        y_a, f_y, o_v = self.path_sensitivity(), self.along(self.f_y), self.along(self.o_v)
+        along = self.steps_along_coefficients().driven_by(
+            [force for j in range(NODES) for force in product(f_y[j], y_a[j], self.modes)]
         )
-        self.v_a = [[*y_a[j], *modes[j]] for j in range(NODES)]
-        self.o_a = [
-            product(repeat_table(self.o_v[j], self.size), self.v_a[j], self.node.count)
+        W, dW, self.arrival_a = self.march_along(along)
+        nodes = along.nodes(W, dW, along.accelerations(W, dW))
+        self.v_a = [[*y, *node.W, *node.dW, *node.ddW] for y, node in zip(y_a, nodes, strict=True)]
+        self.o_a = [product(o_v[j], self.v_a[j], self.node.count) for j in range(NODES)]
+
+    def path_sensitivity(self) -> list[list[ca.MX]]:
+        """Derivatives of y by one coefficient beside another, of each node a value each."""
+        table, zero = self.path.jacobian(self.a, self.move), ca.DM.zeros(*self.width.shape)
+        by_node = [
+            [ca.horzsplit(table.get((k, n), zero), self.shape[1]) for n in range(self.size)]
+            for k in range(self.path.count)
+        ]
+        return [
+            [ca.densify(ca.MX(ca.horzcat(*(at[j] for at in value)))) for value in by_node]
             for j in range(NODES)
         ]
 
-    def path_sensitivity(self, at: ca.DM) -> list[ca.MX]:
-        """Derivatives of y at a node by one coefficient after another, a value each."""
-        table, zero = self.path.jacobian(self.a, at, self.move), ca.MX.zeros(*self.shape)
-        return [
-            ca.horzcat(*(ca.densify(table.get((k, n), zero)) for n in range(self.size)))
-            for k in range(self.path.count)
-        ]
+    def along(self, table: Table) -> list[Table]:
+        """A table at each node, its entries once for each coefficient, side by side."""
+        steps = self.shape[1]
+        entries = {place: ca.horzsplit(entry, steps) for place, entry in table.items()}
+        return [{place: self.repeat(at[j]) for place, at in entries.items()} for j in range(NODES)]
+
+    def repeat(self, entry: Any) -> Any:
+        """An entry once for each coefficient, side by side; numbers as they are."""
+        return ca.repmat(entry, 1, self.size) if isinstance(entry, ca.MX) else entry
 
     def steps_along_coefficients(self) -> Step:
         """The steps once for each coefficient."""
         response, forced = (
-            [repeat(row, self.size) for row in rows]
+            [[self.repeat(entry) for entry in row] for row in rows]
             for rows in (self.step.response, self.step.forced)
         )
-        return Step(ca.repmat(self.h, 1, self.size), response, self.modes, forced)
+        return Step(self.repeat(self.h), response, self.modes, forced)
 
     def march_along(self, along: Step) -> tuple[list[ca.MX], list[ca.MX], ca.MX]:
-        """States before every step, from rest, with a column for each step of each coefficient.
-
-        The march goes step by step: there a row stands for each coefficient of each candidate.
-        """
-        (rows, steps), size = self.shape, self.size
-        places = np.arange(rows * steps * size).reshape(size, steps, rows).transpose(1, 0, 2)
-        by_step = places.ravel().tolist()
-        back = np.argsort(by_step).tolist()
-        constant = [ca.reshape(x.nz[by_step], rows * size, steps) for x in along.transition()[0]]
-        again = list(range(rows)) * size
-        columns = [
-            [x[again, :] if isinstance(x, ca.MX) else x for x in column] for column in self.columns
-        ]
-        *states, arrival = march(constant, columns, (size * rows, steps))
-        W, dW = ([ca.reshape(x.nz[back], rows, steps * size) for x in half] for half in states)
+        """States before every step, from rest, with a column for each step of each coefficient."""
+        constant = [_swap(x, self.size) for x in along.transition()[0]]
+        W, dW, arrival = march(constant, self.columns, self.shape, width=self.size)
+        steps = self.shape[1]
+        W, dW = ([_swap(x, steps) for x in half] for half in (W, dW))
         return W, dW, arrival
 
-    def forcing_multipliers(self, of_outputs: list[list[ca.MX]]) -> list[list[ca.MX]]:
-        """Backward multipliers of what forces the modes at the nodes: CasADi's reverse sweep."""
-        forcing = ca.MX.sym("f", self.shape[0], NODES * self.modes * self.shape[1])
-        driven = self.step.driven_by(ca.horzsplit(forcing, self.shape[1]))
-        W, dW, arrival = march(driven.transition()[0], self.columns, self.shape)
-        lagrangian = ca.dot(self.inputs[5], arrival)
-        for j, modes in enumerate(_modes_at_nodes(driven, W, dW)):
-            of_modes = self.point_multipliers(j, of_outputs[j])[self.path.count :]
-            lagrangian += sum(ca.dot(w, x) for w, x in zip(of_modes, modes, strict=True))
-        multipliers = ca.horzsplit(ca.gradient(lagrangian, forcing), self.shape[1])
-        return [multipliers[j * self.modes : (j + 1) * self.modes] for j in range(NODES)]
+    def forcing_multipliers(self, of_outputs: list[ca.MX]) -> list[ca.MX]:
+        """Backward multipliers of what forces the modes at the nodes.
 
-    def point_multipliers(self, j: int, of_outputs: Sequence[ca.MX]) -> list[ca.MX]:
-        """Multipliers of the point v at a node, from those of the outputs there."""
-        return product(transpose(self.o_v[j]), of_outputs, self.point)
+        What a step changes of the Lagrangian is linear in its state and forcing, so that CasADi's
+        gradients are coefficients; that by the state drives the multipliers backwards.
+        """
+        (rows, steps), m = self.shape, self.modes
+        state = ca.MX.sym("z", rows * 2 * m, steps)
+        forcing = ca.MX.sym("f", rows, NODES * m * steps)
+        z = ca.vertsplit(state, rows)
+        of_modes = self.point_multipliers(of_outputs)[self.path.count :]
+        driven = self.step.driven_by(ca.horzsplit(forcing, steps))
+        modes = _modes_at_nodes(driven, z[:m], z[m:])
+        here = sum(ca.dot(w, x) for w, x in zip(of_modes, modes, strict=True))
+        of_state = ca.vertsplit(ca.gradient(here, state), rows)
+        transposed = [list(row) for row in zip(*self.columns, strict=True)]
+        W, dW, _ = march(
+            [_reverse(x) for x in of_state],
+            [[_reverse(x) for x in column] for column in transposed],
+            self.shape,
+            ca.horzsplit(self.inputs[5], 1),
+        )
+        of_after = [_reverse(x) for x in (*W, *dW)]
+        constant, _ = driven.transition()
+        after = sum(ca.dot(w, x) for w, x in zip(of_after, constant, strict=True))
+        found = ca.horzsplit(ca.gradient(here + after, forcing), steps)
+        return [ca.horzcat(*found[i::m]) for i in range(m)]
+
+    def point_multipliers(self, of_outputs: Sequence[ca.MX]) -> list[ca.MX]:
+        """Multipliers of the point v, from those of the outputs there."""
+        return product(transpose(self.o_v), of_outputs, self.count)
 
     def hessian_factors(
-        self,
-        energy_pp: list[list[ca.MX]],
-        of_outputs: list[list[ca.MX]],
-        of_forcing: list[list[ca.MX]],
-    ) -> tuple[list[ca.MX], list[Any]]:
+        self, energy: EnergyDerivatives, of_outputs: list[ca.MX], of_forcing: list[ca.MX]
+    ) -> tuple[list[ca.MX], list[ca.MX]]:
         """Sensitivities, and what second derivatives make of them: their product is the Hessian."""
-        left, right = list[ca.MX](), list[Any]()
-        for j in range(NODES):
-            l_vv = self.node.hessian(self.points[j], [*of_forcing[j], *of_outputs[j]])
-            turned = product(repeat_table(l_vv, self.size), self.v_a[j], self.point)
-            for i in sorted({row for row, _ in l_vv}):
-                left.append(self.v_a[j][i])
-                right.append(turned[i])
+        steps, pairs = self.shape[1], list[tuple[ca.MX, ca.MX]]()
         power_a = [outputs[0] for outputs in self.o_a]
-        for j in range(NODES):
-            weights = repeat([self.of_energy * x for x in energy_pp[j]], self.size)
-            left.append(power_a[j])
-            right.append(sum(w * x for w, x in zip(weights, power_a, strict=True)))
+        l_vv = self.node.hessian(self.point, [*of_forcing, *of_outputs])
+        for v_a, table in zip(self.v_a, self.along(l_vv), strict=True):
+            turned = product(table, v_a, self.count)
+            pairs += [(v_a[i], turned[i]) for i in sorted({row for row, _ in table})]
+        at_nodes = ca.horzsplit(self.of_energy * energy.by_power_twice, steps)
+        bends = list(zip(at_nodes, power_a, strict=True))
+        for weights, bend in energy.zeros:
+            terms = zip(map(self.repeat, weights), power_a, strict=True)
+            bends.append((self.of_energy[:, :steps] * bend, sum(w * x for w, x in terms)))
+        pairs += [(x, self.repeat(bend) * x) for bend, x in bends]
+        left, right = zip(*pairs, strict=True)
         return left, right
 
-    def path_hessian(
-        self, of_outputs: list[list[ca.MX]], of_forcing: list[list[ca.MX]]
-    ) -> list[ca.MX]:
+    def path_hessian(self, of_outputs: list[ca.MX], of_forcing: list[ca.MX]) -> list[ca.MX]:
         """What the path's own second derivatives add to the Hessian."""
         if self.path.linear:
             return []
-        count, total = self.path.count, [ca.MX.zeros(*self.shape)] * self.size**2
-        for j in range(NODES):
-            by_outputs = self.point_multipliers(j, of_outputs[j])[:count]
-            by_forcing = product(transpose(self.f_y[j]), of_forcing[j], count)
-            of_y = [x + y for x, y in zip(by_outputs, by_forcing, strict=True)]
-            y_aa = self.path.hessian(self.a, self.times[j], self.move, of_y)
-            for (i, k), entry in y_aa.items():
-                total[i * self.size + k] += entry
-        return [ca.sum2(x) for x in total]
+        count = self.path.count
+        by_outputs = self.point_multipliers(of_outputs)[:count]
+        by_forcing = product(transpose(self.f_y), of_forcing, count)
+        of_y = [x + y for x, y in zip(by_outputs, by_forcing, strict=True)]
+        y_aa, zero = self.path.hessian(self.a, self.move, of_y), ca.MX.zeros(self.shape[0], 1)
+        places = itertools.product(range(self.size), repeat=2)
+        return [ca.sum2(y_aa[place]) if place in y_aa else zero for place in places]
 
     def compile(self) -> ca.Function:
         """All of it as a function."""
         (rows, steps), own = self.shape, self.node.own
-        energy, energy_o, energy_pp = energy_with_derivatives(
-            self.definition, [o[:own] for o in self.outputs], self.h, self.length, self.width
+        power, *smooth = self.outputs[:own]
+        energy = differentiate_energy(
+            self.definition, power, smooth, self.h, self.length, self.width
         )
-        of_limited = ca.horzsplit(self.inputs[6], steps)  # value by value, node by node
-        of_outputs = [
-            [*(self.of_energy * x for x in energy_o[j]), *of_limited[j::NODES]]
-            for j in range(NODES)
-        ]
+        energy_o = [energy.by_power, energy.by_smooth][:own]
+        of_outputs = [self.of_energy * x for x in energy_o]
+        of_outputs += ca.horzsplit(self.inputs[6], NODES * steps)
         of_forcing = self.forcing_multipliers(of_outputs)
-        energy_a = sum(
-            by * x
-            for j in range(NODES)
-            for by, x in zip(repeat(energy_o[j], self.size), self.o_a[j][:own], strict=True)
-        )
+        along = [[self.repeat(x) for x in ca.horzsplit(by, steps)] for by in energy_o]
+        energy_a = sum(along[i][j] * self.o_a[j][i] for i in range(own) for j in range(NODES))
+        limited_a = zip(*(outputs[own:] for outputs in self.o_a), strict=True)
         found = [
-            [energy],
+            [energy.value],
             [self.arrival],
-            _by_value([o[own:] for o in self.outputs]),
+            self.outputs[own:],
             [ca.sum2(x) for x in ca.horzsplit(energy_a, steps)],
             [self.arrival_a],
-            _by_value([o[own:] for o in self.o_a]),
-            *self.hessian_factors(energy_pp, of_outputs, of_forcing),
+            [x for of_value in limited_a for x in of_value],
+            *self.hessian_factors(energy, of_outputs, of_forcing),
             self.path_hessian(of_outputs, of_forcing),
         ]
-        options = {"cse": rows > 1 and steps <= _STEPS_OF_CSE}
-        return ca.Function("derivatives", self.inputs, [_join(x, rows) for x in found], options)
+        outputs = [_join(x, rows) for x in found]
+        options = {"cse": rows > _ROWS_OF_CSE and steps <= _STEPS_OF_CSE}
+        return ca.Function("derivatives", self.inputs, outputs, options)
 
 
-def _widen(matrix: ca.MX, steps: int) -> list[ca.MX]:
-    """Its columns, each repeated for every step."""
-    return [ca.repmat(column, 1, steps) for column in ca.horzsplit(matrix, 1)]
+def _widen(matrix: ca.MX, columns: int) -> list[ca.MX]:
+    """Its columns, each repeated so many times."""
+    return [ca.repmat(column, 1, columns) for column in ca.horzsplit(matrix, 1)]
 
 
 def _join(columns: Sequence[Any], rows: int) -> ca.MX:
     return ca.densify(ca.horzcat(ca.MX(rows, 0), *columns))
 
 
-def _by_value(at_nodes: Sequence[Sequence[ca.MX]]) -> list[ca.MX]:
-    """From values at each node to nodes for each value."""
-    return [x for of_value in zip(*at_nodes, strict=True) for x in of_value]
+def _swap(entry: ca.MX, groups: int) -> ca.MX:
+    """From groups of columns to groups of the first in each, of the second and so on."""
+    return entry[:, np.arange(entry.shape[1]).reshape(groups, -1).T.ravel().tolist()]
 
 
-def _modes_at_nodes(one: Step, W: list[ca.MX], dW: list[ca.MX]) -> list[list[ca.MX]]:
-    """W, W' and W'' at every node, from those before the steps."""
-    nodes = one.nodes(W, dW, one.accelerations(W, dW))
-    return [[*node.W, *node.dW, *node.ddW] for node in nodes]
+def _reverse(by_step: Any) -> Any:
+    """From the last step to the first."""
+    several = isinstance(by_step, ca.MX) and by_step.shape[1] > 1
+    return by_step[:, ::-1] if several else by_step
+
+
+def _modes_at_nodes(one: Step, W: list[ca.MX], dW: list[ca.MX]) -> list[ca.MX]:
+    """W, W' and W'' at the nodes, from those before the steps."""
+    state = modes_at_nodes(one.nodes(W, dW, one.accelerations(W, dW)))
+    return [*state.W, *state.dW, *state.ddW]

@@ -1,15 +1,14 @@
 """What happens at one time with its derivatives: the joint's path, and the plant at a Gauss node.
 
-Expressions are computed entry by entry over arrays (rows, steps): the derivative by an array of the
-same shape is again such an array, the directional derivative along ones. Small matrices of them are
-tables: entries by row and column, without those that are zero whatever the symbols.
-
 Both are nonlinear, and both belong to a single time: the modes are linear in all that went before.
+So expressions are computed entry by entry over arrays (rows, nodes), as are their derivatives.
+Small matrices of such arrays are tables: entries by row and column, without those that are zero
+whatever the symbols.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import casadi as ca
@@ -30,29 +29,24 @@ def symbols(count: int, shape: Shape) -> list[ca.MX]:
     return [ca.MX.sym("x", *shape) for _ in range(count)]
 
 
-def derivative(expression: ca.MX, symbol: ca.MX) -> ca.MX:
-    """The derivative by an array, entry by entry."""
-    return ca.jtimes(expression, symbol, ca.MX.ones(*symbol.shape))
-
-
 def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
-    """First derivatives of a column of expressions."""
+    """First derivatives of a column of expressions, entry by entry."""
+    one, none = ca.MX.ones(*column[0].shape), ca.MX(*column[0].shape)
+    seeds = [[one if k == other else none for other in range(len(by))] for k in range(len(by))]
+    found = ca.forward([*column], [*by], seeds)
     return {
-        (i, k): derivative(expression, symbol)
-        for i, expression in enumerate(column)
-        for k, symbol in enumerate(by)
-        if ca.depends_on(expression, symbol)
+        (i, k): entry
+        for k, along in enumerate(found)
+        for i, entry in enumerate(along)
+        if not entry.is_zero()
     }
 
 
-def hessian(expression: Any, by: Sequence[ca.MX]) -> Table:
+def hessian(expression: ca.MX, by: Sequence[ca.MX]) -> Table:
     """Second derivatives of an expression."""
-    gradient = jacobian([expression], by)
+    (gradient,) = ca.reverse([expression], [*by], [[ca.MX.ones(*expression.shape)]])
     upper = {
-        (i, k): derivative(first, by[k])
-        for (_, i), first in gradient.items()
-        for (_, k) in gradient
-        if i <= k and ca.depends_on(first, by[k])
+        place: entry for place, entry in jacobian(gradient, by).items() if place[0] <= place[1]
     }
     return upper | transpose(upper)
 
@@ -72,24 +66,27 @@ def product(table: Table, column: Sequence[ca.MX], rows: int) -> list[ca.MX]:
     return [found.get(i, zero) for i in range(rows)]
 
 
-def repeat(entries: Iterable[ca.MX], count: int) -> list[ca.MX]:
-    """Each entry so many times beside itself; numbers as they are."""
-    return [ca.repmat(x, 1, count) if isinstance(x, ca.MX) else x for x in entries]
+class Tables:
+    """Tables as a function of their symbols."""
 
+    def __init__(self, inputs: Sequence[ca.MX], *tables: Table) -> None:
+        self._places = [list(table) for table in tables]
+        entries = [entry for table in tables for entry in table.values()]
+        self._function = ca.Function("tables", [*inputs], entries, {"cse": True})
 
-def repeat_table(table: Table, count: int) -> Table:
-    """The same of a table."""
-    return {place: ca.repmat(x, 1, count) for place, x in table.items()}
-
-
-_CSE = {"cse": True}
+    def __call__(self, *arguments: Sequence[Any]) -> list[dict[tuple[int, int], Any]]:
+        """The tables in expressions, or in numbers."""
+        given = [x for part in arguments for x in part]
+        inline = any(isinstance(x, ca.MX) for x in given)
+        entries = iter(self._function.call(given, inline, False))
+        return [{place: next(entries) for place in places} for places in self._places]
 
 
 class Path:
     """The values y(a, t) through which a profile's coefficients a enter the joint's motion.
 
     Where the jerk is asked for, y stands once more at the times of `Grid.stretch`, with its rates
-    by the fraction of the duration.
+    by the fraction of the duration. Coefficients and the move are arrays like the times.
 
     Attributes
     ----------
@@ -99,45 +96,41 @@ class Path:
         Number of values.
     """
 
-    def __init__(self, profile: JointProfile, steps: int, jerk: bool, shape: Shape) -> None:
-        self._profile, self._jerk, self._size = profile, jerk, profile.size
+    def __init__(self, profile: JointProfile, grid: Grid, jerk: bool, rows: int = 1) -> None:
+        times, _ = grid.columns(rows)
+        self._profile, self._jerk, self._times = profile, jerk, ca.horzcat(*times)
+        shape = self._times.shape
         a, move, at = symbols(profile.size, shape), symbols(3, shape), ca.MX.sym("t", *shape)
         y = [ca.MX.zeros(*shape) + value for value in profile.inner(a, at, *move)]
         self._own = len(y)
         if jerk:
-            rates = [derivative(value, at) for value in y]
-            y += ca.substitute([*y, *rates], [at], [Grid(steps).stretch(at)])
-        self.count = len(y)
-        y_a, inputs = jacobian(y, a), [*a, at, *move]
-        self._value = ca.Function("y", inputs, y)
-        self._jacobian = ca.Function("y_a", inputs, list(y_a.values()), _CSE)
-        self._places = list(y_a)
-        self.linear = not any(ca.depends_on(x, ca.veccat(*a, *move)) for x in y_a.values())
+            rates = product(jacobian(y, [at]), [ca.MX.ones(*shape)], len(y))
+            y += ca.substitute([*y, *rates], [at], [grid.stretch(at)])
+        self.count, inputs, y_a = len(y), [*a, at, *move], jacobian(y, a)
+        self.linear = not ca.depends_on(ca.veccat(*y_a.values()), ca.veccat(*a, *move))
+        self._value, self._jacobian = ca.Function("y", inputs, y), Tables(inputs, y_a)
         if not self.linear:
             multipliers = symbols(self.count, shape)
-            y_aa = hessian(sum(w * x for w, x in zip(multipliers, y, strict=True)), a)
-            self._bent = list(y_aa)
-            self._hessian = ca.Function("y_aa", [*inputs, *multipliers], list(y_aa.values()), _CSE)
+            lagrangian = sum(w * x for w, x in zip(multipliers, y, strict=True))
+            self._hessian = Tables([*inputs, *multipliers], hessian(lagrangian, a))
 
-    def value(self, a: Sequence[ca.MX], at: ca.DM, move: Sequence[ca.MX]) -> list[ca.MX]:
-        """The values y."""
-        return self._value.call([*a, ca.MX(at), *move], True, False)
+    def value(self, a: Sequence[ca.MX], move: Sequence[ca.MX]) -> list[ca.MX]:
+        """The values y at the nodes."""
+        return self._value.call([*a, self._times, *move], True, False)
 
-    def jacobian(self, a: Sequence[ca.MX], at: ca.DM, move: Sequence[ca.MX]) -> Table:
+    def jacobian(self, a: Sequence[ca.MX], move: Sequence[ca.MX]) -> dict[tuple[int, int], Any]:
         """Derivatives of y by the coefficients; numbers where y is linear."""
-        if self.linear:
-            one = ca.DM.ones(*at.shape)
-            entries = self._jacobian.call([*[one] * self._size, at, *[one] * 3])
-            return {place: ca.MX(x) for place, x in zip(self._places, entries, strict=True)}
-        entries = self._jacobian.call([*a, ca.MX(at), *move], True, False)
-        return dict(zip(self._places, entries, strict=True))
+        one = [ca.DM.ones(*self._times.shape)]
+        given = (one * len(a), [self._times], one * 3) if self.linear else (a, [self._times], move)
+        (table,) = self._jacobian(*given)
+        return table
 
     def hessian(
-        self, a: Sequence[ca.MX], at: ca.DM, move: Sequence[ca.MX], multipliers: Sequence[ca.MX]
+        self, a: Sequence[ca.MX], move: Sequence[ca.MX], multipliers: Sequence[ca.MX]
     ) -> Table:
         """Second derivatives by the coefficients of the sum of multipliers times y."""
-        entries = self._hessian.call([*a, ca.MX(at), *move, *multipliers], True, False)
-        return dict(zip(self._bent, entries, strict=True))
+        (table,) = self._hessian(a, [self._times], move, multipliers)
+        return table
 
     def motion(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:
         """The joint's motion, without its jerk."""
@@ -149,8 +142,8 @@ class Path:
         if not self._jerk:
             return joint
         there, rates = y[self._own : 2 * self._own], y[2 * self._own :]
-        by_y = jacobian([self.motion(there, move).acceleration], there)
-        return joint._replace(jerk=sum(x * rates[k] for (_, k), x in by_y.items()) / move[2])
+        (jerk,) = product(jacobian([self.motion(there, move).acceleration], there), rates, 1)
+        return joint._replace(jerk=jerk / move[2])
 
 
 class Node:
@@ -187,27 +180,24 @@ class Node:
         smooth = energy.smooth(torque, joint.speed)
         own = [power_of(torque, joint.speed), *([] if is_zero(smooth) else [smooth])]
         limited = [x for quantity in quantities for x in quantity.of(joint, tips, torque)]
-        o = [zero + x for x in (*own, *limited)]
+        o, inputs = [zero + x for x in (*own, *limited)], [*v, *move, *errors]
         self.own, self.count = len(own), len(o)
-        f_y, o_v, inputs = jacobian(f, y), jacobian(o, v), [*v, *move, *errors]
-        self._places = list(f_y), list(o_v)
-        self._first = ca.Function("node", inputs, [*o, *f_y.values(), *o_v.values()], _CSE)
+        self._first = Tables(
+            inputs, {(i, 0): x for i, x in enumerate(o)}, jacobian(f, y), jacobian(o, v)
+        )
         multipliers = symbols(m + self.count, shape)
-        l_vv = hessian(sum(w * x for w, x in zip(multipliers, [*f, *o], strict=True)), v)
-        self._bent = list(l_vv)
-        self._second = ca.Function("l_vv", [*inputs, *multipliers], list(l_vv.values()), _CSE)
+        lagrangian = sum(w * x for w, x in zip(multipliers, [*f, *o], strict=True))
+        self._second = Tables([*inputs, *multipliers], hessian(lagrangian, v))
 
     def evaluate(self, point: Sequence[ca.MX]) -> tuple[list[ca.MX], Table, Table]:
         """The outputs, the Jacobian of f by y, and that of the outputs by v.
 
         A point is v, then the move and the errors.
         """
-        entries = iter(self._first.call(point, True, False))
-        outputs = [next(entries) for _ in range(self.count)]
-        f_y, o_v = ({place: next(entries) for place in places} for places in self._places)
-        return outputs, f_y, o_v
+        outputs, f_y, o_v = self._first(point)
+        return list(outputs.values()), f_y, o_v
 
     def hessian(self, point: Sequence[ca.MX], multipliers: Sequence[ca.MX]) -> Table:
         """Second derivatives by v of the sum of multipliers times f, then outputs."""
-        entries = self._second.call([*point, *multipliers], True, False)
-        return dict(zip(self._bent, entries, strict=True))
+        (table,) = self._second(point, multipliers)
+        return table

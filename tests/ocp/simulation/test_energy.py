@@ -15,7 +15,7 @@ from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
     resolved_energy,
 )
-from quietarm.ocp.solvers.energy import power_derivatives
+from quietarm.ocp.solvers.energy import differentiate_absolute
 
 import quietarm as qa
 
@@ -53,10 +53,9 @@ def _energy(power):
 
 def _derivatives(power, least=LEAST):
     """Gradient [3], second derivatives [3, 3]."""
-    gradient, bends = power_derivatives([ca.DM(p) for p in power], ca.DM(least))
-    return np.array([float(x) for x in gradient]), np.array(
-        [[float(x) for x in row] for row in bends]
-    )
+    gradient, zeros = differentiate_absolute([ca.DM(p) for p in power], ca.DM(least))
+    bends = [float(bend) * np.outer(*[[float(w) for w in weights]] * 2) for weights, bend in zeros]
+    return np.array([float(x) for x in gradient]), sum(bends)
 
 
 def _with_sign(quadratic, function):
