@@ -12,6 +12,7 @@ from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
 from quietarm.metaheuristics.gradient import GRADIENT, gradient_front, polished
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
+from quietarm.metaheuristics.problems.recorded import BudgetSpentError
 from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.search import MOST_EVALUATIONS, search
 from quietarm.ocp import Front, QuietarmError
@@ -108,60 +109,28 @@ class Job:
 
     def _find(self, rehearse: bool = False) -> Front:
         problem, budget, settings = self.problem, self.budget, dict(self.settings)
-        asked: Any = {"profile": problem.profile, "bound": problem.bound, "seed": self.seed}
-        if isinstance(self.method, str) and self.method in GRADIENT:
-            if rehearse:
-                settings = {"starts" if "multistart" in self.label else "points": _REHEARSAL}
-            return gradient_front(problem.task, method=self.method, settings=settings, **asked)
-        assert budget is not None
-        if callable(self.method) and not _is_algorithm(self.method):
-            return self._own(budget)
         method: Any = self.method
+        asked: Any = {"profile": problem.profile, "bound": problem.bound, "seed": self.seed}
+        if budget is None:
+            if rehearse:
+                settings = {"starts" if "multistart" in method else "points": _REHEARSAL}
+            return gradient_front(problem.task, method=method, settings=settings, **asked)
         population: Any = settings.pop("population", None)
-        polish = isinstance(method, str) and method.endswith(POLISH)
+        size, polish = 100, False
         if isinstance(method, str):
-            method = method.removesuffix(POLISH)
-            preset = PRESETS[method]
-            size = preset.evaluations(population or preset.population, 1)
-        else:
-            size = 100
+            method, polish = method.removesuffix(POLISH), method.endswith(POLISH)
+            size = PRESETS[method].evaluations(population or PRESETS[method].population, 1)
+        budget = min(budget, _REHEARSAL * size) if rehearse else budget
+        if callable(method) and not _is_algorithm(method):
+            function = problem.recorded(budget)
+            with suppress(BudgetSpentError):
+                method(function, self.seed, budget)
+            return function.front(self.label, self.seed)
         front = search(
-            problem.task, method, population=population, settings=settings,
-            evaluations=min(budget, _REHEARSAL * size) if rehearse else budget,
+            problem.task, method, population=population, settings=settings, evaluations=budget,
             reference=problem.reference(), **asked,
         )  # fmt: skip
         return polished(front) if polish else front
-
-    def _own(self, budget: int) -> Front:
-        """What a function of one's own asks for, up to the budget."""
-        function: Any = self.problem.recorded()
-        within, method = _Afforded(function, budget), self.method
-        assert callable(method)
-        with suppress(_SpentError):
-            method(within, self.seed, budget)
-        return function.front(self.label, self.seed)
-
-
-class _SpentError(Exception):
-    """A function of one's own has had all of its evaluations."""
-
-
-class _Afforded:
-    """A recorded function that is over after its budget."""
-
-    def __init__(self, function: Any, budget: int) -> None:
-        self._function, self._budget = function, budget
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.__dict__["_function"], name)
-
-    def __call__(self, candidates: Any) -> Any:
-        left = self._budget - self._function.record.evaluations
-        if len(candidates) > left:
-            if left:
-                self._function(candidates[:left])
-            raise _SpentError
-        return self._function(candidates)
 
 
 def method_name(method: Method) -> str:

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from math import inf
+from math import inf, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, preset_of
+from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, Preset, preset_of
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import whole
-from quietarm.ocp.record import coefficient_bound
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from pymoo.core.algorithm import Algorithm
+    from quietarm.metaheuristics.problems.recorded import RecordedFunction
     from quietarm.metaheuristics.quality import Reference
 
 MOST_INDIVIDUALS, MOST_GENERATIONS, MOST_EVALUATIONS = 100_000, 1_000_000, 1_000_000_000
@@ -53,17 +53,6 @@ class SearchProgress:
     seconds: float
     failed: int = 0
     infeasible: int = 0
-
-
-@dataclass(frozen=True)
-class _Chosen:
-    """An algorithm that was not run yet, and what it was asked for."""
-
-    method: str
-    algorithm: Algorithm
-    settings: Mapping[str, Any]
-    generations: int
-    evaluations: int | None
 
 
 def search(
@@ -127,63 +116,72 @@ def search(
         profile or beyond the bound.
     """
     # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
-    from quietarm.metaheuristics.problems.counted import BudgetSpentError, CountedProblem
-    from quietarm.metaheuristics.problems.function import MoveFunction
-    from quietarm.metaheuristics.record import Record
+    from quietarm.metaheuristics.problems.pymoo_problem import MoveProblem
+    from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
 
-    profile = CycloidPolynomial() if profile is None else profile
-    bound = profile.default_bound if bound is None else bound
     if generations is not None and evaluations is not None:
         raise ValueError("evaluations stand in place of generations; leave one of them out")
-    given = population, generations, evaluations, settings
-    chosen = (
-        _known(algorithm, task, *given) if isinstance(algorithm, str) else _own(algorithm, *given)
-    )
+    if isinstance(algorithm, str):
+        method, preset = algorithm, preset_of(algorithm)
+        chosen, own = _known(preset, task, population, evaluations, settings)
+        size, usual = preset.evaluations(own["population"], 1), preset.generations
+    else:
+        chosen, own = _own(algorithm, population, settings)
+        method, size, usual = type(chosen).__name__, 1, None
+    generations = usual if generations is None else generations
+    if evaluations is None and generations is None:
+        raise ValueError(f"give the number of generations or of evaluations for {method}")
+    if evaluations is None:
+        generations = whole("generations", generations, 1, MOST_GENERATIONS)
+        limits: dict[str, Any] = {"generations": generations}
+    else:
+        evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
+        generations, limits = -(-evaluations // size), {"evaluations": evaluations}
+    profile = CycloidPolynomial() if profile is None else profile
+    bound = profile.default_bound if bound is None else bound
     if bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
         raise ValueError(
-            f"{chosen.method} searches a box: give a bound on the coefficients (the paper used "
-            f"{papers})"
+            f"{method} searches a box: give a bound on the coefficients (the paper used {papers})"
         )
-    bound, seed = coefficient_bound(bound), whole("seed", seed, 0)
-    function = MoveFunction(task, profile, bound=bound, threads=threads)
+    seed = whole("seed", seed, 0)
+    function = RecordedFunction(
+        task, profile, bound=bound, threads=threads, reference=reference,
+        budget=evaluations or inf,
+    )  # fmt: skip
     first = _starts(start, function) if start is not None else np.empty((0, profile.size))
-    record = Record(task, profile.size, reference)
-    problem = CountedProblem(function, record, chosen.evaluations or inf)
-    after = None if report is None else _reporting(problem, chosen.generations, report)
     # a division by a distance of zero is of no concern to a user; and pymoo's NSGA-III leaves all
     # warnings of the process switched off
     with warnings.catch_warnings(), np.errstate(all="ignore"), suppress(BudgetSpentError):
-        _run(chosen, problem, seed, first, after)
-    return record.front(
-        task, profile, method=chosen.method, settings={"bound": bound, **chosen.settings},
-        seed=seed, failed=problem.failed, infeasible=problem.infeasible,
-    )  # fmt: skip
+        _set_up(chosen, MoveProblem(function), seed, **limits)
+        for done, _ in enumerate(_generations(chosen, first), start=1):
+            if report is not None:
+                report(_progress(function, done, generations))
+    return function.front(method, seed, {**limits, **own})
 
 
-def _run(
-    chosen: _Chosen,
-    problem: Any,
-    seed: int,
-    first: NDArray[np.float64],
-    after: Callable[[], None] | None,
+def _set_up(
+    algorithm: Any, problem: Any, seed: int, generations: int = 0, evaluations: int = 0
 ) -> None:
-    """The generations of a search: as `Algorithm.run`, with rows in the first population."""
     from pymoo.termination.max_eval import MaximumFunctionCallTermination
     from pymoo.termination.max_gen import MaximumGenerationTermination
 
-    algorithm: Any = chosen.algorithm  # for the type checker: pymoo declares much as optional
     termination: Any = (
-        MaximumGenerationTermination(chosen.generations)
-        if chosen.evaluations is None
-        else MaximumFunctionCallTermination(chosen.evaluations)
+        MaximumFunctionCallTermination(evaluations)
+        if evaluations
+        else MaximumGenerationTermination(generations)
     )
     try:
         algorithm.setup(problem, termination=termination, seed=seed)
     except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
-        raise ValueError(f"{chosen.method} cannot search this task: {error}") from None
+        name = type(algorithm).__name__
+        raise ValueError(f"{name} cannot search this task: {error}") from None
+
+
+def _generations(algorithm: Any, first: NDArray[np.float64]) -> Iterator[None]:
+    """The generations of a search: as `Algorithm.run`, with rows in the first population."""
     while algorithm.has_next():
-        infills: Any = algorithm.infill()
+        infills = algorithm.infill()
         if infills is None:
             algorithm.advance()
             continue
@@ -191,42 +189,22 @@ def _run(
             for individual, row in zip(infills, first, strict=False):
                 individual.X = row.copy()
             first = first[:0]
-        algorithm.evaluator.eval(problem, infills, algorithm=algorithm)
+        algorithm.evaluator.eval(algorithm.problem, infills, algorithm=algorithm)
         algorithm.advance(infills=infills)
-        if after is not None:
-            after()
+        yield
 
 
-def _reporting(
-    problem: Any, generations: int, report: Callable[[SearchProgress], None]
-) -> Callable[[], None]:
-    """Report a generation."""
-    done = 0
-
-    def after() -> None:
-        nonlocal done
-        done += 1
-        record = problem.record
-        F = record.non_dominated()[1]
-        least = F.min(axis=0) if len(F) else np.full(2, np.nan)
-        report(
-            SearchProgress(
-                done,
-                max(generations, done),
-                float(least[0]),
-                float(least[1]),
-                record.share_of_box(),
-                record.evaluations,
-                record.seconds,
-                problem.failed,
-                problem.infeasible,
-            )
-        )
-
-    return after
+def _progress(function: RecordedFunction, done: int, generations: int) -> SearchProgress:
+    record = function.record
+    F = record.non_dominated()[1]
+    residual, energy = F.min(axis=0).tolist() if len(F) else (nan, nan)
+    return SearchProgress(
+        done, max(generations, done), residual, energy, record.share_of_box(), record.evaluations,
+        record.seconds, function.failed, function.infeasible,
+    )  # fmt: skip
 
 
-def _starts(front: Front, function: Any) -> NDArray[np.float64]:
+def _starts(front: Front, function: RecordedFunction) -> NDArray[np.float64]:
     """Coefficients of a front within the box of a search."""
     if front.profile != function.profile:
         raise ValueError("the front to start from has another profile; give one of the search's")
@@ -239,14 +217,13 @@ def _starts(front: Front, function: Any) -> NDArray[np.float64]:
 
 
 def _known(
-    name: str,
+    preset: Preset,
     task: PointToPoint,
     population: int | None,
-    generations: int | None,
     evaluations: int | None,
     settings: Mapping[str, object] | None,
-) -> _Chosen:
-    preset = preset_of(name)
+) -> tuple[Algorithm, dict[str, Any]]:
+    """A method that is known by name, and what it is set to."""
     if task.limits and not preset.keeps_limits:
         raise ValueError(
             f"{preset.name} cannot search a task with limits; choose another method, or leave "
@@ -258,25 +235,14 @@ def _known(
     )  # fmt: skip
     own = {"population": size, **preset.checked(size, settings)}
     if evaluations is not None:
-        evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
-        generations = -(-evaluations // (preset.swarms * size))
         preset.refuse_less_than_one(evaluations, size)
-        limits: dict[str, object] = {"evaluations": evaluations}
-    else:
-        wanted = preset.generations if generations is None else generations
-        generations = whole("generations", wanted, 1, MOST_GENERATIONS)
-        limits = {"generations": generations}
-    algorithm = preset.build(size, settings)
-    return _Chosen(preset.name, algorithm, {**limits, **own}, generations, evaluations)
+    return preset.build(size, settings), own
 
 
 def _own(
-    algorithm: Algorithm,
-    population: int | None,
-    generations: int | None,
-    evaluations: int | None,
-    settings: Mapping[str, object] | None,
-) -> _Chosen:
+    algorithm: Algorithm, population: int | None, settings: Mapping[str, object] | None
+) -> tuple[Algorithm, dict[str, Any]]:
+    """A copy of an algorithm that was given, and what it is set to."""
     from quietarm.metaheuristics.algorithms.own import own_algorithm
     from quietarm.metaheuristics.algorithms.provenance import settings_of
 
@@ -284,15 +250,7 @@ def _own(
     if inspect.isclass(given):
         raise ValueError(f"give an algorithm, as {given.__name__}(), not its class")
     chosen = own_algorithm(algorithm)
-    method = type(chosen).__name__
     for name, value in (("population", population), ("settings", settings)):
         if value:
             raise ValueError(f"{name} is set in the algorithm that you give, not beside it")
-    if generations is None and evaluations is None:
-        raise ValueError(f"give the number of generations or of evaluations for {method}")
-    own = settings_of(chosen)
-    if evaluations is not None:
-        evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
-        return _Chosen(method, chosen, {"evaluations": evaluations, **own}, 1, evaluations)
-    generations = whole("generations", generations, 1, MOST_GENERATIONS)
-    return _Chosen(method, chosen, {"generations": generations, **own}, generations, None)
+    return chosen, settings_of(chosen)

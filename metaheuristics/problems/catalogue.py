@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
-from math import pi
+from math import inf, pi
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -149,11 +149,17 @@ class NamedProblem:
         """Whether it is one of `PROBLEMS`."""
         return self.given is None and PROBLEMS.get(self.name) == self
 
-    def recorded(self) -> RecordedFunction:
-        """The problem as a function of arrays that records its candidates."""
+    def recorded(self, budget: float = inf) -> RecordedFunction:
+        """The problem as a function of arrays that records its candidates, up to a budget.
+
+        ValueError where there is a third objective.
+        """
         from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
-        return RecordedFunction(self)
+        return RecordedFunction(
+            self.task, self.profile, bound=self.bound, reference=self.reference(), budget=budget,
+            problem=self.name,
+        )  # fmt: skip
 
     @property
     def _folder(self) -> Path:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
-from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.ocp.checks import whole
 
@@ -25,11 +24,6 @@ class MoveProblem(Problem):
         Coefficients of the reference front.
     pareto_front : ndarray, shape (points, objectives), optional
         Its objectives.
-
-    Attributes
-    ----------
-    failed, infeasible : int
-        Candidates so far whose values were not finite, and that violated a limit.
     """
 
     def __init__(
@@ -46,14 +40,9 @@ class MoveProblem(Problem):
             xu=function.upper,
         )
         self.function, self._set, self._front = function, pareto_set, pareto_front
-        self.failed, self.infeasible = 0, 0
 
     def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
-        objectives, violations = self.function(x)
-        failed = (objectives >= UNUSABLE).any(axis=1)
-        self.failed += int(failed.sum())
-        self.infeasible += int((violations[~failed] > 0).any(axis=1).sum())
-        out["F"] = objectives
+        out["F"], violations = self.function(x)
         if violations.shape[1]:
             out["G"] = violations
 

@@ -1,7 +1,9 @@
-"""A problem's function that keeps what another library asks of it, as a job keeps its own."""
+"""A move's function that keeps what it is asked: by a search of quietarm, or another library's."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,33 +13,60 @@ from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.record import Record
-from quietarm.ocp import Front
+from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import table_of
+from quietarm.ocp.record import Setting
 
 if TYPE_CHECKING:
-    from quietarm.metaheuristics.problems.catalogue import NamedProblem
+    from quietarm.metaheuristics.quality import Reference
 
 Array = NDArray[np.float64]
 _ROUNDING = 1e-9
 """Share of the box by which scaling from another may pass it."""
 
 
+class BudgetSpentError(Exception):
+    """Every candidate is spent: the search is over, wherever it was."""
+
+
 class RecordedFunction(MoveFunction):
-    """A problem's function that records non-dominated candidates, and quality during the run.
+    """A move's function that records non-dominated candidates, and quality during the run.
 
     It has the accuracy of all searches.
 
     Parameters
     ----------
-    problem : NamedProblem
-        A problem with two objectives; ValueError when it has a third.
+    task, profile, bound, threads
+        As of a `MoveFunction`.
+    reference : Reference, optional
+        Scale of the marks' quality.
+    budget : float
+        Candidates in all: the last call is cut short, and raises `BudgetSpentError`.
+    problem : str
+        Name of the problem, which a front then states, with its quality at the end.
+
+    Attributes
+    ----------
+    failed, infeasible : int
+        Candidates so far whose values were not finite, and that violated a limit.
     """
 
-    def __init__(self, problem: NamedProblem) -> None:
-        super().__init__(problem.task, problem.profile, bound=problem.bound)
-        self.problem = problem
-        self.record = Record(self.task, len(self.variables), problem.reference())
+    def __init__(
+        self,
+        task: PointToPoint,
+        profile: JointProfile | None = None,
+        *,
+        bound: float | None = None,
+        threads: int = 1,
+        reference: Reference | None = None,
+        budget: float = inf,
+        problem: str = "",
+    ) -> None:
+        super().__init__(task, profile, bound=bound, threads=threads)
+        self.reference, self.budget, self.problem = reference, budget, problem
+        self.record = Record(task, len(self.variables), reference)
+        self.failed, self.infeasible = 0, 0
 
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
         """Evaluate candidates, as `MoveFunction` does, and keep them.
@@ -54,21 +83,36 @@ class RecordedFunction(MoveFunction):
                 f"{table[row, column]:.4g}, not from {self.lower[column]:.4g} to "
                 f"{self.upper[column]:.4g}; clip candidates to the function's lower and upper"
             )
-        found, violations = super().__call__(inside)
-        usable: Any = np.concatenate([found < UNUSABLE, violations <= 0], axis=1).all(axis=1)
-        self.record.add(inside, found, usable)
+        left = self.budget - self.record.evaluations
+        afforded = inside[: int(min(left, len(inside)))]
+        found, violations = super().__call__(afforded)
+        failed, broken = (found >= UNUSABLE).any(axis=1), (violations > 0).any(axis=1)
+        self.failed += int(failed.sum())
+        self.infeasible += int((broken & ~failed).sum())
+        if len(afforded):
+            self.record.add(afforded, found, ~(failed | broken))
+        if len(afforded) < len(table):
+            raise BudgetSpentError
         return found, violations
 
-    def front(self, method: str, seed: int | None = None) -> Front:
+    def front(
+        self,
+        method: str,
+        seed: int | None = None,
+        settings: Mapping[str, Setting] | None = None,
+    ) -> Front:
         """The candidates until now, as the front of a method; ValueError if there are none."""
         if not self.record.evaluations:
             raise ValueError("no candidate was asked for; let the library call the function first")
         seed = None if seed is None else whole("seed", seed, 0)
-        settings: dict[str, Any] = {"bound": self.bound, "problem": self.problem.name}
+        stated: dict[str, Any] = {"bound": self.bound, **(settings or {})}
+        if self.problem:
+            stated["problem"] = self.problem
         found = self.record.front(
-            self.task, self.profile, method=method, settings=settings, seed=seed
-        )
-        return measured(found, self.problem.reference())
+            self.task, self.profile, method=method, settings=stated, seed=seed,
+            failed=self.failed, infeasible=self.infeasible,
+        )  # fmt: skip
+        return measured(found, self.reference) if self.problem and self.reference else found
 
     def save(self, path: str | Path, method: str, seed: int | None = None) -> None:
         """Write the run as a file for ``quietarm bench --import``; arguments as for `front`."""
