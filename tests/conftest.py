@@ -3,7 +3,6 @@
 import gc
 import os
 import signal
-from contextlib import contextmanager
 
 import pytest
 from hypothesis import Phase, settings
@@ -13,6 +12,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Numba compiles pymoo's AGE-MOEA anew in every process, which takes longer than its small searches.
 os.environ.setdefault("NUMBA_OPT", "0")
 
+from pages import blocks
 from quietarm.models import DualLinkManipulator, Plant
 
 # A shell lets what it starts in the background ignore Ctrl-C, which these tests send.
@@ -52,65 +52,25 @@ def _plants_of_this_test_are_forgotten(monkeypatch):
     monkeypatch.setattr(Plant, "_known", dict(Plant._known))
 
 
-@pytest.fixture(scope="session")
-def coarsely():
-    """Draw pictures coarsely in a block, without a layout: tests/studies/figures looks at them."""
-
-    @contextmanager
-    def drawing():
-        from matplotlib.figure import Figure  # most tests draw nothing
-
-        whole = Figure.savefig
-
-        def draw(figure, *given, **settings):
-            if settings.get("format") in ("raw", "rgba"):  # the frames of a film
-                return whole(figure, *given, **settings)
-            figure.set_layout_engine(None)
-            return whole(figure, *given, **{**settings, "dpi": 40})
-
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(Figure, "savefig", draw)
-            yield
-
-    return drawing
-
-
 @pytest.fixture
-def quick_pictures(coarsely):
-    """Draw all pictures of the test coarsely."""
-    with coarsely():
-        yield
+def quick_pictures(monkeypatch):
+    """Draw pictures coarsely, without a layout: tests/studies/figures looks at them."""
+    from matplotlib.figure import Figure  # most tests draw nothing
 
+    whole = Figure.savefig
 
-CRANE = """
-from dataclasses import dataclass
-from typing import ClassVar
+    def draw(figure, *given, **settings):
+        if settings.get("format") in ("raw", "rgba"):  # the frames of a film
+            return whole(figure, *given, **settings)
+        figure.set_layout_engine(None)
+        return whole(figure, *given, **{**settings, "dpi": 40})
 
-from quietarm.models import Plant, parameter
-
-
-@dataclass(frozen=True)
-class Crane(Plant):
-    name: ClassVar[str] = "crane"
-    modes: ClassVar[int] = 1
-    omega: float = parameter(3.0, "rad/s", "measured")
-    coupling: float = parameter(0.4, "m", "measured")
-    inertia: float = parameter(2.0, "kg m^2", "drawing")
-
-    def modal_accelerations(self, joint, W, dW):
-        return [-(self.omega**2) * W[0] - self.coupling * joint.acceleration]
-
-    def torque(self, joint, W, dW, ddW):
-        return self.inertia * joint.acceleration + self.coupling * ddW[0]
-
-    def tip_displacements(self, W):
-        return [W[0]]
-"""
+    monkeypatch.setattr(Figure, "savefig", draw)
 
 
 @pytest.fixture
 def crane_file(tmp_path, _plants_of_this_test_are_forgotten):
-    """A user's file that defines a plant."""
+    """A user's file that defines a plant: that of docs/plants.md."""
     path = tmp_path / "crane.py"
-    path.write_text(CRANE)
+    path.write_text(blocks("plants", "python")[1])
     return path

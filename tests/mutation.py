@@ -46,7 +46,10 @@ TESTS = {
     "ocp/simulation/collocation.py": ["ocp/simulation", "ocp/solvers/test_batch.py"],
     "ocp/simulation/objective.py": ["ocp/simulation", "ocp/solvers/test_batch.py"],
     "ocp/profiles/joint_profile.py": ["ocp/profiles", "ocp/simulation"],
-    "ocp/profiles/cycloid.py": ["ocp/profiles/test_polynomial.py"],
+    "ocp/profiles/cycloid.py": [
+        "ocp/profiles/test_polynomial.py",
+        "ocp/profiles/test_shaped_inputs.py",
+    ],
     "ocp/simulation/free_vibration.py": ["ocp/simulation", "ocp/planning/test_shaping.py"],
     "ocp/simulation/rollout.py": ["ocp/simulation", "metaheuristics/objective/test_population.py"],
     "ocp/candidate.py": ["ocp/simulation", "ocp/robustness/test_uncertain.py"],

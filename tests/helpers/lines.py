@@ -7,7 +7,6 @@ from pathlib import Path
 
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
 MOVE = "single-link --target 30deg --duration 0.8"
-PLAN = f"plan {MOVE}"
 TWO_TERMS = "--coefficients=0.003347,-0.1697"  # the paper's Table 1
 EVERY_FILE = "--output plan.json --output move.csv --output move.png"
 COARSELY = [

@@ -7,8 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from quietarm.metaheuristics import PopulationObjective, search
-from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.metaheuristics import search
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.saved import plain
@@ -18,7 +17,6 @@ SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
 SIXTH, HALF = PointToPoint(SINGLE_LINK, pi / 6, 0.8), PointToPoint(ARM, pi / 2, 0.8)
 TASKS = {"nsga2": HALF, "vepso": SIXTH}
 BOUNDS = {"nsga2": 0.5, "vepso": 0.2}  # eqs (17) and (12)
-SWARMS = {"nsga2": 1, "vepso": 2}  # how many times the population is evaluated in a generation
 METHODS = pytest.mark.parametrize("method", ["nsga2", "vepso"])
 
 
@@ -56,22 +54,3 @@ LIMITED = {
     "nsga2": dataclasses.replace(HALF, torque_limit=0.3, acceleration_limit=75.0),
     "vepso": dataclasses.replace(SIXTH, torque_limit=0.16, speed_limit=0.99, deflection_limit=0.03),
 }
-IMPOSSIBLE = {
-    method: dataclasses.replace(task, torque_limit=1e-4) for method, task in LIMITED.items()
-}
-
-
-def failing(monkeypatch, value, column="energy"):
-    """Half of the candidates, those with a_1 > 0, get `value`; returns how many were, by call."""
-    evaluate, counts = PopulationObjective.__call__, []
-
-    def failing(self, coefficients):
-        values = evaluate(self, coefficients)
-        bad = np.asarray(coefficients)[:, 0] > 0
-        if self.steps == CANDIDATE_STEPS:
-            counts.append(int(bad.sum()))
-        getattr(values, column)[bad] = value
-        return values
-
-    monkeypatch.setattr(PopulationObjective, "__call__", failing)
-    return counts

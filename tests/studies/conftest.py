@@ -5,7 +5,6 @@ import os
 import shlex
 import signal
 import subprocess
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -22,7 +21,6 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
-from quietarm.studies.registry.methods import METHODS
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -31,16 +29,6 @@ def _coarse_floors():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(floor_search, "FIRST_INTERVALS", 24)
         yield
-
-
-@pytest.fixture
-def let_sweep(monkeypatch):
-    """Put another function in the place of what sweeps a gradient's front."""
-
-    def put(name, sweep):
-        monkeypatch.setitem(METHODS, name, replace(METHODS[name], sweep=sweep))
-
-    return put
 
 
 @pytest.fixture

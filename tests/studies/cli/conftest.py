@@ -1,9 +1,6 @@
-"""What the tests of the command line share: a folder of their own, refusals, Ctrl-C."""
-
-import signal
+"""What the tests of the command line share: a folder of their own, and refusals."""
 
 import pytest
-from quietarm.studies.report.search_progress import SearchDisplay
 
 
 @pytest.fixture(autouse=True)
@@ -36,17 +33,3 @@ def refused(call, folder):
         return err
 
     return run_refused
-
-
-@pytest.fixture
-def interrupted_at(monkeypatch):
-    """Send Ctrl-C when this generation of this seed is shown."""
-
-    def interrupt(generation, of=None):
-        def hear(self, progress, seed=None):
-            if (progress.generation, seed) == (generation, of):
-                signal.raise_signal(signal.SIGINT)
-
-        monkeypatch.setattr(SearchDisplay, "__call__", hear)
-
-    return interrupt
