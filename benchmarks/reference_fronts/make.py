@@ -1,4 +1,4 @@
-"""Find an exact front: the gradient's sweep, then random starts at every point."""
+"""Find a reference front: the gradient's sweep, then random starts at every point."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.choice import SolverName
 
 POINTS = 300
-"""Points of an exact front, beside those at `LEVELS`: with motions between them, the hypervolume is
-that of twice as many within 1e-5."""
+"""Points of a reference front, beside those at `LEVELS`: with motions between them, the hypervolume
+is that of twice as many within 1e-5."""
 STARTS = 12
 """Starts of the ends of a front."""
 COLD_STARTS = 3
@@ -40,7 +40,7 @@ this share."""
 def swept_front(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
     """The front by the gradient's sweep alone, for problems that have no exact one in a file.
 
-    On the named problems without limits its hypervolume is that of the exact front within 6e-6.
+    On the named problems without limits its hypervolume is that of the reference front within 6e-6.
     """
     front = epsilon_front(
         task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS,

@@ -1,4 +1,4 @@
-"""The certificate of an exact front: what it is, and how far it was tried to be beaten."""
+"""The certificate of a reference front: what it is, and how it was tested."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ largest: a population's are sampled, and miss up to 5e-5 of a peak."""
 
 @dataclass(frozen=True)
 class Certificate:
-    """What is known of an exact front.
+    """What is known of a reference front.
 
     The multiplier of the residual at every point [J/m], 0 where the solver did not confirm it; the
     largest differences from what CVODES gives, of the energies as a share and of the residuals [m];
@@ -106,7 +106,7 @@ def checksum(front: Front) -> str:
 def certified(
     problem: NamedProblem, report: Callable[[str], None] = lambda name: None
 ) -> list[Certificate]:
-    """Check the exact fronts of a problem anew.
+    """Check the reference fronts of a problem anew.
 
     Every point is evaluated by CVODES and is the start of a solve at its residual; some are solved
     from random starts as well. `report` is called with the name of each front when it begins.

@@ -75,7 +75,7 @@ class Ranking:
 
     @property
     def best(self) -> tuple[str, ...]:
-        """The first method and those that are not told apart from it."""
+        """The first method and those not significantly different from it."""
         near = (rank - self.ranks[0] <= self.critical for rank in self.ranks)
         return tuple(name for name, one in zip(self.methods, near, strict=True) if one)
 
@@ -217,5 +217,5 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
         if label_of(best) in both:
             near += [name for name in values if label_of(name) in both - {label_of(best)}]
     others = [label_of(name) for name in sorted(near[1:], key=lambda name: medians[name])]
-    alike = f"; not told apart from it: {'; '.join(others)}" if others else ""
+    alike = f"; not significantly different from it: {'; '.join(others)}" if others else ""
     return f"{label_of(best)} ends nearest{alike}"

@@ -1,4 +1,4 @@
-"""The named problems and their exact fronts, held against other routes."""
+"""The named problems and their reference fronts, compared with other methods."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ COLD = [
 THIRD = "single-link-30deg-0.8s-torque"
 ROBUST = "single-link-30deg-0.8s-robust"
 BETTER = 1e-4
-"""Share by which nothing may be better than the exact front; the README's table."""
+"""Share by which nothing may be better than the reference front; the README's table."""
 
 
 def least_energies(front, residuals):
@@ -69,7 +69,7 @@ def test_no_motion_of_a_fine_grid_is_better_and_the_best_come_near(name):
     corner = front.reference
     exact = moocore.hypervolume(np.column_stack([front.residuals, front.energies]), ref=corner)
     grid = moocore.hypervolume(objectives, ref=corner)
-    assert 0.95 < grid / exact < 1.02  # the motions between the exact front's points count here
+    assert 0.95 < grid / exact < 1.02  # the motions between the reference front's points count here
 
 
 def test_pymoo_has_the_exact_front_and_set():
