@@ -90,7 +90,7 @@ def profiles_figure(results: Results) -> Figure:
 
 
 def ranks_figure(ranking: Ranking) -> Figure:
-    """Critical differences: mean ranks; a bar joins methods that the test does not tell apart."""
+    """Critical differences: mean ranks; a bar joins methods that do not differ significantly."""
     import pandas as pd
     from scikit_posthocs import critical_difference_diagram
 

@@ -24,7 +24,7 @@ from quietarm.studies.bench.statistics import (
 )
 from quietarm.studies.report import Report
 
-SHOWN_TARGET = 0.01
+SHOWN_TARGET = 0.1
 """Share of the hypervolume missing to which tables give the expected running time."""
 _COST = ("evaluations", "gradients", "hessians", "seconds")
 
@@ -35,32 +35,30 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
     Every picture and table is worked out from the runs alone.
     """
     problems = [problem.name for problem in results.problems]
-    ranking, at_rest = ranking_over(results), ranking_over(results, "energy_1mm")
-    runs = min(
-        (len(own) for name in problems for own in values_on(results, name, "missing").values()),
-        default=1,
-    )
-    counts = [len(values_on(results, name, "missing")) for name in problems]
+    ranking = ranking_over(results)
+    runs = [list(map(len, values_on(results, name, "missing").values())) for name in problems]
+    pairs = pd.concat([pairs_on(results, one).assign(problem=one) for one in problems])
     tables = {
         "summary": summary_table(results),
         **{f"problem_{name}": problem_table(results, name) for name in problems},
-        "runs": results.table.assign(method=results.table["method"].map(label_of)),
-        "pairs": pd.concat([pairs_on(results, name) for name in problems], ignore_index=True),
-        "running_times": results.running_times,
+        "runs": _with_labels(results.table, "method"),
+        "pairs": _with_labels(pairs.set_index("problem").reset_index(), "one", "other"),
+        "running_times": _with_labels(results.running_times, "method"),
     }
-    if ranking is not None:
-        tables["ranks"] = ranks_table(ranking)
     figures: Any = {
         "curves.png": partial(curves_figure, results),
         "evaluations.png": partial(curves_figure, results, "evaluations"),
         "profiles.png": partial(profiles_figure, results),
     }
     if ranking is not None:
+        ranks = pd.DataFrame({"method": ranking.methods, "mean rank": ranking.ranks})
+        tables["ranks"] = _with_labels(ranks, "method")
         figures["ranks.png"] = partial(ranks_figure, ranking)
     versions = results.runs[0].front.versions
     values = {
         "line": line, "problems": problems, "methods": [label_of(m) for m in results.methods],
-        "power": say_power(runs, max(counts)), "ranking": ranking, "ranking_energy": at_rest,
+        "power": say_power(min((min(one) for one in runs if one), default=1), max(map(len, runs))),
+        "ranking": ranking,
         "label_of": label_of, "corner": CORNER, "accuracy": ACCURACY, "at_rest": 1e3 * AT_REST,
         "target": 100 * SHOWN_TARGET, "moves": len(moves_of(results.problems)),
         "verdicts": {name: verdict_on(results, name) for name in problems},
@@ -69,6 +67,11 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
     }  # fmt: skip
     return Report(template, values, tables, figures)
+
+
+def _with_labels(table: pd.DataFrame, *columns: str) -> pd.DataFrame:
+    """A table whose columns name methods, as these are called."""
+    return table.assign(**{name: table[name].map(label_of) for name in columns})
 
 
 def brief_report(results: Results) -> Report:
@@ -136,10 +139,3 @@ def summary_table(results: Results) -> pd.DataFrame:
 
 def _best_first(rows: list[dict[str, Any]]) -> pd.DataFrame:
     return pd.DataFrame(rows).sort_values("missing [%]", ignore_index=True).replace(np.inf, np.nan)
-
-
-def ranks_table(ranking: Any) -> pd.DataFrame:
-    """Methods and their mean ranks over independent moves."""
-    return pd.DataFrame(
-        {"method": [label_of(one) for one in ranking.methods], "mean rank": ranking.ranks}
-    )

@@ -184,10 +184,10 @@ class Results:
     def running_times(self) -> pd.DataFrame:
         """Expected running times to `TARGETS`, with intervals, and how many runs reached each."""
         rows = list[dict[str, Any]]()
-        for (problem, method), runs in self._groups.items():
+        for (problem, method), runs in sorted(self._groups.items()):
             reached = np.isfinite(self.hits(problem, method, TARGETS)).sum(axis=0)
             for target, count in zip(TARGETS, reached.tolist(), strict=True):
-                row = {"problem": problem, "method": label_of(method), "target": target,
+                row = {"problem": problem, "method": method, "target": target,
                        "reached": count, "runs": len(runs)}  # fmt: skip
                 for by in ("seconds", "evaluations") if derivative_free(method) else ("seconds",):
                     found = self.expected_running_time(problem, method, target, by)

@@ -13,6 +13,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from quietarm.metaheuristics import NamedProblem
 from quietarm.studies.bench.results import Results, label_of, quartiles
+from scipy import stats
 
 Array = NDArray[np.float64]
 ALPHA = 0.05
@@ -86,30 +87,26 @@ def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.Data
     The effect is the share of pairs of runs in which the first is better (Vargha and Delaney's A;
     0.5 is no difference). Runs without a value come last.
     """
-    from scipy import stats
-
     values = values_on(results, problem, column)
-    rows = []
-    for one, other in combinations(values, 2):
-        mine, theirs = (np.nan_to_num(values[name], nan=np.inf) for name in (one, other))
-        both = np.concatenate([mine, theirs])
-        exact = len(set(both.tolist())) == len(both) and max(len(mine), len(theirs)) <= _EXACT
-        ranks = stats.rankdata(both)  # infinities are ranked, which scipy's test may refuse
-        first, second = ranks[: len(mine)], ranks[len(mine) :]
-        found = stats.mannwhitneyu(first, second, method="exact" if exact else "asymptotic")
-        rows.append({
-            "problem": problem, "one": label_of(one), "other": label_of(other),
-            "effect": 1 - float(found.statistic) / (len(mine) * len(theirs)),
-            "p": float(found.pvalue),
-        })  # fmt: skip
-    table = pd.DataFrame(rows, columns=["problem", "one", "other", "effect", "p"])
+    rows = [
+        (one, other, *_mann_whitney(values[one], values[other]))
+        for one, other in combinations(values, 2)
+    ]
+    table = pd.DataFrame(rows, columns=["one", "other", "effect", "p"])
     return table.assign(p_holm=holm(table["p"].to_numpy(dtype=float)))
+
+
+def _mann_whitney(mine: Array, theirs: Array) -> tuple[float, float]:
+    """Effect size and p value of two samples."""
+    both = np.nan_to_num(np.concatenate([mine, theirs]), nan=np.inf)
+    exact = len(set(both.tolist())) == len(both) and max(len(mine), len(theirs)) <= _EXACT
+    first, second = np.split(stats.rankdata(both), [len(mine)])  # ranks: the test may refuse inf
+    found = stats.mannwhitneyu(first, second, method="exact" if exact else "asymptotic")
+    return 1 - float(found.statistic) / (len(mine) * len(theirs)), float(found.pvalue)
 
 
 def kruskal_on(results: Results, problem: str, column: str = "missing") -> float:
     """The p value of Kruskal and Wallis' test that all methods on a problem are alike."""
-    from scipy import stats
-
     values = [np.nan_to_num(v, nan=1e300) for v in values_on(results, problem, column).values()]
     together = np.concatenate(values) if values else np.zeros(1)
     if len(values) < 2 or np.ptp(together) == 0:
@@ -128,14 +125,12 @@ def holm(p_values: Array) -> Array:
 def values_on(results: Results, problem: str, column: str) -> Mapping[str, Array]:
     """A column of the table of runs by method, of one problem.
 
-    Of methods with two runs or more, and half as many as another at least: a few runs of one method
-    would take the power from the tests of all.
+    Of methods with two runs or more, and half as many as is usual at least: a few runs of one
+    method would take the power from the tests of all.
     """
-    table = results.table
-    here = table[table["problem"] == problem]
-    groups: Any = here.groupby("method")
-    grouped = {str(name): own[column].to_numpy(dtype=float) for name, own in groups}
-    least = max(2, max(map(len, grouped.values()), default=0) / 2)
+    groups: Any = results.table[results.table["problem"] == problem].groupby("method")[column]
+    grouped = {str(name): own.to_numpy(dtype=float) for name, own in groups}
+    least = max(2, np.median([len(own) for own in grouped.values()]) / 2)
     return {name: own for name, own in grouped.items() if len(own) >= least}
 
 
@@ -156,8 +151,6 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
     mean of their ranks. Of methods with the same values throughout, as a search and the same that
     is yet to be polished, one is ranked.
     """
-    from scipy import stats
-
     names = [problem.name for problem in results.problems]
     known = {name: values_on(results, name, column) for name in names}
     left_out = [
@@ -210,12 +203,8 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
     best = min(medians, key=lambda name: medians[name])
     if attainable_p(runs, max(map(len, values.values())), pairs) >= ALPHA:
         return f"no verdict: {say_power(runs, len(values))}"
-    table = pairs_on(results, problem, column)
-    near = [best]
-    for _, row in table[table["p_holm"] >= ALPHA].iterrows():
-        both = {str(row["one"]), str(row["other"])}
-        if label_of(best) in both:
-            near += [name for name in values if label_of(name) in both - {label_of(best)}]
-    others = [label_of(name) for name in sorted(near[1:], key=lambda name: medians[name])]
-    alike = f"; not significantly different from it: {'; '.join(others)}" if others else ""
-    return f"{label_of(best)} ends nearest{alike}"
+    table = pairs_on(results, problem, column).query("p_holm >= @ALPHA")
+    beside = table[(table["one"] == best) | (table["other"] == best)]
+    near = sorted({*beside["one"], *beside["other"]} - {best}, key=lambda name: medians[name])
+    alike = "; not significantly different from it: " * bool(near)
+    return f"{label_of(best)} ends nearest{alike}{'; '.join(map(label_of, near))}"

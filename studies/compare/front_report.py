@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from math import isfinite
 
 import pandas as pd
 from quietarm.metaheuristics.quality import BETWEEN
@@ -14,7 +13,7 @@ from quietarm.studies import figures
 from quietarm.studies.compare.fronts import Comparison, Group
 from quietarm.studies.figures.comparison import KnownPoint
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import millimetres, title_of
+from quietarm.studies.report.words import millimetres, spread_words, title_of
 
 _INDICATORS = {"hypervolume": ".4f", "igd_plus": ".2g", "epsilon": ".2g"}
 _HEADINGS = {"hypervolume": "hypervolume", "igd_plus": "IGD+", "epsilon": "epsilon"}
@@ -31,20 +30,6 @@ def by_task(fronts: dict[str, Front]) -> list[dict[str, Front]]:
         else:
             tasks.append({name: front})
     return tasks
-
-
-def spread_words(spread: Spread, form: str) -> str:
-    """Median and quartiles of seeds, and how many have the figure; one that has not is infinite."""
-    if not spread.count:
-        return "none"
-    middle, low, high = (
-        format(value, form) if isfinite(value) else "none"
-        for value in (spread.median, spread.lower, spread.upper)
-    )
-    if spread.seeds == 1:
-        return middle
-    some = f", {spread.count} of {spread.seeds} seeds" if spread.count < spread.seeds else ""
-    return f"{middle} ({low} to {high}{some})"
 
 
 def methods_table(comparison: Comparison) -> pd.DataFrame:

@@ -50,7 +50,12 @@ def grid_figure(store: Store) -> Figure:
                 words = f"at most {least:g}"
                 ax.text(0.5, 0.5, words, transform=ax.transAxes, ha="center", color="white")
         if (values > least).any():
-            _colour_bar(figure, panels[:, column], norm)
+            known = values[values > 0]
+            few = known.max() < 1e3 * known.min()
+            ticks = LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,))
+            bar = figure.colorbar(ScalarMappable(norm, "viridis"), ax=list(panels[:, column]),
+                                  ticks=ticks, format="{x:g}")  # fmt: skip
+            bar.minorticks_off()
     _states(figure, panels[:, -1], x, y, store, places)
     for row, (_, words) in zip(panels, slices, strict=True):
         row[0].set_ylabel(f"{words}\n{y_name}" if words else y_name)
@@ -123,13 +128,6 @@ def _norm(values: Array) -> Normalize:
     return LogNorm(least, most) if most > 1.01 * least else LogNorm(least / 2, 2 * most)
 
 
-def _colour_bar(figure: Figure, panels: NDArray[np.object_], norm: Normalize) -> None:
-    few = norm.vmax is not None and norm.vmin is not None and norm.vmax < 1e3 * norm.vmin
-    ticks = LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,))
-    colours = ScalarMappable(norm, "viridis")
-    figure.colorbar(colours, ax=list(panels), ticks=ticks, format="{x:g}").minorticks_off()
-
-
 def _states(
     figure: Figure, panels: NDArray[np.object_], x: Array, y: Array, store: Store,
     places: list[tuple[int, ...]],
@@ -148,7 +146,5 @@ def _states(
 
 
 def _shown(axis: Axis) -> tuple[Array, str]:
-    values = np.array(axis.values)
-    if axis.unit == "rad":
-        return np.degrees(values), f"{axis.name} [deg]"
-    return values, f"{axis.name} [{axis.unit}]"
+    factor, unit = (np.degrees(1.0), "deg") if axis.unit == "rad" else (1.0, axis.unit)
+    return factor * np.array(axis.values), f"{axis.name} [{unit}]"

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from quietarm.ocp.checks import whole
-
 Dash = str | tuple[int, tuple[float, ...]]
 
 BLUE, RED, GREEN, ORANGE = "#0072B2", "#D55E00", "#009E73", "#E69F00"
@@ -29,14 +27,7 @@ class Look:
 
 
 def look(number: int) -> Look:
-    """The look of a line by its number, from 0; no two alike among the first 360.
-
-    Raises
-    ------
-    ValueError
-        When the number is no whole one from 0 up.
-    """
-    number = whole("number of the line", number, 0)
+    """The look of a line by its number, from 0; no two alike among the first 360."""
     return Look(
         COLOURS[number % len(COLOURS)],
         _DASHES[number % len(_DASHES)],

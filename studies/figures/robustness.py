@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from quietarm.ocp import Robustness
-from quietarm.ocp.checks import has_no
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies.figures.axes import (
     axes_or_new,
@@ -41,19 +40,11 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     matplotlib.axes.Axes
         The axes: residual, in per cent of the plain cycloid's on the nominal plant, against the
         error [%]; where a curve first exceeds 5 %, it is marked.
-
-    Raises
-    ------
-    ValueError
-        When a plan has no sweep of that name.
     """
     ax = axes_or_new(ax)
     limit = 100 * TOLERATED
     for number, (label, plan) in enumerate(plans.items()):
-        sweeps = {sweep.name: sweep for sweep in plan.sweeps}
-        if name not in sweeps:
-            raise ValueError(has_no(f"plan {label!r}", "sweep of", name, sweeps))
-        sweep, how = sweeps[name], look(number)
+        (sweep,), how = [one for one in plan.sweeps if one.name == name], look(number)
         per_cent = 100 / plan.cycloid if plan.cycloid > 0 else 0.0  # a joint that moves no mode
         ax.plot(
             100 * sweep.errors, per_cent * sweep.figures.residual, color=how.colour,

@@ -8,7 +8,6 @@ from math import isfinite
 import numpy as np
 from quietarm.metaheuristics.spread import (
     SEARCH_RESIDUAL,
-    Spread,
     energies_at,
     energy_at,
     hypervolumes,
@@ -18,7 +17,13 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness.perturbed import worst_of
 from quietarm.studies.report.moves import worst_in_words
-from quietarm.studies.report.words import counted, energy_words, millimetres, residual_words
+from quietarm.studies.report.words import (
+    counted,
+    energy_words,
+    millimetres,
+    residual_words,
+    spread_words,
+)
 
 _ROWS = 10
 """Points that the list of gains shows."""
@@ -68,9 +73,9 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
         energies, level = energies_at(complete), millimetres(SEARCH_RESIDUAL)
         corner = complete[0].reference
         lines += [
-            f"hypervolume: {_quartiles(hypervolumes(complete), '.4f')} of the box up to "
-            f"{millimetres(corner[0])} and {corner[1]:.3g} J",
-            f"energy at {level}: {_quartiles(energies, '.4g', ' J')}; "
+            f"hypervolume: {spread_words(hypervolumes(complete), '.4f')} of the box up to "
+            f"{millimetres(corner[0])} and {corner[1]:.3g} J, median (quartiles)",
+            f"energy at {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles); "
             f"{energies.count} of {energies.seeds} seeds reach {level}",
         ]
     return "\n".join([*lines, *notes])
@@ -146,12 +151,3 @@ def _asked(failure: FailedPoint) -> str:
     if RESIDUAL_LIMIT in failure.asked:
         return f"residual <= {millimetres(failure.asked[RESIDUAL_LIMIT])}"
     return ":".join(f"{weight:.3g}" for weight in failure.asked.values()) + " (residual:energy)"
-
-
-def _quartiles(spread: Spread, form: str, unit: str = "") -> str:
-    if not spread.count:
-        return "none"
-    if not isfinite(spread.median):
-        return "median not reached"
-    upper = f"{spread.upper:{form}}{unit}" if isfinite(spread.upper) else "not reached"
-    return f"median {spread.median:{form}}{unit}, quartiles {spread.lower:{form}} to {upper}"

@@ -22,7 +22,7 @@ from rich.progress import (
 
 PLAIN_SECONDS = 2.0
 """Seconds between plain lines, where the pieces are too many for one line each."""
-_WORDS = TextColumn("{task.description}", markup=False)
+WORDS = TextColumn("{task.description}", markup=False)
 
 
 @contextmanager
@@ -47,7 +47,7 @@ def progress(
     total: int, console: Console, *, quiet: bool = False
 ) -> Iterator[Callable[[str], None]]:
     """Show which of a few pieces of work is done; yields what is called when one begins."""
-    columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), _WORDS
+    columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), WORDS
     begun = 0
     with bars(console, quiet, *columns) as shown:
         task = shown.add_task("", total=total)
@@ -68,7 +68,7 @@ def count(
 ) -> Iterator[Callable[[int, int], None]]:
     """Show how many of many small pieces are done."""
     lines = Lines(console, quiet)
-    columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), _WORDS
+    columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), WORDS
     with bars(console, quiet, *columns) as shown:
         task = shown.add_task(what, total=total)
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import fields
-from math import degrees
+from math import degrees, isfinite
+from typing import TYPE_CHECKING
 
 from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR
-from quietarm.ocp import Front, ModalState, PointToPoint
+from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from rich.console import Console
+
+if TYPE_CHECKING:
+    from quietarm.metaheuristics.spread import Spread
 
 
 def print_lines(console: Console, *lines: str) -> None:
@@ -27,6 +30,20 @@ def counted(number: int, what: str) -> str:
 def raised(unit: str) -> str:
     """A unit as it is drawn, without a formula: rad/s²."""
     return unit.replace("^2", "²").replace("^3", "³")
+
+
+def spread_words(spread: Spread, form: str, unit: str = "") -> str:
+    """Median (quartiles) of seeds, and how many have the figure; one that has not is infinite."""
+    if not spread.count:
+        return "none"
+    middle, low, high = (
+        format(value, form) if isfinite(value) else "none"
+        for value in (spread.median, spread.lower, spread.upper)
+    )
+    if spread.seeds == 1:
+        return f"{middle}{unit}"
+    some = f", {spread.count} of {spread.seeds} seeds" if spread.count < spread.seeds else ""
+    return f"{middle}{unit} ({low} to {high}{some})"
 
 
 REST = 1e-6
@@ -91,12 +108,3 @@ def title_of(task: PointToPoint) -> str:
 def limit_words(task: PointToPoint) -> list[str]:
     """The limits of a task, as "acceleration within 40 rad/s^2"."""
     return [f"{one.name} within {one.bounds}" for one in task.limits]
-
-
-def versions_of(fronts: Iterable[Front]) -> list[str]:
-    """Everything that computed fronts with its versions: "casadi 3.6 and 3.7"."""
-    versions: dict[str, dict[str, None]] = {}
-    for front in fronts:
-        for name, version in front.versions.items():
-            versions.setdefault(name, {})[version] = None
-    return [f"{name} {' and '.join(known)}" for name, known in versions.items()]

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 from quietarm.ocp import Plan
-from quietarm.studies.compare.front_report import spread_words
+from quietarm.studies.report.words import spread_words
 from quietarm.studies.reproduce.paper import (
     ARM_HALF,
     SINGLE_LINK_SIXTH,

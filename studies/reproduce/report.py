@@ -8,12 +8,11 @@ from statistics import median
 import pandas as pd
 from matplotlib.figure import Figure
 from quietarm.ocp import Plan
-from quietarm.studies.compare.front_report import spread_words
 from quietarm.studies.compare.plans import motions_table, remarks, shown
 from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
 from quietarm.studies.figures.looks import ORANGE, PINK, WINE
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import title_of
+from quietarm.studies.report.words import spread_words, title_of
 from quietarm.studies.reproduce.claims import claims
 from quietarm.studies.reproduce.paper import (
     ARM_HALF,

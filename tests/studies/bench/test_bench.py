@@ -14,7 +14,7 @@ from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.quality import CORNER
 from quietarm.studies.bench.asked import jobs_of, problems_of
 from quietarm.studies.bench.page import bench_report, problem_table
-from quietarm.studies.bench.results import Results, quartiles
+from quietarm.studies.bench.results import Results, Run, quartiles
 from quietarm.studies.bench.statistics import (
     attainable_p,
     moves_of,
@@ -114,6 +114,8 @@ def test_a_recorded_run_has_the_figures_of_a_job(fronts):
     found = recorded.front("my tool", seed=7)
     assert found.evaluations == 200
     assert all(abs(c) <= 0.2 for point in found.points for c in point.coefficients)
+    last = found.points[-1]
+    assert last.energy == qa.evaluate_coefficients(found.task, last.coefficients).energy
     results = Results.of_jobs({job: front}, [found])
     assert set(results.methods) == {"random", "my tool"}
     elsewhere = qa.problem_of(OTHERS[0]).recorded()
@@ -162,6 +164,24 @@ def test_problems_of_one_move_count_once():
     assert len(moves_of(sixteen)) == 7
 
 
+def test_a_tool_with_many_runs_on_one_problem_leaves_the_others_ranked(fronts):
+    names = [NAME, OTHERS[0], "dual-link-90deg-0.9s"]
+    done = [(job.label, front) for job, front in fronts.items()]
+    runs = [Run(qa.problem_of(name), *one) for name in names for one in done]
+    own = [replace(done[0][1], seed=seed) for seed in range(30)]
+    results = Results([*runs, *(Run(qa.problem_of(NAME), "my tool", one) for one in own)])
+    ranking = ranking_over(results)
+    assert len(ranking.methods) == 4
+    assert ranking.left_out == ("my tool (not on all problems, or too few runs)",)
+
+
+def test_a_search_leaves_numpys_error_state_as_it_was():
+    with np.errstate(divide="raise", invalid="raise", over="raise"):
+        before = np.geterr()
+        Job(NAME, "nsga3", 0, 200).run()
+        assert np.geterr() == before
+
+
 def test_missing_values_are_censored(fronts):
     assert quartiles([1.0, 2.0, np.nan]) == (1.0, 2.0, np.inf)
     results = Results.of_jobs(fronts)
@@ -184,7 +204,7 @@ def test_the_expected_running_time_is_cocos_with_an_interval_about_it(fronts, by
     time, low, high = results.expected_running_time(NAME, "nsga2(population=20)", target, by)
     assert time == pytest.approx(sum(spent) / sum(reached) if any(reached) else np.inf)
     assert low <= time <= high
-    row = results.running_times.query("method == 'NSGA-II (population=20)'").iloc[0]
+    row = results.running_times.query("method == 'nsga2(population=20)'").iloc[0]
     assert (row["target"], row["runs"]) == (0.1, 5)
 
 
