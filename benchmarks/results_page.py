@@ -87,10 +87,12 @@ def hard_problem(name: str, folder: Path) -> qa.NamedProblem:
         lower, upper = profile.box(bound)
         best = qa.Front.from_coefficients(
             task, np.clip(table, lower, upper), method="the best of both kinds", profile=profile,
-            settings={"bound": bound},
+            bound=bound,
         )  # fmt: skip
         for front in fronts:
-            print(name, front.method, len(front.points), front.least_energy(1e-3), flush=True)
+            print(
+                name, front.record.method, len(front.points), front.least_energy(1e-3), flush=True
+            )
         path.parent.mkdir(parents=True, exist_ok=True)
         best.save(path)
     return qa.NamedProblem.of_front(name, qa.Front.load(path))
@@ -159,7 +161,7 @@ def main() -> None:
     jobs = jobs_of([*(qa.problem_of(name) for name in MOVES), *hard])
 
     def report(job: qa.Job, front: qa.Front, done: int, total: int) -> None:
-        print(f"{done}/{total} {job.name} {front.seconds:.2f} s", flush=True)
+        print(f"{done}/{total} {job.name} {front.record.seconds:.2f} s", flush=True)
 
     try:
         fronts = (

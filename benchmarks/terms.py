@@ -112,7 +112,7 @@ def row_of(task: PointToPoint) -> dict[str, object] | None:
         floor = energy_floor(task, smooth=smooth, starts=FLOOR_STARTS).energy
     except SolverFailedError:
         floor = math.nan
-    six = plan.provenance.search.get(OF_SIX, math.nan)
+    six = plan.record.settings.get(OF_SIX, math.nan)
     return {
         "limits": "+".join(limit.name for limit in task.limits), "terms": plan.profile.size,
         "plan_J": plan.energy,

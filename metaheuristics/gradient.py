@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from quietarm.metaheuristics.record import search_versions, share_of_box
+from quietarm.metaheuristics.archive import search_versions, share_of_box
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, epsilon_front, weighted_front
 from quietarm.ocp.checks import has_no, whole
 from quietarm.ocp.cost import COST, Cost
@@ -74,19 +74,17 @@ def gradient_front(
             raise ValueError(has_no(method, "setting", one, [own]))
     before, began = COST.copy(), time.thread_time()
     front = find(task, profile, bound=bound, seed=seed, solver=solver or "sqp", **settings)
-    return _with_cost(replace(front, method=method), before, began)
+    return _with_cost(front.restated(method=method), before, began)
 
 
 def polished(front: Front) -> Front:
     """The front of a search, each point improved at its own residual; one mark more."""
     before, began = COST.copy(), time.thread_time()
+    method = f"{front.record.method}+polish"
     if not front.points:
-        return replace(front, method=f"{front.method}+polish")
-    better = polish_front(front).front
-    return _with_cost(
-        replace(better, method=f"{front.method}+polish", history=front.history), before, began,
-        front.seconds,
-    )  # fmt: skip
+        return front.restated(method=method)
+    better = replace(polish_front(front).front, history=front.history)
+    return _with_cost(better.restated(method=method), before, began, front.record.seconds)
 
 
 def _with_cost(front: Front, before: Cost, began: float, earlier: float = 0.0) -> Front:
@@ -101,10 +99,6 @@ def _with_cost(front: Front, before: Cost, began: float, earlier: float = 0.0) -
         gradients=last.gradients + spent.gradients,
         hessians=last.hessians + spent.hessians,
     )
-    return replace(
-        front,
-        evaluations=mark.evaluations,
-        history=(*front.history, mark),
-        versions=search_versions(),
-        seconds=seconds + earlier,
+    return replace(front, history=(*front.history, mark)).restated(
+        evaluations=mark.evaluations, versions=search_versions(), seconds=seconds + earlier
     )

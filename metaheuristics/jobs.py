@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -102,10 +102,10 @@ class Job:
             self._find(rehearse=True)
             _rehearsed.add((self.problem, self.label))
         found = measured(self._find(), reference)
-        stated = {"problem": self.problem.name, **found.settings}
+        stated = {"problem": self.problem.name, **found.record.settings}
         if self.budget is not None:
             stated["budget"] = self.budget
-        return replace(found, settings=stated)
+        return found.restated(settings=stated)
 
     def _find(self, rehearse: bool = False) -> Front:
         problem, budget, settings = self.problem, self.budget, dict(self.settings)
@@ -258,18 +258,18 @@ def finished_jobs(jobs: Sequence[Job], folder: str | Path) -> dict[Job, Front]:
 
 def _load(job: Job, path: Path) -> Front:
     """A job's file; ValueError where it holds something else."""
-    from quietarm.metaheuristics.record import search_versions
+    from quietarm.metaheuristics.archive import search_versions
 
     front, problem = Front.load(path), job.problem
-    same = (front.task, front.profile, front.settings.get("bound"))
+    same = (front.task, front.profile, front.record.bound)
     if same != (problem.task, problem.profile, problem.bound):
         raise ValueError(f"{path} is of another problem than {problem.name}; give another folder")
     now = search_versions()
     for name in ("quietarm", "pymoo"):
-        if front.versions.get(name) != now[name]:
+        if front.record.versions.get(name) != now[name]:
             raise ValueError(
-                f"{path} is by {name} {front.versions.get(name)}, and here is {now[name]}; give "
-                "another folder"
+                f"{path} is by {name} {front.record.versions.get(name)}, and here is {now[name]}; "
+                "give another folder"
             )
     return front
 

@@ -195,12 +195,12 @@ def _generations(algorithm: Any, first: NDArray[np.float64]) -> Iterator[None]:
 
 
 def _progress(function: RecordedFunction, done: int, generations: int) -> SearchProgress:
-    record = function.record
-    F = record.non_dominated()[1]
+    archive = function.archive
+    F = archive.non_dominated()[1]
     residual, energy = F.min(axis=0).tolist() if len(F) else (nan, nan)
     return SearchProgress(
-        done, max(generations, done), residual, energy, record.share_of_box(), record.evaluations,
-        record.seconds, function.failed, function.infeasible,
+        done, max(generations, done), residual, energy, archive.share_of_box(),
+        archive.evaluations, archive.seconds, function.failed, function.infeasible,
     )  # fmt: skip
 
 

@@ -10,7 +10,6 @@ from .errors import QuietarmError as QuietarmError
 from .errors import SolverFailedError as SolverFailedError
 from .errors import SolveStatus as SolveStatus
 from .floor.answer import Floor as Floor
-from .floor.answer import FloorSettings as FloorSettings
 from .floor.search import energy_floor as energy_floor
 from .front.cross_check import CrossCheck as CrossCheck
 from .front.cross_check import cross_check as cross_check
@@ -42,6 +41,7 @@ from .profiles.joint_profile import JointProfile as JointProfile
 from .profiles.networks import CycloidGaussians as CycloidGaussians
 from .profiles.networks import CycloidNetwork as CycloidNetwork
 from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
+from .record import Record as Record
 from .record import SolveSettings as SolveSettings
 from .record import Verification as Verification
 from .robustness.measures import Figures as Figures

@@ -6,17 +6,25 @@ import platform
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Generic, Literal, TypeVar
+from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
 from quietarm.models import __version__
-from quietarm.ocp.checks import CountFromOne, NotNegative, finite, not_negative, positive, whole
+from quietarm.ocp.checks import (
+    Count,
+    CountFromOne,
+    NotNegative,
+    Positive,
+    finite,
+    not_negative,
+    positive,
+    whole,
+)
 from quietarm.ocp.simulation.grid import MOST_STEPS
 from quietarm.ocp.simulation.objective import Motion
 
 Setting = str | bool | int | float | None
-S = TypeVar("S")
 
 MOST_BOUND = 1e6
 """With larger coefficients the figures of a motion are rounding noise, and soon overflow."""
@@ -33,6 +41,52 @@ def versions() -> dict[str, str]:
         "numpy": np.__version__,
         "python": platform.python_version(),
     }
+
+
+@dataclass(frozen=True)
+class Record:
+    """What found an answer, and what that took.
+
+    Attributes
+    ----------
+    method : str
+        ``"sqp"``, ``"epsilon"``, ``"given coefficients"``, the name of a metaheuristic, ...
+    settings : mapping of str to str, bool, int, float or None
+        The method's own settings by name.
+    bound : float or None
+        Largest absolute coefficient that was allowed.
+    seed : int or None
+        Seed of the random numbers.
+    evaluations, iterations : int
+        Candidates that a search evaluated; iterations of the gradient's solver.
+    versions : mapping of str to str
+        Versions of the software.
+    seconds : float
+        How long it took; not compared.
+
+    Raises
+    ------
+    ValueError
+        When the method has no name, or a setting is a number that no file could hold.
+    """
+
+    method: str
+    settings: Mapping[str, Setting] = field(default_factory=dict, hash=False)
+    bound: Positive | None = None
+    seed: Count | None = None
+    evaluations: Count = 0
+    iterations: Count = 0
+    versions: Mapping[str, str] = field(default_factory=versions, hash=False)
+    seconds: NotNegative = field(default=0.0, compare=False)
+
+    def __post_init__(self) -> None:
+        if not self.method.strip():
+            raise ValueError(f"method is {self.method!r}; give the name of what found the points")
+        for name, value in self.settings.items():
+            if isinstance(value, float):
+                finite(f"setting {name}", value)
+        object.__setattr__(self, "settings", dict(self.settings))
+        object.__setattr__(self, "versions", dict(self.versions))
 
 
 @dataclass(frozen=True)
@@ -66,18 +120,17 @@ class SolveSettings:
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
+    def record(self, method: str, iterations: int, seconds: float, **also: Setting) -> Record:
+        """What found an answer with these settings, and with others of the method's own."""
+        own = {"starts": self.starts, "steps": self.steps, "solver": self.solver, **also}
+        if self.guess is not None:
+            own["guess"] = ", ".join(map(digits, self.guess))
+        return Record(method, own, self.bound, self.seed, iterations=iterations, seconds=seconds)
+
 
 def digits(number: float) -> str:
     """A number as text that gives it again: 1, 0.001, 0.30000000000000004."""
     return repr(float(number)).removesuffix(".0")
-
-
-def settings_given(settings: Mapping[str, Setting]) -> dict[str, Setting]:
-    """Settings by name, as an answer holds them; ValueError where no file could hold one."""
-    for name, value in settings.items():
-        if isinstance(value, float):
-            finite(f"setting {name}", value)
-    return dict(settings)
 
 
 def number_of_starts(value: object) -> int:
@@ -130,25 +183,3 @@ class Verification:
     def between(cls, steps: int, energy: float, residual: float, motion: Motion) -> Verification:
         """Compare fixed-step figures [J, m] with those of CVODES."""
         return cls(steps, energy, residual, energy - motion.energy, residual - motion.residual)
-
-
-@dataclass(frozen=True)
-class Provenance(Generic[S]):
-    """What is needed to get an answer again.
-
-    Attributes
-    ----------
-    method : str
-        ``"sqp"``, ``"ipopt"``, ``"given coefficients"``, ``"evaluated"`` (the only motion of a
-        profile) or the name of a metaheuristic.
-    settings : dataclass or None
-        What was asked of the gradient's solver, if it was used.
-    search, versions, seconds
-        Settings of the search that was used, versions of the software, and how long it took.
-    """
-
-    method: str
-    settings: S
-    search: Mapping[str, Setting] = field(default_factory=dict, hash=False)
-    versions: Mapping[str, str] = field(default_factory=versions, hash=False)
-    seconds: NotNegative = field(default=0.0, compare=False)

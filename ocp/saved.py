@@ -18,7 +18,7 @@ from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.errors import FileFormatError
 from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import Provenance
+from quietarm.ocp.record import Record
 from quietarm.ocp.simulation.objective import Motion
 
 T = TypeVar("T")
@@ -186,11 +186,21 @@ class Saved:
             raise FileFormatError(f"{path} is not a valid {cls.kind}: {error}{remedy}") from None
 
 
-class MotionAnswer(Saved):
-    """An answer that is one motion. A subclass is a dataclass with the two entries below."""
+class Answer(Saved):
+    """What a method found. A subclass is a dataclass with the entry below."""
+
+    record: Record
+
+    def restated(self, **changes: Any) -> Self:
+        """The same answer with other entries of its record."""
+        own: Any = self
+        return dataclasses.replace(own, record=dataclasses.replace(self.record, **changes))
+
+
+class MotionAnswer(Answer):
+    """An answer that is one motion, another entry of its dataclass."""
 
     motion: Motion
-    provenance: Provenance[Any]
 
     @property
     def energy(self) -> float:

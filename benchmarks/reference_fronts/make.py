@@ -90,7 +90,7 @@ def _better(
     guess: FrontPoint | None = None,
 ) -> FrontPoint:
     """The best motion of a point's residual from some starts, or the point itself."""
-    steps = front.settings["steps"]
+    steps = front.record.settings["steps"]
     assert isinstance(steps, int)
     try:
         settings = SolveSettings(

@@ -96,7 +96,7 @@ def checksum(front: Front) -> str:
 
     What the move does not set is left out, so that a new option of tasks changes nothing.
     """
-    bound = front.settings.get("bound")
+    bound = front.record.bound
     task = {name: value for name, value in plain(front.task).items() if value is not None}
     content = [task, plain(front.profile), bound, plain(front.points)]
     text = json.dumps(content, sort_keys=True, separators=(",", ":"))

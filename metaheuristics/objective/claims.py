@@ -44,7 +44,7 @@ def check_figures(front: Front, name: str, remedy: str = "find the front again")
         return
     try:
         table = np.array([point.coefficients for point in front.points])
-        refuse_beyond_box(front.profile, table, front.settings.get("bound"), remedy="")
+        refuse_beyond_box(front.profile, table, front.record.bound, remedy="")
         _check_points(front, table)
     except ValueError as error:
         raise ValueError(f"{name}: {error}; {remedy}") from None

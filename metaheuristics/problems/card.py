@@ -46,7 +46,7 @@ def card_of(front: Front) -> Card:
         for i, j in pairwise(_hull(points))
         if _depth(points[i : j + 1]) > _SHALLOW * span[1]
     ]
-    bound = float(front.settings.get("bound") or np.inf)
+    bound = front.record.bound or np.inf
     coefficients = np.abs([point.coefficients for point in front.points])
     at = np.flatnonzero((coefficients >= bound * (1 - _AT)).any(axis=0)) + 1
     last = np.diff(points[-2:], axis=0)[0] if len(points) > 1 else span

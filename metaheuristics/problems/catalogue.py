@@ -90,12 +90,12 @@ class NamedProblem:
 
         ValueError when the front states no bound, or has fewer than two points.
         """
-        bound = front.settings.get("bound", front.profile.default_bound)
-        if not isinstance(bound, int | float):
+        bound = front.record.bound or front.profile.default_bound
+        if bound is None:
             raise ValueError(f"{name} states no bound; give a front that was found within one")
         if len(front.points) < 2:
             raise ValueError(f"{name} has {len(front.points)} points; give two or more")
-        return cls(name, front.task, front.profile, float(bound), given=front)
+        return cls(name, front.task, front.profile, bound, given=front)
 
     def __reduce__(self) -> Any:
         """By its name where that says all."""

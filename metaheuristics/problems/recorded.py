@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from quietarm.metaheuristics.archive import Archive
 from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.quality import measured
-from quietarm.metaheuristics.record import Record
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import table_of
@@ -65,7 +65,7 @@ class RecordedFunction(MoveFunction):
     ) -> None:
         super().__init__(task, profile, bound=bound, threads=threads)
         self.reference, self.budget, self.problem = reference, budget, problem
-        self.record = Record(task, len(self.variables), reference)
+        self.archive = Archive(task, len(self.variables), reference)
         self.failed, self.infeasible = 0, 0
 
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
@@ -79,18 +79,18 @@ class RecordedFunction(MoveFunction):
         if len(beyond):
             row, column = beyond[0]
             raise ValueError(
-                f"{self.variables[column]} of candidate {self.record.evaluations + row + 1} is "
+                f"{self.variables[column]} of candidate {self.archive.evaluations + row + 1} is "
                 f"{table[row, column]:.4g}, not from {self.lower[column]:.4g} to "
                 f"{self.upper[column]:.4g}; clip candidates to the function's lower and upper"
             )
-        left = self.budget - self.record.evaluations
+        left = self.budget - self.archive.evaluations
         afforded = inside[: int(min(left, len(inside)))]
         found, violations = super().__call__(afforded)
         failed, broken = (found >= UNUSABLE).any(axis=1), (violations > 0).any(axis=1)
         self.failed += int(failed.sum())
         self.infeasible += int((broken & ~failed).sum())
         if len(afforded):
-            self.record.add(afforded, found, ~(failed | broken))
+            self.archive.add(afforded, found, ~(failed | broken))
         if len(afforded) < len(table):
             raise BudgetSpentError
         return found, violations
@@ -102,14 +102,14 @@ class RecordedFunction(MoveFunction):
         settings: Mapping[str, Setting] | None = None,
     ) -> Front:
         """The candidates until now, as the front of a method; ValueError if there are none."""
-        if not self.record.evaluations:
+        if not self.archive.evaluations:
             raise ValueError("no candidate was asked for; let the library call the function first")
         seed = None if seed is None else whole("seed", seed, 0)
-        stated: dict[str, Any] = {"bound": self.bound, **(settings or {})}
+        stated: dict[str, Any] = dict(settings or {})
         if self.problem:
             stated["problem"] = self.problem
-        found = self.record.front(
-            self.task, self.profile, method=method, settings=stated, seed=seed,
+        found = self.archive.front(
+            self.task, self.profile, method=method, settings=stated, bound=self.bound, seed=seed,
             failed=self.failed, infeasible=self.infeasible,
         )  # fmt: skip
         return measured(found, self.reference) if self.problem and self.reference else found

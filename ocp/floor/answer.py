@@ -8,11 +8,12 @@ from functools import cached_property
 from itertools import pairwise
 from typing import ClassVar
 
+import numpy as np
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import CountFromOne, positive, whole
+from quietarm.ocp.checks import CountFromOne, Positive
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.profiles.free_motion import FreeMotion
-from quietarm.ocp.record import Provenance, Verification, number_of_starts
+from quietarm.ocp.record import Record, Verification
 from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
@@ -29,21 +30,6 @@ class Level:
 
     steps: CountFromOne
     energy: float
-
-
-@dataclass(frozen=True)
-class FloorSettings:
-    """What was asked of `energy_floor` beyond the task; ValueError where it is out of range."""
-
-    smooth: bool
-    starts: int
-    seed: int
-    tolerance: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "starts", number_of_starts(self.starts))
-        object.__setattr__(self, "seed", whole("seed", self.seed, 0))
-        object.__setattr__(self, "tolerance", positive("tolerance", self.tolerance))
 
 
 @dataclass(frozen=True)
@@ -65,10 +51,12 @@ class Floor(MotionAnswer):
         lower energy.
     starts : tuple of float
         Energy [J] at which each solved start ended, all on the second grid.
+    tolerance : float
+        Share of the energy by which the last two grids were to differ at most.
     """
 
     kind: ClassVar[str] = "floor"
-    version: ClassVar[int] = 2
+    version: ClassVar[int] = 3
 
     task: PointToPoint
     free: FreeMotion
@@ -77,7 +65,8 @@ class Floor(MotionAnswer):
     starts: tuple[float, ...]
     status: SolveStatus
     verification: Verification
-    provenance: Provenance[FloorSettings]
+    tolerance: Positive
+    record: Record
 
     def __post_init__(self) -> None:
         end, duration = self.free.times[-1], self.task.duration
@@ -89,7 +78,7 @@ class Floor(MotionAnswer):
     @property
     def smooth(self) -> bool:
         """Whether the acceleration is continuous."""
-        return self.provenance.settings.smooth
+        return bool(np.any(self.free.jerk))
 
     @property
     def change(self) -> float:
@@ -99,7 +88,7 @@ class Floor(MotionAnswer):
     @property
     def settled(self) -> bool:
         """Whether this is within the tolerance; otherwise the refinement ended early."""
-        return abs(self.change) <= self.provenance.settings.tolerance * self.levels[-1].energy
+        return abs(self.change) <= self.tolerance * self.levels[-1].energy
 
     @property
     def ratio(self) -> float | None:

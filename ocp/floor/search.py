@@ -10,8 +10,9 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.floor.answer import Floor, FloorSettings, Level
+from quietarm.ocp.floor.answer import Floor, Level
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import SAME
@@ -20,7 +21,7 @@ from quietarm.ocp.planning.feasibility import least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath
-from quietarm.ocp.record import Provenance, Verification
+from quietarm.ocp.record import Record, Verification, number_of_starts
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.task import PointToPoint
@@ -76,13 +77,13 @@ def energy_floor(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    settings = FloorSettings(bool(smooth), starts, seed, tolerance)
-    began = time.perf_counter()
-    program = FloorProgram(task, settings.smooth)
-    solved = _solve_from_starts(program, settings)
+    starts, seed = number_of_starts(starts), whole("seed", seed, 0)
+    tolerance, began = positive("tolerance", tolerance), time.perf_counter()
+    program = FloorProgram(task, smooth)
+    solved = _solve_from_starts(program, starts, seed)
     improved = _refine_each(program, solved)
     levels = [min(solved, key=_by_energy), min(improved, key=_by_energy)]
-    _refine(program, levels, settings.tolerance)
+    _refine(program, levels, tolerance)
     best, motion = _certify_least(program, levels)
     method = f"ipopt, free {'jerk' if smooth else 'acceleration'}"
     return Floor(
@@ -93,7 +94,8 @@ def energy_floor(
         starts=tuple(found.energy for found in improved),
         status=best.status,
         verification=Verification.between(best.free.steps, best.energy, 0.0, motion),
-        provenance=Provenance(method, settings, seconds=time.perf_counter() - began),
+        tolerance=tolerance,
+        record=Record(method, {"starts": starts}, None, seed, seconds=time.perf_counter() - began),
     )
 
 
@@ -107,22 +109,22 @@ def _first_fractions(task: PointToPoint) -> NDArray[np.float64]:
     return first_grid(steps)
 
 
-def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
+def _paths(task: PointToPoint, starts: int, seed: int) -> Iterator[JointPath]:
     """Motions to start from: plain cycloid, the plan of six terms, random ones."""
-    random, profile = np.random.default_rng(settings.seed), CycloidPolynomial()
-    drawn = [random.uniform(*profile.start_box(None)) for _ in range(settings.starts)]
+    random, profile = np.random.default_rng(seed), CycloidPolynomial()
+    drawn = [random.uniform(*profile.start_box(None)) for _ in range(starts)]
     drawn[0] = profile.plain
-    if settings.starts > 1:
+    if starts > 1:
         with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
             drawn[1] = np.array(plan_move(task.certain, profile, starts=1).coefficients)
     return (profile.path(coefficients, *task.move) for coefficients in drawn)
 
 
-def _solve_from_starts(program: FloorProgram, settings: FloorSettings) -> list[FreeSolution]:
+def _solve_from_starts(program: FloorProgram, starts: int, seed: int) -> list[FreeSolution]:
     """The solutions from all starts; where there are none, from motions of least peaks."""
     task, limits = program.task, program.task.limits
     fractions = _first_fractions(task)
-    guesses = [program.along(path, fractions) for path in _paths(task, settings)]
+    guesses = [program.along(path, fractions) for path in _paths(task, starts, seed)]
     tried = [program.solve(free, limits) for free in guesses]
     least = dict[str, FreeSolution]()
     if not any(found.status.solved for found in tried):

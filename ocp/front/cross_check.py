@@ -81,7 +81,7 @@ def cross_check(front: Front, points: int = 7, report: Report = no_report) -> Cr
         When the front has no point, or `points` is out of range.
     """
     count = min(number_of_points(points), len(front.points))
-    solver: SolverName = "sqp" if front.settings.get("solver") == "ipopt" else "ipopt"
+    solver: SolverName = "sqp" if front.record.settings.get("solver") == "ipopt" else "ipopt"
     curve, found = curve_of(front, starts=_STARTS, solver=solver), list[Compared]()
     for i in np.linspace(0, len(front.points) - 1, count).round().astype(int):
         found.append(_compare(curve, front.points[i]))

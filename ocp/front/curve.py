@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,24 +135,23 @@ class Curve:
         """The points as a front; iterations are those that no certificate counts."""
         found = list(certificates)
         failures = tuple(one.point for one in found if isinstance(one.point, FailedPoint))
-        settings = self.settings
         return Front(
             task=self.task,
             profile=self.transcription.profile,
-            points=non_dominated(
-                one.point for one in found if isinstance(one.point, FrontPoint)
+            points=non_dominated(one.point for one in found if isinstance(one.point, FrontPoint)),
+            record=self.settings.record(
+                method,
+                iterations + sum(one.iterations for one in found),
+                seconds,
+                points=points,
+                steps=self.transcription.steps,
+                **also,
             ),
-            method=method,
-            settings={"bound": settings.bound, "points": points, "starts": settings.starts,
-                      "steps": self.transcription.steps, "solver": settings.solver, **also},
-            seed=settings.seed,
             reference=reference_corner(self.task),
-            iterations=iterations + sum(one.iterations for one in found),
             failed=len(failures),
             failures=failures,
             gaps=tuple(gaps),
-            seconds=seconds,
-        )  # fmt: skip
+        )
 
 
 def curve_of(
@@ -160,8 +159,6 @@ def curve_of(
 ) -> Curve:
     """The curve of a front that is there already, within its bound; it must have a point."""
     front.smallest_residual()
-    bound: Any = front.settings.get("bound")
-    settings = SolveSettings(
-        bound=bound, starts=starts, seed=front.seed or 0, steps=steps, solver=solver
-    )
+    bound, seed = front.record.bound, front.record.seed or 0
+    settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)
     return Curve.begin(front.task, front.profile, settings)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Self
 
@@ -24,8 +24,8 @@ from quietarm.ocp.front.points import (
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import REST, Setting, settings_given, versions
-from quietarm.ocp.saved import Saved
+from quietarm.ocp.record import REST, Record, Setting
+from quietarm.ocp.saved import Answer
 from quietarm.ocp.tables import to_html
 from quietarm.ocp.task import PointToPoint
 
@@ -37,7 +37,7 @@ LEAST_REFERENCE = 1e-3
 
 
 @dataclass(frozen=True)
-class Front(Saved):
+class Front(Answer):
     """Non-dominated points in the plane of residual and energy.
 
     Attributes
@@ -48,19 +48,10 @@ class Front(Saved):
         How the joint moves.
     points : tuple of FrontPoint
         Sorted by increasing residual; energies fall along the front.
-    method : str
-        How it was found.
-    settings : dict
-        Settings by name, in one table: those that every method has, such as the bound on the
-        coefficients, and the method's own.
-    seed : int or None
-        Seed of the random numbers.
+    record : Record
+        Method, settings, candidates and iterations, versions, time.
     reference : tuple of float
         Residual [m] and energy [J] of the corner that hypervolumes are measured from.
-    evaluations : int
-        Candidates that a search evaluated.
-    iterations : int
-        Iterations of the gradient's solver.
     failed : int
         Candidates whose values were not finite, or absurdly large; they never enter a front.
     infeasible : int
@@ -71,12 +62,6 @@ class Front(Saved):
         Ranges of the residual [m] in which a weighted sum has no point, whatever the weight.
     history : tuple of Mark
         Its quality during the run, the end last.
-    complete : bool
-        Whether the method ran to its end.
-    versions : dict of str to str
-        Versions of what computed it.
-    seconds : float
-        How long it took; not compared.
 
     Raises
     ------
@@ -86,31 +71,20 @@ class Front(Saved):
     """
 
     kind: ClassVar[str] = "front"
-    version: ClassVar[int] = 3
+    version: ClassVar[int] = 4
 
     task: PointToPoint
     profile: JointProfile
     points: tuple[FrontPoint, ...]
-    method: str
-    settings: Mapping[str, Setting] = field(hash=False)
-    seed: Count | None
+    record: Record
     reference: tuple[Positive, Positive]
-    evaluations: Count = 0
-    iterations: Count = 0
     failed: Count = 0
     infeasible: Count = 0
     failures: tuple[FailedPoint, ...] = ()
     gaps: tuple[tuple[NotNegative, NotNegative], ...] = ()
     history: tuple[Mark, ...] = ()
-    complete: bool = True
-    versions: Mapping[str, str] = field(default_factory=versions, hash=False)
-    seconds: NotNegative = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
-        if not self.method.strip():
-            raise ValueError(f"method is {self.method!r}; give the name of what found the points")
-        object.__setattr__(self, "settings", settings_given(self.settings))
-        object.__setattr__(self, "versions", dict(self.versions))
         object.__setattr__(self, "points", tuple(self.points))
         for i, point in enumerate(self.points, start=1):
             self.profile.checked(point.coefficients)
@@ -178,6 +152,7 @@ class Front(Saved):
         *,
         method: str,
         profile: JointProfile | None = None,
+        bound: float | None = None,
         settings: Mapping[str, Setting] | None = None,
         seed: int | None = None,
         evaluations: int | None = None,
@@ -189,8 +164,8 @@ class Front(Saved):
 
         Parameters
         ----------
-        task, method, settings, seed
-            As of a front; a ``bound`` among the settings must be kept.
+        task, method, bound, settings, seed
+            As of a front and its record; the bound must be kept.
         coefficients : array_like, shape (motions, profile.size)
             The profile's coefficients, one row for each motion.
         profile : JointProfile, optional
@@ -209,24 +184,26 @@ class Front(Saved):
             When the array is no table of finite numbers, or does not fit the profile or the bound.
         """
         began = time.perf_counter()
-        settings = settings_given({} if settings is None else settings)
         table = table_of(coefficients)
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile
         if evaluations is not None:
             evaluations = whole("evaluations", evaluations, len(table))
-        found = evaluated(task, profile, table, settings.get("bound"))
+        found = evaluated(task, profile, table, bound)
         return cls(
             task=task,
             profile=profile,
             points=found.points,
-            method=method,
-            settings=settings,
-            seed=seed,
+            record=Record(
+                method,
+                settings or {},
+                bound,
+                seed,
+                evaluations=len(table) if evaluations is None else evaluations,
+                seconds=time.perf_counter() - began,
+            ),
             reference=reference_corner(task),
-            evaluations=len(table) if evaluations is None else evaluations,
             failed=found.failed,
             infeasible=found.infeasible,
-            seconds=time.perf_counter() - began,
         )
 
     def smallest_residual(self) -> FrontPoint:
@@ -279,15 +256,15 @@ class Front(Saved):
     def why_empty(self) -> str:
         """Why there is no point, from what became of the candidates, and what to try."""
         none = "the front has no point;"
-        if 0 < self.evaluations == self.failed:
+        if 0 < self.record.evaluations == self.failed:
             return f"{none} the motions of all {self.failed} candidates overflow; narrow the bound"
         if self.infeasible == 0:
             return f"{none} search longer or widen the bound"
         limits = ", ".join(map(str, self.task.limits))
         overflow = f" and the motions of {self.failed} overflow" if self.failed else ""
         return (
-            f"{none} {self.infeasible} of {self.evaluations} candidates break the limits ({limits})"
-            f"{overflow}; widen them or the bound, or search longer"
+            f"{none} {self.infeasible} of {self.record.evaluations} candidates break the "
+            f"limits ({limits}){overflow}; widen them or the bound, or search longer"
         )
 
 

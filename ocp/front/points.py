@@ -175,7 +175,7 @@ def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.
 def refuse_beyond_box(
     profile: JointProfile,
     table: NDArray[np.float64],
-    bound: object,
+    bound: float | None,
     remedy: str = "; correct it, or state a wider bound",
 ) -> None:
     """Refuse coefficients beyond the box of a profile for the bound that is stated."""
@@ -197,7 +197,7 @@ def evaluated(
     task: PointToPoint,
     profile: JointProfile,
     table: NDArray[np.float64],
-    bound: object = None,
+    bound: float | None = None,
 ) -> Evaluated:
     """The front of motions by CVODES; those that fail or break a limit of the task are counted."""
     points, failed, infeasible = list[FrontPoint](), 0, 0

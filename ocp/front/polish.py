@@ -84,24 +84,19 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     for point, solution in zip(front.points, solved, strict=True):
         tried.append(_improve(curve, point, solution))
         report(len(tried), len(front.points))
-    polished = curve.to_front(
-        f"{front.method}, polished",
-        [one for own in tried for one in own],
-        len(front.points),
-        front.seconds + time.perf_counter() - began,
-        iterations=front.iterations,
-    )
-    with_origin = replace(
-        polished,
-        settings={**front.settings, "polish": curve.settings.solver,
+    found, record = [one for own in tried for one in own], front.record
+    polished = curve.to_front("polish", found, len(front.points), time.perf_counter() - began)
+    polished = replace(
+        polished, record=record, reference=front.reference, history=front.history
+    ).restated(
+        method=f"{record.method}, polished",
+        settings={**record.settings, "polish": curve.settings.solver,
                   "steps": curve.transcription.steps},
-        seed=front.seed,
-        reference=front.reference,
-        evaluations=front.evaluations,
-        history=front.history,
-        complete=front.complete,
+        iterations=record.iterations + polished.record.iterations,
+        versions=polished.record.versions,
+        seconds=record.seconds + polished.record.seconds,
     )  # fmt: skip
-    return Polish(with_origin, tuple(map(_gain, front.points, tried)))
+    return Polish(polished, tuple(map(_gain, front.points, tried)))
 
 
 def _improve(curve: Curve, point: FrontPoint, solution: Solution) -> list[Certificate]:

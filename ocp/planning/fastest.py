@@ -112,10 +112,8 @@ def fastest_move(
         chosen = {DURATION_OF_SIX: best.task.duration}
         search, best = _with_more_terms(search, tolerance)
         chosen |= {CHOSEN: best.profile.size}
-    seconds, record = time.perf_counter() - begin, best.provenance
-    plan = replace(
-        best, provenance=replace(record, search={**record.search, **chosen}, seconds=seconds)
-    )
+    settings, seconds = {**best.record.settings, **chosen}, time.perf_counter() - begin
+    plan = best.restated(settings=settings, seconds=seconds)
     failed = sorted(search.failed.items(), reverse=True)
     shorter = tuple(one for one in failed if one[0] < plan.task.duration)
     return Fastest(plan, shorter)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import positive
+from quietarm.ocp.checks import NotNegative, positive
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.interrupts import one_at_a_time
@@ -23,7 +23,7 @@ from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
-from quietarm.ocp.record import REST, Provenance, Setting, SolveSettings, Verification
+from quietarm.ocp.record import REST, Record, Setting, Verification
 from quietarm.ocp.robustness.perturbed import Sensitivity, Worst, sensitivities, worst_of
 from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.free_vibration import after_arrival
@@ -60,8 +60,10 @@ class Plan(MotionAnswer):
         How the solve ended.
     verification : Verification
         Distance between the two integrators.
-    provenance : Provenance
+    record : Record
         Method, settings, versions, time.
+    residual_limit : float or None
+        Largest residual that was asked for [m]; None where none was.
     worst : Worst or None
         For an uncertain task the worst case: the errors within its ranges with the largest
         residual, also between the scenarios; else None.
@@ -72,7 +74,7 @@ class Plan(MotionAnswer):
     """
 
     kind: ClassVar[str] = "plan"
-    version: ClassVar[int] = 3
+    version: ClassVar[int] = 4
 
     task: PointToPoint
     profile: JointProfile
@@ -80,7 +82,8 @@ class Plan(MotionAnswer):
     motion: Motion
     status: SolveStatus
     verification: Verification
-    provenance: Provenance[SolveSettings | None]
+    record: Record
+    residual_limit: NotNegative | None = None
     worst: Worst | None = None
     shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
 
@@ -95,10 +98,9 @@ class Plan(MotionAnswer):
 
         None if the task is not uncertain, or no limit was asked for.
         """
-        settings = self.provenance.settings
-        if self.worst is None or settings is None or settings.residual_limit == 0:
+        if self.worst is None or not self.residual_limit:
             return None
-        return self.worst.residual / settings.residual_limit - 1
+        return self.worst.residual / self.residual_limit - 1
 
     def on(self, task: PointToPoint) -> Plan:
         """The same motion with its figures on an uncertain task, of which it is the nominal one."""
@@ -110,12 +112,6 @@ class Plan(MotionAnswer):
     def candidate(self) -> Candidate:
         """The motion, judged by CVODES."""
         return Candidate.of_profile(self.task, self.profile, self.coefficients)
-
-    @property
-    def residual_limit(self) -> float | None:
-        """Largest residual that was asked for [m]; None where the gradient was not asked."""
-        settings = self.provenance.settings
-        return None if settings is None else settings.residual_limit
 
     @property
     def path(self) -> JointPath:
@@ -208,7 +204,7 @@ def evaluate_coefficients(
     profile : JointProfile, optional
         How the joint moves; by default a `CycloidPolynomial` of as many terms, eq (6).
     method, settings
-        Where the coefficients come from, for the plan's provenance.
+        Where the coefficients come from, for the plan's record.
 
     Raises
     ------
@@ -227,7 +223,7 @@ def evaluate_coefficients(
         motion=motion,
         status=SolveStatus.NOT_OPTIMISED,
         verification=Verification.between(*_by_fixed_steps(task, profile, checked), motion),
-        provenance=Provenance(method, None, settings, seconds=time.perf_counter() - began),
+        record=Record(method, settings, seconds=time.perf_counter() - began),
         worst=worst_of(task, profile, checked),
     )
 
@@ -236,8 +232,7 @@ def only_motion(
     task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
 ) -> Plan:
     """The figures of the only motion that a profile has, within the task's limits."""
-    asked = {} if residual_limit is None else {"residual_limit": residual_limit}
-    plan = evaluate_coefficients(task, [], profile=profile, method="evaluated", settings=asked)
+    plan = evaluate_coefficients(task, [], profile=profile, method="evaluated")
     residual = [] if residual_limit is None else [Limit.of_residual(max(residual_limit, STILL))]
     limits = {limit.name: limit for limit in (*residual, *task.limits)}
     broken = [
@@ -250,7 +245,7 @@ def only_motion(
             f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
             "widen what is broken, or give a longer duration or another profile"
         )
-    return plan
+    return replace(plan, residual_limit=residual_limit)
 
 
 def _by_fixed_steps(

@@ -26,7 +26,7 @@ from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.planning.terms import plan_with_chosen_terms
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import REST, Provenance, SolveSettings, Verification
+from quietarm.ocp.record import REST, SolveSettings, Verification
 from quietarm.ocp.robustness.measures import quiet_residual
 from quietarm.ocp.robustness.perturbed import Worst, peaks_between
 from quietarm.ocp.solvers.choice import SolverName, solver_of
@@ -167,7 +167,7 @@ def _plan_within(
                 f"of {largest:g} m: give a larger residual limit, more {profile.term}s or a "
                 "smaller uncertainty"
             )
-    return replace(plan, provenance=replace(plan.provenance, seconds=time.perf_counter() - began))
+    return plan.restated(seconds=time.perf_counter() - began)
 
 
 def _hold_default(
@@ -206,8 +206,7 @@ def _hold_default(
     if nominal is not None and plan.worst.residual > reached:
         plan = nominal
     assert plan.worst is not None
-    settings = replace(settings, residual_limit=plan.worst.residual)
-    return replace(plan, provenance=replace(plan.provenance, settings=settings))
+    return replace(plan, residual_limit=plan.worst.residual)
 
 
 def _hold(
@@ -249,7 +248,7 @@ def _hold(
             if not tightenings:
                 raise
             break
-    return replace(plan, provenance=replace(plan.provenance, settings=settings))
+    return replace(plan, residual_limit=settings.residual_limit)
 
 
 def plan_from_starts(
@@ -281,7 +280,8 @@ def plan_from_starts(
         verification=Verification.between(
             certified.steps, solution.energy, solution.residual, motion
         ),
-        provenance=Provenance(settings.solver, settings, seconds=time.perf_counter() - began),
+        record=settings.record(settings.solver, solution.iterations, time.perf_counter() - began),
+        residual_limit=settings.residual_limit,
         shadow_prices=solution.shadow_prices,
     )
     return plan, [one.coefficients for one in solved]

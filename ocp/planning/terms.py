@@ -18,7 +18,7 @@ from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import best_of_starts, start_coefficients
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
-from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.record import Setting, SolveSettings
 from quietarm.ocp.solvers.choice import solver_of
 from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
 from quietarm.ocp.solvers.transcription import Transcription
@@ -64,12 +64,12 @@ def plan_with_chosen_terms(
         guess = np.pad(six.coefficients, (0, profile.size - SIX.size)).tolist()
         found = plan(profile, replace(asked, guess=tuple(guess)))
     assert found is not None
-    chosen: dict[str, float] = {CHOSEN: found.profile.size}
+    stated: dict[str, Setting] = {**found.record.settings, "starts": settings.starts}
+    stated[CHOSEN] = found.profile.size
+    stated.pop("guess", None)
     if six.status.solved and task.uncertainty is None:
-        chosen[OF_SIX] = six.energy
-    record, seconds = found.provenance, time.perf_counter() - began
-    used = record.settings and replace(record.settings, starts=settings.starts, guess=None)
-    return replace(found, provenance=replace(record, settings=used, search=chosen, seconds=seconds))
+        stated[OF_SIX] = six.energy
+    return found.restated(settings=stated, seconds=time.perf_counter() - began)
 
 
 def _solve_with_six(task: PointToPoint, settings: SolveSettings) -> Solution:

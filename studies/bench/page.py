@@ -54,7 +54,7 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         ranks = pd.DataFrame({"method": ranking.methods, "mean rank": ranking.ranks})
         tables["ranks"] = _with_labels(ranks, "method")
         figures["ranks.png"] = partial(ranks_figure, ranking)
-    versions = results.runs[0].front.versions
+    versions = results.runs[0].front.record.versions
     values = {
         "line": line, "problems": problems, "methods": [label_of(m) for m in results.methods],
         "power": say_power(min((min(one) for one in runs if one), default=1), max(map(len, runs))),

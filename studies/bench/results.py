@@ -65,14 +65,16 @@ class Results:
     def __init__(self, runs: Sequence[Run]) -> None:
         if not runs:
             raise ValueError("no run was done; give jobs, or a folder that has some")
-        self.runs = tuple(sorted(runs, key=lambda run: (run.problem.name, run.front.seed or 0)))
+        self.runs = tuple(
+            sorted(runs, key=lambda run: (run.problem.name, run.front.record.seed or 0))
+        )
         self._groups: dict[tuple[str, str], list[Run]] = {}
         for run in self.runs:
             group = self._groups.setdefault((run.problem.name, run.method), [])
-            if group and group[-1].front.seed == run.front.seed:
+            if group and group[-1].front.record.seed == run.front.record.seed:
                 raise ValueError(
-                    f"{run.method} on {run.problem.name} has seed {run.front.seed} twice; give "
-                    "every run once, with the seed that it had"
+                    f"{run.method} on {run.problem.name} has seed {run.front.record.seed} twice; "
+                    "give every run once, with the seed that it had"
                 )
             group.append(run)
 
@@ -84,16 +86,16 @@ class Results:
         several = {label for label in labels if labels.count(label) > 1}
         runs = [Run(job.problem, _method(job, several), front) for job, front in fronts.items()]
         for front in imported:
-            name = front.settings.get("problem")
+            name = front.record.settings.get("problem")
             if name not in problems:
                 raise ValueError(
-                    f"a run of {front.method} is on {name or 'no named problem'}, and the bench on "
-                    f"{', '.join(problems)}; give that problem too, or leave the run out"
+                    f"a run of {front.record.method} is on {name or 'no named problem'}, and the "
+                    f"bench on {', '.join(problems)}; give that problem too, or leave the run out"
                 )
             problem = problems[str(name)]
             if (front.task, front.profile) != (problem.task, problem.profile):
-                raise ValueError(f"a run of {front.method} is of another move than {name}")
-            runs.append(Run(problem, front.method, measured(front, problem.reference())))
+                raise ValueError(f"a run of {front.record.method} is of another move than {name}")
+            runs.append(Run(problem, front.record.method, measured(front, problem.reference())))
         return cls(runs)
 
     @cached_property
@@ -242,7 +244,7 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     """The figures of a run; energies as shares above the best."""
     front, last = run.front, run.front.history[-1]
     row: dict[str, Any] = {
-        "problem": run.problem.name, "method": run.method, "seed": front.seed,
+        "problem": run.problem.name, "method": run.method, "seed": front.record.seed,
         "points": len(front.points), "missing": _missing(last.quality),
         "missing_between": _missing(last.between),
     }  # fmt: skip
@@ -256,5 +258,5 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     row["at_rest"] = bool((residuals <= AT_REST).any())
     return row | {
         "evaluations": last.evaluations, "gradients": last.gradients, "hessians": last.hessians,
-        "seconds": last.seconds, "all_seconds": front.seconds,
+        "seconds": last.seconds, "all_seconds": front.record.seconds,
     }  # fmt: skip

@@ -55,10 +55,10 @@ def _row(comparison: Comparison, group: Group) -> dict[str, object]:
         **energies,
         **measures,
         "points": Spread.of([len(run.front.points) for run in group.runs]).median,
-        "bound": front.settings.get("bound"),
-        "candidates": group.spread("front.evaluations").median or None,
-        "iterations": group.spread("front.iterations").median or None,
-        "time [s]": group.spread("front.seconds").median,
+        "bound": front.record.bound,
+        "candidates": group.spread("front.record.evaluations").median or None,
+        "iterations": group.spread("front.record.iterations").median or None,
+        "time [s]": group.spread("front.record.seconds").median,
     }
 
 
@@ -67,10 +67,10 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
     rows: list[dict[str, object]] = []
     for group in comparison.groups:
         for run in group.runs:
-            front = run.front
+            front, record = run.front, run.front.record
             row: dict[str, object] = {
                 "move": title_of(front.task), "name": run.name, "label": group.label,
-                "method": front.method, "seed": front.seed, "bound": front.settings.get("bound"),
+                "method": record.method, "seed": record.seed, "bound": record.bound,
                 "coefficients": front.profile.size, "points": len(front.points),
                 "hypervolume": run.hypervolume, "hypervolume_found": run.hypervolume_found,
                 "igd_plus": run.igd_plus, "epsilon": run.epsilon,
@@ -79,8 +79,8 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
                 at = f"at_{1e3 * level:g}mm"
                 row |= {f"energy_J_{at}": run.energies[i], f"gap_{at}": run.gaps[i],
                         f"gap_between_{at}": run.gaps_between[i]}  # fmt: skip
-            for name in ("evaluations", "iterations", "seconds", "complete"):
-                row[name] = getattr(front, name)
+            for name in ("evaluations", "iterations", "seconds"):
+                row[name] = getattr(record, name)
             rows.append(row)
     return pd.DataFrame(rows)
 

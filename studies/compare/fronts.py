@@ -58,7 +58,7 @@ class Group:
     @property
     def by_gradient(self) -> bool:
         """Whether the gradient found them, so that the points lie on a line."""
-        return method_of(self.runs[0].front.method).kind is Kind.GRADIENT
+        return method_of(self.runs[0].front.record.method).kind is Kind.GRADIENT
 
     @property
     def band(self) -> tuple[Array, Array, Array]:
@@ -67,7 +67,7 @@ class Group:
         return stairs, within(self.best, stairs), within(self.worst, stairs)
 
     def spread(self, figure: str, level: int | None = None) -> Spread:
-        """Quartiles over the runs of a figure of `Measured` by name, as `front.seconds`."""
+        """Quartiles over the runs of a figure of `Measured` by name, as `front.record.seconds`."""
         values = [attrgetter(figure)(run) for run in self.runs]
         return Spread.of([float(v if level is None else v[level]) for v in values])
 
@@ -252,29 +252,29 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
     groups: dict[str, list[int]] = {}
     for i, front in enumerate(fronts):
         stated = {name: value for name, value in _settings(front).items() if value is not None}
-        key = json.dumps([front.method, stated], sort_keys=True)
+        key = json.dumps([front.record.method, stated], sort_keys=True)
         groups.setdefault(key, []).append(i)
     firsts = [fronts[members[0]] for members in groups.values()]
     return {
-        _label(front, [other for other in firsts if other.method == front.method]): members
+        _label(
+            front, [other for other in firsts if other.record.method == front.record.method]
+        ): members
         for front, members in zip(firsts, groups.values(), strict=True)
     }
 
 
 def _settings(front: Front) -> dict[str, object]:
     profile = plain(front.profile)
-    return {**front.settings, "profile": profile.pop("name"), **profile, "whole": front.complete}
+    own = {"bound": front.record.bound, **front.record.settings}
+    return {**own, "profile": profile.pop("name"), **profile}
 
 
 def _label(front: Front, alike: Sequence[Front]) -> str:
     """The method, with the settings in which it differs from others of the same method."""
-    words, others = [method_of(front.method).label], [_settings(other) for other in alike]
+    words, others = [method_of(front.record.method).label], [_settings(other) for other in alike]
     for name, value in _settings(front).items():
         if all(other.get(name) == value for other in others):
             continue
-        if name == "whole":
-            words += [] if value else ["interrupted"]
-        else:
-            shown = str(value).removesuffix(".0")  # every digit: two groups never share a label
-            words.append(f"no {name}" if value is None else f"{name} {shown}")
+        shown = str(value).removesuffix(".0")  # every digit: two groups never share a label
+        words.append(f"no {name}" if value is None else f"{name} {shown}")
     return ", ".join(words)

@@ -85,7 +85,7 @@ def judge(
         )  # fmt: skip
     elif ranges:
         own = replace(own, worst=worst_case(nominal, ranges))
-    return own if isinstance(moved, Candidate) else replace(own, seconds=moved.provenance.seconds)
+    return own if isinstance(moved, Candidate) else replace(own, seconds=moved.record.seconds)
 
 
 def refuse_other_moves(tasks: Mapping[str, PointToPoint]) -> None:

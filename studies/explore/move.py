@@ -199,8 +199,10 @@ class Explored:
     def pick(self, number: int) -> Explored:
         """The same with the motion of a point of the front, by its number from 0."""
         assert self.front is not None
-        coefficients, method = self.front.points[number].coefficients, self.front.method
-        return self._evaluate(self.task, coefficients, method=method, settings=self.front.settings)
+        coefficients, record = self.front.points[number].coefficients, self.front.record
+        return self._evaluate(
+            self.task, coefficients, method=record.method, settings=record.settings
+        )
 
     def keep(self) -> Explored:
         """The same with this motion kept to be compared; no more where it is kept already."""
@@ -209,7 +211,7 @@ class Explored:
     @property
     def of_front(self) -> bool:
         """Whether the motion is a point of the front."""
-        return self.front is not None and self.plan.provenance.method == self.front.method
+        return self.front is not None and self.plan.record.method == self.front.record.method
 
     @property
     def cycloid(self) -> Plan:

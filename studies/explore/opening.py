@@ -38,16 +38,15 @@ def open_file(path: Path) -> Explored:
         return Explored(library.plan(**middle), library=library)
     if _format_of(path) == "quietarm-front":
         front = load_front(path)
-        bound = front.settings.get("bound")
         first = evaluate_coefficients(
-            front.task, front.points[0].coefficients, profile=front.profile, method=front.method
+            front.task,
+            front.points[0].coefficients,
+            profile=front.profile,
+            method=front.record.method,
         )
-        return Explored(first, bound=None if bound is None else float(bound), front=front)
+        return Explored(first, bound=front.record.bound, front=front)
     (plan,) = load_plans([path]).values()
-    asked = plan.provenance.settings
-    if asked is None:
-        return Explored(plan)
-    return Explored(plan, residual_limit=asked.residual_limit or None, bound=asked.bound)
+    return Explored(plan, residual_limit=plan.residual_limit or None, bound=plan.record.bound)
 
 
 def is_file(what: str) -> bool:

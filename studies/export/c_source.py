@@ -48,7 +48,7 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
 def _words_of_plan(plan: Plan) -> dict[str, Any]:
     return {
         "title": f"{moved(plan.task)}, {move_of(plan.task)}",
-        "version": plan.provenance.versions.get("quietarm", ""),
+        "version": plan.record.versions.get("quietarm", ""),
         "figures": ", ".join([
             f"Energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
             *limit_words(plan.task),

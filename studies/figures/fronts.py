@@ -70,9 +70,8 @@ def draw_fronts(
             ax,
             np.insert(np.maximum(front.residuals, REST), places, np.nan),  # rest has no logarithm
             np.insert(front.energies, places, np.nan),
-            exact=method_of(front.method).kind is Kind.GRADIENT, color=own.colour, marker=own.mark,
-            linestyle="-" if front.complete else "--", markersize=3, alpha=0.8,
-            label=name if front.complete else f"{name}, interrupted",
+            exact=method_of(front.record.method).kind is Kind.GRADIENT, color=own.colour,
+            marker=own.mark, linestyle="-", markersize=3, alpha=0.8, label=name,
         )  # fmt: skip
         limits = [1e3 * one.asked.get(RESIDUAL_LIMIT, np.nan) for one in front.failures]
         if limits:  # weights have no residual
@@ -96,11 +95,13 @@ def draw_fronts(
 
 def _names(fronts: Sequence[Front]) -> list[str]:
     """What to call every front: its method where there are several, its seed where that tells."""
-    methods = [method_of(front.method).label for front in fronts]
+    methods = [method_of(front.record.method).label for front in fronts]
     several, names = len(set(methods)) > 1, list[str]()
     for front, method in zip(fronts, methods, strict=True):
         runs = methods.count(method) > 1
-        names.append(", ".join([method] * (several or not runs) + [f"seed {front.seed}"] * runs))
+        names.append(
+            ", ".join([method] * (several or not runs) + [f"seed {front.record.seed}"] * runs)
+        )
     return names
 
 
@@ -165,7 +166,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     ax.set_xlabel(f"seed (x: never within {level})")
     ax.set_ylabel("energy F2 [J]")
     if len(fronts) <= 2 * _MOST_NAMED:
-        ax.set_xticks(range(len(fronts)), [str(front.seed) for front in fronts])
+        ax.set_xticks(range(len(fronts)), [str(front.record.seed) for front in fronts])
     ax.margins(x=0.1, y=0.2)
     ax.ticklabel_format(axis="y", useOffset=False)
     low, high = ax.get_ylim()
@@ -189,22 +190,21 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
         Energy against residual; of searches the median hypervolume with its quartiles against
         candidates; for several seeds also the least energy of each within 1 mm.
     """
-    complete = [front for front in fronts if front.complete] or fronts
-    method = method_of(fronts[0].method)
+    method = method_of(fronts[0].record.method)
     gradient = method.kind is Kind.GRADIENT
-    panels = 1 + (not gradient and all(front.history for front in complete))
-    panels += panels > 1 and len(complete) > 1
+    panels = 1 + (not gradient and all(front.history for front in fronts))
+    panels += panels > 1 and len(fronts) > 1
     title = f"{method.label}: {title_of(fronts[0].task)}"
     figure, axes = side_by_side(panels, title, width=4.2 if panels > 1 else 6.4)
     draw_fronts(fronts, axes[0], linear=gradient)
     for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:], strict=False):
-        draw(complete, ax)
+        draw(fronts, ax)
     return figure
 
 
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """Draw a front before and after polishing, and the energy that this saved point by point."""
-    name = method_of(polish.front.method).label
+    name = method_of(polish.front.record.method).label
     figure, (ax, saved) = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
     draw_fronts([before, polish.front], ax, ("before", "after"))
     residuals = [max(gain.residual, REST) for gain in polish.gains]

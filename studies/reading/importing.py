@@ -38,6 +38,7 @@ def import_front(
     found: Found,
     method: str,
     settings: dict[str, Setting],
+    bound: float | None,
     evaluations: int | None = None,
 ) -> tuple[Front, list[Claim]]:
     """The front of coefficients from elsewhere, and how its claims compare."""
@@ -46,7 +47,7 @@ def import_front(
     if evaluations is not None:
         evaluations = whole("evaluations", evaluations, len(table))
     rows = np.array([_checked(i, row, profile, task) for i, row in enumerate(table, start=1)])
-    refuse_beyond_box(profile, rows, settings.get("bound"))
+    refuse_beyond_box(profile, rows, bound)
     widest = max(float(np.abs(rows).max()), 1e-3)  # any box: the function needs one
     objectives, violations = MoveFunction(task, profile, bound=min(widest, 1e6))(rows)
     failed = np.asarray((objectives >= UNUSABLE).any(axis=1))
@@ -56,11 +57,11 @@ def import_front(
     if not near.size:
         raise SolverFailedError(_why_none(rows, failed, violations, task))
     front = Front.from_coefficients(
-        task, rows[near], method=method, profile=profile, settings=settings
-    )
+        task, rows[near], method=method, profile=profile, bound=bound, settings=settings,
+        evaluations=evaluations or len(rows),
+    )  # fmt: skip
     front = replace(
         front,
-        evaluations=evaluations or len(rows),
         failed=int(failed.sum()) + front.failed,
         infeasible=int(broken.sum()) + front.infeasible,
     )

@@ -31,11 +31,11 @@ _ROWS = 10
 
 def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> str:
     """A front by the gradient, of which so many points were asked for."""
-    levels = {level: energy_at(front, level) for level in LEVELS}
+    levels, record = {level: energy_at(front, level) for level in LEVELS}, front.record
     return "\n".join([
         *energy_words(front.task),
-        f"{front.method}: {counted(len(front.points), 'point')}, "
-        f"{counted(front.iterations, 'iteration')} of the solver in {front.seconds:.1f} s",
+        f"{record.method}: {counted(len(front.points), 'point')}, "
+        f"{counted(record.iterations, 'iteration')} of the solver in {record.seconds:.1f} s",
         *_chosen_points(front),
         *(
             f"  {f'within {millimetres(level)}':15}"
@@ -61,19 +61,19 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
     """Fronts of searches or tables, and the spread over several seeds."""
     lines = energy_words(fronts[0].task)
     for front in fronts:
-        seed = "" if front.seed is None else f", seed {front.seed}"
+        record = front.record
+        seed = "" if record.seed is None else f", seed {record.seed}"
         lines += [
-            f"{front.method}{seed}: {counted(len(front.points), 'point')}, "
-            f"{counted(front.evaluations, 'candidate')} in {front.seconds:.1f} s, "
-            f"{front.failed} failed{'' if front.complete else ' (interrupted)'}",
+            f"{record.method}{seed}: {counted(len(front.points), 'point')}, "
+            f"{counted(record.evaluations, 'candidate')} in {record.seconds:.1f} s, "
+            f"{front.failed} failed",
             *_chosen_points(front),
         ]
-    complete = [front for front in fronts if front.complete]
-    if len(complete) > 1:
-        energies, level = energies_at(complete), millimetres(SEARCH_RESIDUAL)
-        corner = complete[0].reference
+    if len(fronts) > 1:
+        energies, level = energies_at(fronts), millimetres(SEARCH_RESIDUAL)
+        corner = fronts[0].reference
         lines += [
-            f"hypervolume: {spread_words(hypervolumes(complete), '.4f')} of the box up to "
+            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to "
             f"{millimetres(corner[0])} and {corner[1]:.3g} J, median (quartiles)",
             f"energy at {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles); "
             f"{energies.count} of {energies.seeds} seeds reach {level}",
@@ -87,9 +87,9 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
     dominated = len(given.points) - len(polished.points)
     shown = np.linspace(0, len(gains) - 1, min(_ROWS, len(gains))).round().astype(int)
     return "\n".join([
-        f"{polished.method}: {counted(len(given.points), 'point')}, "
-        f"{polished.iterations - given.iterations} iterations of the solver in "
-        f"{polished.seconds - given.seconds:.1f} s",
+        f"{polished.record.method}: {counted(len(given.points), 'point')}, "
+        f"{polished.record.iterations - given.record.iterations} iterations of the solver in "
+        f"{polished.record.seconds - given.record.seconds:.1f} s",
         f"{'residual':>12}{'before':>12}{'after':>12}{'saved':>9}",
         *(
             f"{millimetres(one.residual):>12}{f'{one.before:.4g} J':>12}{f'{one.after:.4g} J':>12}"

@@ -33,9 +33,9 @@ _SEEN, _ROUNDING = 1e-6, 1e-12
 
 def plan_rows(plan: Plan) -> list[Row]:
     """A plan's coefficients, figures and verification."""
-    back, settings = plan.turns_back, plan.provenance.settings
+    back = plan.turns_back
     return [
-        *_move_rows(plan.task, plan.motion, settings.residual_limit if settings else 0.0),
+        *_move_rows(plan.task, plan.motion, plan.residual_limit or 0.0),
         _choice(plan),
         *_terms_rows(plan),
         *_figure_rows(plan.task, plan.motion),
@@ -43,7 +43,7 @@ def plan_rows(plan: Plan) -> list[Row]:
         *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
         ("status", plan.status.text),
         _verified_row(plan),
-        ("time", f"{plan.provenance.seconds:.2f} s"),
+        ("time", f"{plan.record.seconds:.2f} s"),
     ]
 
 
@@ -55,7 +55,7 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
         beside = f"{plan.energy:.6g} J, {plan.energy / floor.energy:.3g} times as much"
     worst, missing = (
         max(floor.starts) / min(floor.starts) - 1,
-        floor.provenance.settings.starts - len(floor.starts),
+        int(floor.record.settings["starts"] or 0) - len(floor.starts),
     )
     starts = [
         f"{floor.agreeing()} of {len(floor.starts)} end within 0.5 % of the best",
@@ -78,7 +78,7 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
             f"by CVODES, restarted at every jump: {check.steps} intervals differ by "
             f"{abs(check.energy_difference) / motion.energy:.0e} in energy",
         ),
-        ("time", f"{floor.provenance.seconds:.2f} s"),
+        ("time", f"{floor.record.seconds:.2f} s"),
     ]
 
 
@@ -231,7 +231,7 @@ def _tip(task: PointToPoint) -> str:
 
 def _terms_rows(plan: Plan) -> list[Row]:
     """How many terms the plan chose, and what six would cost; none where they were given."""
-    found = plan.provenance.search
+    found = plan.record.settings
     if CHOSEN not in found:
         return []
     energy, duration = (float(found.get(name) or 0) for name in (OF_SIX, DURATION_OF_SIX))

@@ -39,15 +39,17 @@ class SearchDisplay:
 
     def finish(self, front: Front) -> None:
         """Show what one of several searches found."""
-        if front.seed in self._tasks:
-            self._bars.remove_task(self._tasks.pop(front.seed))
+        if front.record.seed in self._tasks:
+            self._bars.remove_task(self._tasks.pop(front.record.seed))
         if not self._lines.quiet:
             print_lines(self._lines.console, _found(front))
 
 
 def _found(front: Front) -> str:
     share = front.history[-1].hypervolume if front.history else 0.0
-    return f"seed {front.seed} is done: hypervolume {share:.4f} in {front.seconds:.1f} s"
+    return (
+        f"seed {front.record.seed} is done: hypervolume {share:.4f} in {front.record.seconds:.1f} s"
+    )
 
 
 def _figures(progress: SearchProgress, seed: int | None) -> str:

@@ -241,7 +241,7 @@ def _kept(call: Callable[[], Front], path: Path | None) -> Front:
     """A front that is kept already, if it is by the same versions, or found now and kept."""
     if path is not None and path.exists():
         front = Front.load(path)
-        if front.versions.items() >= versions().items():
+        if front.record.versions.items() >= versions().items():
             return front
     front = call()
     if path is not None:

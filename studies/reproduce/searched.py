@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -58,7 +58,7 @@ class Searched:
     @property
     def seconds(self) -> list[float]:
         """What each seed took."""
-        return [front.seconds for front in self.fronts]
+        return [front.record.seconds for front in self.fronts]
 
     @cached_property
     def middle(self) -> Plan | None:
@@ -73,4 +73,4 @@ class Searched:
         front = self.fronts[place]
         found = front.cheapest(self.level)
         plan = evaluate_coefficients(self.case.task, found.coefficients, profile=front.profile)
-        return replace(plan, provenance=replace(plan.provenance, seconds=front.seconds))
+        return plan.restated(seconds=front.record.seconds)

@@ -15,6 +15,7 @@ from quietarm.ocp import (
     Front,
     FrontPoint,
     PointToPoint,
+    Record,
     evaluate_coefficients,
     non_dominated,
     plan_move,
@@ -109,12 +110,14 @@ def front_of(task):
             task=task,
             profile=CycloidPolynomial(terms),
             points=non_dominated(found),
-            method=method,
-            settings={"bound": bound},
-            seed=seed,
+            record=Record(
+                method,
+                bound=bound,
+                seed=seed,
+                evaluations=rest.pop("evaluations", 100),
+                seconds=rest.pop("seconds", 1.0),
+            ),
             reference=rest.pop("reference", (10e-3, 1.0)),
-            evaluations=rest.pop("evaluations", 100),
-            seconds=rest.pop("seconds", 1.0),
             **rest,
         )
 

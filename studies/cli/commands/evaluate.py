@@ -133,13 +133,12 @@ def _evaluate_table(
             f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
             f"{FAMILIES[profile](terms).size}; leave --terms out, or transpose the table"
         )
-    settings: dict[str, Any] = {"imported": file.name}
-    if bound is not None:
-        settings["bound"] = bound
     with busy("evaluating"):
         try:
             motions = FAMILIES[profile].of_size(columns)
-            front, claims = import_front(task, motions, found, file.stem, settings, evaluations)
+            front, claims = import_front(
+                task, motions, found, file.stem, {"imported": file.name}, bound, evaluations
+            )
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
     notes = [claim.words for claim in claims] or [

@@ -117,7 +117,7 @@ def search(
                 raise
             why = "interrupted" if isinstance(error, KeyboardInterrupt) else error
             trouble = QuietarmError(f"{why}: {len(fronts)} of {runs} seeds are done and kept")
-    fronts.sort(key=lambda front: front.seed or 0)
+    fronts.sort(key=lambda front: front.record.seed or 0)
     if not any(front.points for front in fronts):
         raise trouble or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
     finish(_files(output, fronts, several), search_lines(fronts), trouble=trouble)
@@ -135,6 +135,6 @@ def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> li
     others = [path for path in output if path not in pictures]
     draw, found = partial(figures.front_figure, fronts), list[File]()
     for front in fronts:
-        names = [path.with_stem(f"{path.stem}-seed{front.seed}") for path in others]
+        names = [path.with_stem(f"{path.stem}-seed{front.record.seed}") for path in others]
         found += front_files(names if several else others, front, draw)
     return [*found, *front_files(pictures, fronts[0], draw)]

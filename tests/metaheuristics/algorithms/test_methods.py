@@ -36,10 +36,10 @@ def test_the_seed_decides_about_the_front(only_seeded, name, task):
     assert exactly(one) == exactly(same)
     assert one.points != other.points
     assert_is_a_front(one)
-    assert (one.method, one.complete, len(one.history)) == (name, True, 4)
+    assert (one.record.method, len(one.history)) == (name, 4)
     # a population and a generation mean the same for all
     wanted = preset_of(name).swarms * 8 * 4
-    assert one.evaluations == wanted == preset_of(name).evaluations(8, 4)
+    assert one.record.evaluations == wanted == preset_of(name).evaluations(8, 4)
     steps = [entry.evaluations for entry in one.history]
     assert steps == [wanted // 4 * generation for generation in range(1, 5)]
 

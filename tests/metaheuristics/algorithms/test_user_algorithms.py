@@ -31,19 +31,20 @@ OTHER = pytest.mark.parametrize("name", OTHERS)
 def test_any_algorithm_of_pymoo(tmp_path, name):
     seen = []
     front = search(HALF, OTHERS[name](), bound=0.5, generations=5, seed=2, report=seen.append)
-    assert front.method == name
-    assert front.complete
+    assert front.record.method == name
     assert len(front.points) > 0
     assert_is_a_front(front)
-    assert front.evaluations >= 50  # pymoo's MOPSO-CD evaluates a second population at its start
-    assert seen[-1].evaluations == front.evaluations == front.history[-1].evaluations
+    assert (
+        front.record.evaluations >= 50
+    )  # pymoo's MOPSO-CD evaluates a second population at its start
+    assert seen[-1].evaluations == front.record.evaluations == front.history[-1].evaluations
     front.save(tmp_path / "front.json")
     assert Front.load(tmp_path / "front.json") == front
 
 
 def test_the_settings_of_any_algorithm_are_in_the_front():
     def settings(algorithm):
-        return dict(search(HALF, algorithm, bound=0.5, generations=2).settings)
+        return dict(search(HALF, algorithm, bound=0.5, generations=2).record.settings)
 
     found = settings(SMSEMOA(pop_size=12, n_offsprings=3, mutation=PM(eta=30)))
     assert (found["population"], found["offspring"]) == (12, 3)

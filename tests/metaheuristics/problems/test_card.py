@@ -6,7 +6,7 @@ import pytest
 from quietarm.metaheuristics import problem_of
 from quietarm.metaheuristics.problems.card import card_of
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, PointToPoint, weighted_front
+from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, PointToPoint, Record, weighted_front
 
 
 def front_of(points, coefficients=(0.1, 0.1)):
@@ -14,7 +14,7 @@ def front_of(points, coefficients=(0.1, 0.1)):
         task=PointToPoint(SingleLinkManipulator(), pi / 6, 0.8),
         profile=CycloidPolynomial(2),
         points=tuple(FrontPoint(coefficients, 1e-3 * r, energy) for r, energy in points),
-        method="by hand", settings={"bound": 0.2}, seed=None, reference=(0.01, 1.0),
+        record=Record("by hand", bound=0.2), reference=(0.01, 1.0),
     )  # fmt: skip
 
 

@@ -39,8 +39,8 @@ def test_a_problem_has_its_exact_fronts_in_files_of_its_own(name):
     assert [front.task for front in fronts] == list(problem.tasks().values())
     for front in fronts:
         assert front.profile == problem.profile
-        assert front.settings["bound"] == problem.bound
-        assert (front.method, front.complete, front.failures) == ("epsilon", True, ())
+        assert front.record.bound == problem.bound
+        assert (front.record.method, front.failures) == ("epsilon", ())
         assert len(front.points) >= 290
         check_figures(front, name)
 

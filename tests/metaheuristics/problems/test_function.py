@@ -74,7 +74,7 @@ def test_a_recording_takes_nothing_beyond_the_box_and_goes_on(value, words):
     one_line(caught)
     recorded([recorded.upper * (1 + 1e-12)])  # as scaling from another box leaves it
     found = recorded.front("mine")
-    assert found.evaluations == 4
+    assert found.record.evaluations == 4
     assert (np.abs(found.coefficients) <= 0.2).all()
     with pytest.raises(ValueError, match="seed is -1"):
         recorded.front("mine", seed=-1)

@@ -21,7 +21,7 @@ def test_the_document_s_examples_run_as_they_stand(tmp_path, monkeypatch, capsys
     for block in BLOCKS:
         if block not in (PLATYPUS, STEADY):
             exec(compile(block, str(DOCUMENT), "exec"), {})
-    assert Front.load("random.json").method == "random"
+    assert Front.load("random.json").record.method == "random"
     printed = capsys.readouterr().out.splitlines()
     assert any(float(line) > 0 for line in printed if re.fullmatch(r"[\d.]+", line))  # IGD+
     assert printed[-1] == "['nsga2', 'sampling']"
@@ -54,4 +54,4 @@ def test_a_steady_state_of_jmetal_searches_it_and_is_recorded(tmp_path, monkeypa
     assert len(found) > 2
     none_beats_the_exact_front(one.objectives for one in found)
     kept = json.loads((tmp_path / "steady-state.json").read_text())
-    assert kept["evaluations"] == 400  # each child is one
+    assert kept["record"]["evaluations"] == 400  # each child is one

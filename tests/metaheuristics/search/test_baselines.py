@@ -16,7 +16,7 @@ def test_a_baseline_keeps_what_none_of_its_candidates_dominates(method):
     settings = {"bound": 0.2, "population": 50, "seed": 3}
     short, long = (qa.search(TASK, method, generations=n, **settings) for n in (2, 8))
     assert_is_a_front(long)
-    assert (short.evaluations, long.evaluations) == (100, 400)
+    assert (short.record.evaluations, long.record.evaluations) == (100, 400)
     for point in short.points:  # the first generations of both are the same
         assert any(
             other.residual <= point.residual and other.energy <= point.energy
@@ -26,7 +26,7 @@ def test_a_baseline_keeps_what_none_of_its_candidates_dominates(method):
 
 def test_a_latin_hypercube_has_a_candidate_in_every_slice():
     (front,) = [qa.search(TASK, "lhs", bound=0.2, population=20, generations=1, seed=1)]
-    assert front.evaluations == 20
+    assert front.record.evaluations == 20
     rows = np.array([point.coefficients for point in front.points])
     slices = np.floor((rows + 0.2) / 0.4 * 20)  # McKay et al.: one of 20 in each, by coordinate
     for column in slices.T:
@@ -36,7 +36,7 @@ def test_a_latin_hypercube_has_a_candidate_in_every_slice():
 @pytest.mark.parametrize("method", ["vepso", "nsga2", "moead", "random"])
 def test_a_search_ends_exactly_at_its_evaluations(method):
     front = qa.search(TASK, method, bound=0.2, population=20, evaluations=130)
-    assert front.evaluations == front.history[-1].evaluations == 130
+    assert front.record.evaluations == front.history[-1].evaluations == 130
     whole = qa.search(TASK, method, bound=0.2, population=20, evaluations=120)
     assert whole.history[-1].hypervolume <= front.history[-1].hypervolume
 

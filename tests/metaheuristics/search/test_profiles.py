@@ -33,7 +33,7 @@ def test_a_search_stays_in_the_profiles_box_and_finds_what_it_says(kind, method,
     task, profile = TASKS[name], PROFILES[kind]
     found = search(task, method, profile=profile, population=20, generations=10, seed=1)
     assert found.profile == profile
-    assert found.settings["bound"] == profile.default_bound
+    assert found.record.bound == profile.default_bound
     lower, upper = profile.box(profile.default_bound)
     assert found.points
     for point in found.points:

@@ -38,13 +38,17 @@ def test_figures_are_those_of_the_finer_rollout_and_of_the_independent_integrato
 def test_provenance(method):
     front = found(method)
     assert (front.task, front.profile) == (TASKS[method], CycloidPolynomial(6))
-    assert (front.method, front.seed, front.complete) == (method, 0, True)
-    asked = {"bound": BOUNDS[method], "population": 20, "generations": 15}
-    assert asked.items() <= dict(front.settings).items()
+    assert (front.record.method, front.record.seed, front.record.bound) == (
+        method,
+        0,
+        BOUNDS[method],
+    )
+    asked = {"population": 20, "generations": 15}
+    assert asked.items() <= dict(front.record.settings).items()
     assert front.failed == 0
-    assert front.seconds > 0
+    assert front.record.seconds > 0
     # what a result depends on; 'versions: of what computed it'
-    assert {"quietarm", "casadi", "numpy", "python", "pymoo"} <= front.versions.keys()
+    assert {"quietarm", "casadi", "numpy", "python", "pymoo"} <= front.record.versions.keys()
 
 
 # -- seeds --

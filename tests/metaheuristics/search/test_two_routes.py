@@ -29,24 +29,24 @@ def less_searched(method, task):
 
 
 def assert_reaches(front, energy):
-    point = front.cheapest(PAPERS_RESIDUAL[front.method])
+    point = front.cheapest(PAPERS_RESIDUAL[front.record.method])
     assert point.energy <= energy
     motion = Candidate.of_profile(front.task, front.profile, point.coefficients).motion
     assert motion.energy <= energy * (1 + 1e-5)
-    assert motion.residual <= PAPERS_RESIDUAL[front.method] * (1 + 1e-3)
+    assert motion.residual <= PAPERS_RESIDUAL[front.record.method] * (1 + 1e-3)
 
 
 def test_vepso_reaches_the_papers_energy_with_the_papers_settings():
     task, energy = VEPSO_HARD
     front = search(task, "vepso", bound=PAPER_BOX[task.plant.name])
-    assert front.evaluations == 2 * 100 * 200  # section 3.1: particles, iterations
+    assert front.record.evaluations == 2 * 100 * 200  # section 3.1: particles, iterations
     assert_reaches(front, energy)
 
 
 @pytest.mark.parametrize(("task", "energy"), ARM_ROWS)
 def test_nsga2_reaches_the_papers_energy_with_a_sixteenth_of_its_budget(task, energy):
     front = less_searched("nsga2", task)
-    assert front.evaluations == 60 * 100
+    assert front.record.evaluations == 60 * 100
     assert_reaches(front, energy)
 
 
@@ -96,7 +96,7 @@ def _least_energies(front, points):
         beside = front.points[int(np.argmin(np.abs(front.residuals - point.residual)))]
         plan = plan_move(
             front.task, front.profile, residual_limit=point.residual,
-            bound=front.settings["bound"], starts=1, guess=beside.coefficients,
+            bound=front.record.bound, starts=1, guess=beside.coefficients,
         )  # fmt: skip
         energies.append(plan.energy)
     return np.array(energies)

@@ -19,7 +19,7 @@ def front(request):
 def test_the_other_solver_finds_no_other_energy(front):
     told = []
     both = cross_check(front, 3, lambda done, total: told.append((done, total)))
-    assert {both.solver, front.settings["solver"]} == {"sqp", "ipopt"}
+    assert {both.solver, front.record.settings["solver"]} == {"sqp", "ipopt"}
     assert told == [(1, 3), (2, 3), (3, 3)]
     residuals = [point.residual for point in both.points]
     assert (residuals[0], residuals[-1]) == (front.residuals[0], front.residuals[-1])
@@ -40,5 +40,5 @@ def test_a_point_that_is_too_dear_is_seen(front):
 
 
 def test_a_front_of_a_search_is_checked_by_ipopt(front):
-    searched = replace(front, settings={"bound": front.settings["bound"]}, points=front.points[-1:])
+    searched = replace(front, points=front.points[-1:]).restated(settings={})
     assert cross_check(searched).solver == "ipopt"

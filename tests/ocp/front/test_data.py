@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp import Candidate, CycloidPolynomial, Front
+from quietarm.ocp import Candidate, CycloidPolynomial, Front, Record
 
 ROWS = np.array([[0.0, 0.0], [0.003347, -0.1697], [0.02, 0.05], [-0.05, -0.2]])
 
@@ -17,7 +17,7 @@ def task(tasks):
 
 @pytest.fixture(scope="module")
 def given(task):
-    return Front.from_coefficients(task, ROWS, method="a swarm", settings={"bound": 0.2}, seed=3)
+    return Front.from_coefficients(task, ROWS, method="a swarm", bound=0.2, seed=3)
 
 
 def by_cvodes(task, rows):
@@ -37,9 +37,8 @@ def test_coefficients_become_a_front_of_those_that_none_beats(task, given):
     assert 1 < len(expected) < len(ROWS)
     found = [(p.coefficients, (p.residual, p.energy)) for p in given.points]
     assert found == expected
-    assert (given.method, given.seed, given.evaluations) == ("a swarm", 3, 4)
-    assert (given.failed, given.infeasible, given.complete) == (0, 0, True)
-    assert given.settings == {"bound": 0.2}
+    assert given.record == Record("a swarm", {}, 0.2, 3, 4)
+    assert (given.failed, given.infeasible) == (0, 0)
 
 
 def test_motions_that_break_a_limit_or_overflow_are_left_out_and_counted(task):
@@ -51,7 +50,7 @@ def test_motions_that_break_a_limit_or_overflow_are_left_out_and_counted(task):
     limited = replace(task, torque_limit=most)
     rows = [*ROWS, [1e300, 1e300]]
     front = Front.from_coefficients(limited, rows, method="mine")
-    assert (front.evaluations, front.infeasible, front.failed) == (5, 2, 1)
+    assert (front.record.evaluations, front.infeasible, front.failed) == (5, 2, 1)
     kept = {
         tuple(row) for row, torque in zip(ROWS, torques, strict=True) if torque < np.median(torques)
     }

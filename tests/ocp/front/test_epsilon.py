@@ -98,7 +98,7 @@ def test_there_is_a_point_at_every_residual_that_is_asked_for():
     assert {total for _, total in told} == {5}
     for residual in at[:3]:
         assert residual * (1 - 3e-4) < front.cheapest(residual).residual <= residual
-    assert tuple(map(float, front.settings["at"].split(", "))) == at  # to the last digit
+    assert tuple(map(float, front.record.settings["at"].split(", "))) == at  # to the last digit
 
 
 @pytest.mark.parametrize(

@@ -22,9 +22,8 @@ def rough():
         motion = qa.Candidate.of_profile(TASK, PROFILE, coefficients).motion
         points.append(qa.FrontPoint(tuple(coefficients.tolist()), motion.residual, motion.energy))
     return qa.Front(
-        task=TASK, profile=PROFILE, points=qa.non_dominated(points), method="random",
-        settings={"bound": BOUND, "population": 60}, seed=0, reference=(0.015, 0.25),
-        evaluations=60, seconds=1.0,
+        task=TASK, profile=PROFILE, points=qa.non_dominated(points), reference=(0.015, 0.25),
+        record=qa.Record("random", {"population": 60}, BOUND, 0, 60, seconds=1.0),
     )  # fmt: skip
 
 
@@ -58,4 +57,7 @@ def test_the_points_land_on_the_front(polish):
 def test_a_polished_front_says_by_what_it_was_found_and_polished():
     found = qa.epsilon_front(TASK, PROFILE, bound=BOUND, points=3, solver="ipopt")
     polished = qa.polish_front(found).front
-    assert (polished.settings["solver"], polished.settings["polish"]) == ("ipopt", "sqp")
+    assert (polished.record.settings["solver"], polished.record.settings["polish"]) == (
+        "ipopt",
+        "sqp",
+    )

@@ -21,14 +21,9 @@ def _front(points, **changes):
         "task": ARM,
         "profile": qa.CycloidPolynomial(2),
         "points": points,
-        "method": "nsga2",
-        "settings": {"bound": 0.5, "population": 20, "generations": None},
-        "seed": 3,
+        "record": qa.Record("nsga2", {"population": 20, "generations": None}, 0.5, 3, 60),
         "reference": (0.015, 0.25),
-        "evaluations": 60,
         "failed": 2,
-        "complete": False,
-        "seconds": 1.25,
         **changes,
     }
     return qa.Front(**content)
@@ -91,15 +86,14 @@ figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energ
     st.lists(st.tuples(figures, figures), max_size=6),
     st.integers(0, 2**63),
     st.floats(0, 1),
-    st.booleans(),
 )
-def test_a_front_comes_back_as_it_was(tmp_path_factory, figures, seed, share, complete):
+def test_a_front_comes_back_as_it_was(tmp_path_factory, figures, seed, share):
     path = tmp_path_factory.mktemp("front") / "front.json"
     history = (qa.Mark(20, share),)
     points = qa.non_dominated(_points(*figures))
-    front = _front(points, seed=seed, complete=complete, history=history)
+    front = _front(points, history=history).restated(seed=seed, seconds=1.25)
     front.save(path)
     assert qa.Front.load(path) == front
-    assert qa.Front.load(path).seconds == front.seconds
+    assert qa.Front.load(path).record.seconds == 1.25
     with pytest.raises(qa.FileFormatError, match="quietarm-front"):
         qa.Plan.load(path)

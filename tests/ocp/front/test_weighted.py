@@ -48,7 +48,7 @@ def test_given_weights_are_used():
     task, bound = CASES["arm"]
     front = qa.weighted_front(task, bound=bound, weights=[(1, 1), (1, 3), (0, 1), (2, 0)], starts=1)
     r, e = _scaled(front, front).T
-    assert front.settings["weights"] == "1:1, 1:3, 0:1, 2:0"
+    assert front.record.settings["weights"] == "1:1, 1:3, 0:1, 2:0"
     assert len(front.points) == 4  # the ends, and one for each pair without a 0
     middle = slice(1, -1)
     for of_residual, of_energy in ((1, 1), (1, 3)):

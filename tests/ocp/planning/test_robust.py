@@ -39,7 +39,7 @@ def residuals(plan, errors):
 
 
 def test_the_limit_holds_between_the_samples(plan):
-    limit = plan.provenance.settings.residual_limit
+    limit = plan.residual_limit
     assert plan.excess <= 0
     # none of these is a sample, or a point of the grid on which the worst was looked for
     errors = RANGE * np.array([-0.937, -0.613, -0.337, -0.113, 0.113, 0.187, 0.263, 0.613, 0.937])
@@ -60,7 +60,7 @@ def test_what_cannot_be_met_says_what_can(task):
 
 def test_ipopt_finds_the_same(task, plan):
     other = qa.plan_move(task, starts=1, solver="ipopt")
-    assert other.provenance.method == "ipopt"
+    assert other.record.method == "ipopt"
     assert other.excess <= plan_move.EXCESS
     assert other.energy == pytest.approx(plan.energy, rel=1e-2)
 

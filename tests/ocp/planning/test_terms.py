@@ -22,7 +22,7 @@ BEAM = PointToPoint(
 
 def test_within_limits_a_plan_takes_more_terms_and_says_what_six_cost():
     plan, six = plan_move(BEAM, starts=1), plan_move(BEAM, CycloidPolynomial(6), starts=1)
-    said = plan.provenance.search
+    said = plan.record.settings
     assert said["chosen_terms"] == plan.profile.size > 6
     assert said["energy_of_six_terms"] == pytest.approx(six.energy, rel=1e-4)
     # 0.0162 J is the floor of this move, and ZV over ruckig takes 0.0236 J: measured in issue 39
@@ -45,7 +45,7 @@ def test_many_moves_choose_as_one_does():
 def test_more_terms_are_faster():
     limited = PointToPoint(LINK.plant, LINK.target, 0.8, torque_limit=0.2)
     found = fastest_move(limited, tolerance=1e-2)
-    said = found.plan.provenance.search
+    said = found.plan.record.settings
     assert found.duration < 0.95 * said["duration_of_six_terms"]
     assert found.plan.residual < 1e-8
     assert found.plan.motion.peak_torque <= 0.2 * (1 + 1e-6)

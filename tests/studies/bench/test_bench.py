@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-from dataclasses import replace
 from math import comb
 
 import moocore
@@ -53,7 +52,7 @@ def test_a_job_is_a_file_and_is_not_done_again(jobs, folder, fronts, monkeypatch
     assert list(fronts) == jobs
     for job, front in fronts.items():
         assert qa.Front.load(folder / f"{job.name}.json") == front
-        assert front.settings["problem"] == NAME
+        assert front.record.settings["problem"] == NAME
     monkeypatch.setattr(Job, "run", lambda job: pytest.fail("it was done"))
     assert run_jobs(jobs, folder) == fronts == finished_jobs(jobs, folder)
 
@@ -65,7 +64,7 @@ def test_a_search_spends_its_budget_and_the_gradient_states_its_own(fronts):
             assert (last.evaluations, last.gradients, last.hessians) == (200, 0, 0)
         else:
             assert last.gradients > 0
-        assert front.seconds >= last.seconds > 0
+        assert front.record.seconds >= last.seconds > 0
 
 
 def test_measures_are_moocores_from_the_files_alone(fronts):
@@ -112,7 +111,7 @@ def test_a_recorded_run_has_the_figures_of_a_job(fronts):
     for _ in range(2):
         recorded(rng.uniform(recorded.lower, recorded.upper, (100, 2)))
     found = recorded.front("my tool", seed=7)
-    assert found.evaluations == 200
+    assert found.record.evaluations == 200
     assert all(abs(c) <= 0.2 for point in found.points for c in point.coefficients)
     last = found.points[-1]
     assert last.energy == qa.evaluate_coefficients(found.task, last.coefficients).energy
@@ -131,7 +130,7 @@ def test_a_function_of_ones_own_is_a_method_and_runs_in_workers(tmp_path):
             function(rng.uniform(function.lower, function.upper, (30, 2)))
 
     front = Job(NAME, halton, 1, budget=100).run()
-    assert (front.method, front.evaluations) == ("halton", 100)
+    assert (front.record.method, front.record.evaluations) == ("halton", 100)
     jobs = [Job(NAME, halton, seed, budget=60) for seed in (0, 1)]
     assert list(run_jobs(jobs, tmp_path, workers=2)) == jobs
 
@@ -168,7 +167,7 @@ def test_a_tool_with_many_runs_on_one_problem_leaves_the_others_ranked(fronts):
     names = [NAME, OTHERS[0], "dual-link-90deg-0.9s"]
     done = [(job.label, front) for job, front in fronts.items()]
     runs = [Run(qa.problem_of(name), *one) for name in names for one in done]
-    own = [replace(done[0][1], seed=seed) for seed in range(30)]
+    own = [done[0][1].restated(seed=seed) for seed in range(30)]
     results = Results([*runs, *(Run(qa.problem_of(NAME), "my tool", one) for one in own)])
     ranking = ranking_over(results)
     assert len(ranking.methods) == 4
@@ -255,7 +254,7 @@ def test_a_file_of_another_problem_is_refused(fronts, tmp_path):
     fronts[job].save(path)
     with pytest.raises(ValueError, match="is of another problem than single-link-30deg"):
         run_jobs([other], tmp_path)
-    old = replace(fronts[job], versions={**fronts[job].versions, "pymoo": "0.1"})
+    old = fronts[job].restated(versions={**fronts[job].record.versions, "pymoo": "0.1"})
     (tmp_path / f"{job.name}.json").parent.mkdir(parents=True)
     old.save(tmp_path / f"{job.name}.json")
     with pytest.raises(ValueError, match=r"by pymoo 0\.1, and here is"):

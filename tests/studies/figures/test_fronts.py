@@ -30,7 +30,7 @@ def test_each_front_is_drawn_point_by_point_and_named(fronts):
     for line, front in zip(left.lines, fronts, strict=True):
         np.testing.assert_allclose(line.get_xdata(), front.residuals * 1e3)
         np.testing.assert_array_equal(line.get_ydata(), front.energies)
-        assert line.get_label() == f"seed {front.seed}"
+        assert line.get_label() == f"seed {front.record.seed}"
         # the energy that a residual allows is that of the last point as still
         assert line.get_drawstyle() == "steps-post"
     assert left.get_legend() is not None

@@ -16,5 +16,5 @@ from quietarm.studies.registry.methods import (
 def test_a_gradients_front_and_its_polished_one_name_their_method(method):
     task = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
     front = method.sweep(task, CycloidPolynomial(2), bound=0.2, points=2, starts=1)
-    assert method_of(front.method) == method
-    assert method_of(polish_front(front).front.method) == method.then_polished()
+    assert method_of(front.record.method) == method
+    assert method_of(polish_front(front).front.record.method) == method.then_polished()

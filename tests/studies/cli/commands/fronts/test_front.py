@@ -34,7 +34,8 @@ def test_an_epsilon_front_is_shown_and_written(call):
     assert found == again
     assert "<svg" in Path("f.svg").read_text()
     lines = out.splitlines()
-    assert lines[0].startswith(f"epsilon: 9 points, {found.iterations} iterations of the solver ")
+    iterations = found.record.iterations
+    assert lines[0].startswith(f"epsilon: 9 points, {iterations} iterations of the solver ")
     assert lines[1].endswith(f"{found.smallest_residual().energy:.4g} J at rest")
     assert lines[5].split() == ["within", "1", "mm", f"{found.cheapest(1e-3).energy:.4g}", "J"]
     assert lines[7:] == ["wrote f.json", "wrote f.svg"]
@@ -52,7 +53,7 @@ def test_a_weighted_front_takes_the_weights_that_are_typed(call):
 def test_the_other_solver_checks_the_front(call):
     code, out, err = call(f"front {MOVE} --points 4 --bound 0.5 --check --quiet --output f.json")
     assert (code, err) == (0, "")
-    assert Front.load("f.json").settings["solver"] == "sqp"
+    assert Front.load("f.json").record.settings["solver"] == "sqp"
     (shares,) = re.findall(
         r"^checked by IPOPT, 7 points .* differ by (\S+) to (\S+) of their size$", out, re.MULTILINE
     )
@@ -82,7 +83,7 @@ def rough():
     task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, torque_limit=1.0)
     found = epsilon_front(task, CycloidPolynomial(2), bound=0.5, points=8, starts=1)
     points = tuple(replace(p, coefficients=(*p.coefficients, 0.0, 0.0)) for p in found.points)
-    return replace(found, profile=CycloidPolynomial(4), points=points, method="nsga2")
+    return replace(found, profile=CycloidPolynomial(4), points=points).restated(method="nsga2")
 
 
 def test_a_front_is_polished_shown_and_written(call, rough):
@@ -111,13 +112,13 @@ def one_doubled(document):
 
 
 def enormous(document):
-    document["settings"]["bound"] = None
+    document["record"]["bound"] = None
     for point in document["points"]:
         point["coefficients"] = [1e308] * 4
 
 
 def beyond_the_bound(document):
-    document["settings"]["bound"] = 0.01
+    document["record"]["bound"] = 0.01
 
 
 def beyond_a_limit(document):

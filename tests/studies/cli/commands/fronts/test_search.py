@@ -78,7 +78,7 @@ def test_workers_share_the_runs(folder):
     """The installed command: each worker starts by running its file."""
     ran = run(f"{SMALL} --quiet --runs 2 --workers 2 --output f.json")
     assert (ran.returncode, ran.stderr) == (0, "")
-    assert all(Front.load(f"f-seed{seed}.json").complete for seed in range(2))
+    assert all(Front.load(f"f-seed{seed}.json").points for seed in range(2))
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -130,8 +130,8 @@ def test_a_table_with_right_figures_becomes_a_front(call):
     assert (code, err) == (0, "")
     front = Front.load("f.json")
     assert_same(front)
-    assert (front.method, front.evaluations) == ("swarm", len(X))
-    assert dict(front.settings) == {"imported": "swarm.csv", "bound": 0.2}
+    assert (front.record.method, front.record.evaluations) == ("swarm", len(X))
+    assert (front.record.settings, front.record.bound) == ({"imported": "swarm.csv"}, 0.2)
     lines = out.splitlines()
     assert f"the file's residual is right for all {len(X)} motions" in lines
     assert f"the file's energy is right for all {len(X)} motions" in lines
@@ -148,7 +148,7 @@ def test_wrong_figures_are_told_and_do_not_enter_the_front(call):
     code, out, err = evaluate(call, "f.csv", "--evaluations 500")
     assert (code, err) == (0, "")
     assert_same(Front.load("f.json"))
-    assert Front.load("f.json").evaluations == 500
+    assert Front.load("f.json").record.evaluations == 500
     assert f"the file's energy is wrong for 1 of {len(X)} motions" in out
     assert f"the file's residual is wrong for {len(X)} of {len(X)} motions" in out
     assert "is it in mm? name the column residual_mm" in out

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from importlib import metadata
 
 import moocore
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics.quality import Reference
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, reference_corner
 from quietarm.ocp.front.points import LEVELS, evaluated
-from quietarm.ocp.record import Setting, versions
+from quietarm.ocp.record import Record, Setting, versions
 
 Array = NDArray[np.float64]
 _STEP = 10 ** (1 / 24)
@@ -20,7 +21,7 @@ MOST_POINTS = 100
 """Points of a search's front: as many as a population has, whatever archive a method keeps."""
 
 
-class Record:
+class Archive:
     """The feasible candidates that no other dominates, and marks on the way.
 
     Parameters
@@ -45,7 +46,7 @@ class Record:
 
     @property
     def seconds(self) -> float:
-        """Processor time since the beginning, without that of the record [s]."""
+        """Processor time since the beginning, without that of the archive [s]."""
         return time.thread_time() - self._began - self._own
 
     def non_dominated(self) -> tuple[Array, Array]:
@@ -84,7 +85,8 @@ class Record:
         profile: JointProfile,
         *,
         method: str,
-        settings: dict[str, Setting],
+        settings: Mapping[str, Setting],
+        bound: float,
         seed: int | None,
         failed: int = 0,
         infeasible: int = 0,
@@ -95,12 +97,12 @@ class Record:
             self.mark(searched)
         X, F = self.non_dominated()
         began = time.thread_time()
-        kept = evaluated(task, profile, X[spread(F, MOST_POINTS)], settings.get("bound"))
+        kept = evaluated(task, profile, X[spread(F, MOST_POINTS)], bound)
         return Front(
-            task, profile, kept.points, method, settings, seed, self.corner,
-            evaluations=self.evaluations, failed=failed, infeasible=infeasible,
-            history=tuple(self.marks), versions=search_versions(),
-            seconds=searched + time.thread_time() - began,
+            task, profile, kept.points,
+            Record(method, settings, bound, seed, self.evaluations, versions=search_versions(),
+                   seconds=searched + time.thread_time() - began),
+            self.corner, failed=failed, infeasible=infeasible, history=tuple(self.marks),
         )  # fmt: skip
 
 
