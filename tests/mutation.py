@@ -38,21 +38,27 @@ from cosmic_ray.mutating import mutate_code
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))  # this checkout's packages, also where quietarm is installed
+QUICK = [
+    f"ocp/simulation/test_{name}.py"
+    for name in ("free_vibration", "energy", "rollout", "closed_forms", "third_opinion", "jerk")
+]
+"""Those of the simulation that are done in seconds: the first that fails ends the tests."""
+SLOW = ["ocp/solvers/test_batch.py", "ocp/simulation/test_derivatives_of_the_rollout.py"]
 TESTS = {
     "models/plant.py": ["models", "ocp/test_task.py"],
     "models/single_link.py": ["models"],
     "models/dual_link.py": ["models"],
     "models/arm_on_flexible_link.py": ["models"],
-    "ocp/simulation/collocation.py": ["ocp/simulation", "ocp/solvers/test_batch.py"],
-    "ocp/simulation/objective.py": ["ocp/simulation", "ocp/solvers/test_batch.py"],
-    "ocp/profiles/joint_profile.py": ["ocp/profiles", "ocp/simulation"],
+    "ocp/simulation/collocation.py": [*QUICK, *SLOW],
+    "ocp/simulation/objective.py": [*QUICK, *SLOW],
+    "ocp/profiles/joint_profile.py": ["ocp/profiles", *QUICK],
     "ocp/profiles/cycloid.py": [
         "ocp/profiles/test_polynomial.py",
         "ocp/profiles/test_shaped_inputs.py",
     ],
-    "ocp/simulation/free_vibration.py": ["ocp/simulation", "ocp/planning/test_shaping.py"],
-    "ocp/simulation/rollout.py": ["ocp/simulation", "metaheuristics/objective/test_population.py"],
-    "ocp/candidate.py": ["ocp/simulation", "ocp/robustness/test_uncertain.py"],
+    "ocp/simulation/free_vibration.py": [*QUICK, "ocp/planning/test_shaping.py"],
+    "ocp/simulation/rollout.py": [*QUICK, "metaheuristics/objective/test_population.py", *SLOW],
+    "ocp/candidate.py": [*QUICK, "ocp/test_candidate.py", "ocp/robustness/test_uncertain.py"],
 }
 """The modules to change, and the tests that should notice."""
 
