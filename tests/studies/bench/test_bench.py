@@ -1,6 +1,8 @@
 """A bench: its jobs and files, its measures against moocore, and its tests against scipy."""
 
 import json
+import os
+import signal
 import subprocess
 import sys
 from math import comb
@@ -286,3 +288,21 @@ def test_workers_find_the_same_and_a_killed_run_goes_on(tmp_path):
     for name in files:
         one, two = (json.loads((tmp_path / which / name).read_text()) for which in ("one", "two"))
         assert one["points"] == two["points"]
+
+
+def test_a_killed_worker_loses_its_job_alone_and_the_job_is_done_again(tmp_path):
+    def deadly(function, seed, budget):
+        died = tmp_path / f"{seed}"
+        if seed == 1 and not died.exists():
+            died.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        rng = np.random.default_rng(seed)
+        function(rng.uniform(function.lower, function.upper, (budget, 2)))
+
+    jobs = [Job(NAME, deadly, seed, budget=40) for seed in range(4)]
+    killed = run_jobs(jobs, tmp_path / "killed", workers=2)
+    assert (tmp_path / "1").exists()
+    alone = run_jobs(jobs, tmp_path / "alone")
+    assert [killed[job].points for job in jobs] == [alone[job].points for job in jobs]
+    files = [sorted(p.name for p in (tmp_path / one).rglob("*.*")) for one in ("killed", "alone")]
+    assert files[0] == files[1]

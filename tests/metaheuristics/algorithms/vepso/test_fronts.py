@@ -29,12 +29,6 @@ def quality(F, true):
     return moocore.igd(F, ref=true), hypervolumes[0] / hypervolumes[1]
 
 
-def test_default_finds_the_whole_front_of_five_variables():
-    igd, hv = quality(*fronts("zdt2", 5, VEPSO(), 60))
-    assert igd < 2e-3
-    assert hv > 0.995
-
-
 @pytest.mark.parametrize(
     ("name", "iterations", "rule", "boundary", "largest_igd", "smallest_hv"),
     [

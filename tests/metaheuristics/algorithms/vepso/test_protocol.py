@@ -5,7 +5,6 @@ import dataclasses
 import numpy as np
 import pytest
 from pymoo.optimize import minimize
-from pymoo.problems import get_problem
 from quietarm.metaheuristics.algorithms.velocity import (
     CONSTRICTION,
     INERTIA_2002,
@@ -69,15 +68,3 @@ def test_exactly_swarms_times_particles_evaluations(n_obj):
     assert [len(X) for X in problem.X] == [n_obj * 7] * 9
     assert result.algorithm.evaluator.n_eval == n_obj * 7 * 9
     assert len(result.pop) == n_obj * 7
-
-
-def test_ask_and_tell_equals_minimize():
-    problem = get_problem("zdt1", n_var=5)
-    expected = minimize(problem, VEPSO(10), ("n_gen", 12), seed=3)
-    algorithm = VEPSO(10).setup(problem, termination=("n_gen", 12), seed=3)
-    while algorithm.has_next():
-        candidates = algorithm.ask()
-        candidates.set("F", problem.evaluate(candidates.get("X")))
-        algorithm.tell(infills=candidates)
-    assert np.array_equal(algorithm.result().X, expected.X)
-    assert np.array_equal(algorithm.result().F, expected.F)
