@@ -26,6 +26,8 @@ from quietarm.studies.report import Report
 
 SHOWN_TARGET = 0.1
 """Share of the hypervolume missing to which tables give the expected running time."""
+_TESTED = ("missing", "energy_1mm")
+"""Columns of the runs that pairs of methods are tested on."""
 _COST = ("evaluations", "gradients", "hessians", "seconds")
 
 
@@ -37,12 +39,17 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
     problems = [problem.name for problem in results.problems]
     ranking = ranking_over(results)
     runs = [list(map(len, values_on(results, name, "missing").values())) for name in problems]
-    pairs = pd.concat([pairs_on(results, one).assign(problem=one) for one in problems])
+    pairs = pd.concat([
+        pd.DataFrame({"problem": name, "measure": measure} | dict(pairs_on(results, name, measure)))
+        for name in problems for measure in _TESTED
+    ])  # fmt: skip
     tables = {
         "summary": summary_table(results),
         **{f"problem_{name}": problem_table(results, name) for name in problems},
         "runs": _with_labels(results.table, "method"),
-        "pairs": _with_labels(pairs.set_index("problem").reset_index(), "one", "other"),
+        "pairs": _with_labels(
+            pairs.set_index(["problem", "measure"]).reset_index(), "one", "other"
+        ),
         "running_times": _with_labels(results.running_times, "method"),
     }
     figures: Any = {
@@ -62,6 +69,8 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "label_of": label_of, "corner": CORNER, "accuracy": ACCURACY, "at_rest": 1e3 * AT_REST,
         "target": 100 * SHOWN_TARGET, "moves": len(moves_of(results.problems)),
         "verdicts": {name: verdict_on(results, name) for name in problems},
+        "on_energy": {name: verdict_on(results, name, "energy_1mm") for name in problems},
+        "energy_ranking": ranking_over(results, "energy_1mm"),
         "kruskal": {name: kruskal_on(results, name) for name in problems},
         "machine": f"{platform.machine()}, {platform.system()}",
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),

@@ -100,7 +100,10 @@ def _mann_whitney(mine: Array, theirs: Array) -> tuple[float, float]:
     """Effect size and p value of two samples."""
     both = np.nan_to_num(np.concatenate([mine, theirs]), nan=np.inf)
     exact = len(set(both.tolist())) == len(both) and max(len(mine), len(theirs)) <= _EXACT
-    first, second = np.split(stats.rankdata(both), [len(mine)])  # ranks: the test may refuse inf
+    ranks = stats.rankdata(both)  # the test may refuse infinities
+    if np.ptp(ranks) == 0:  # nor does it know what is all alike
+        return 0.5, 1.0
+    first, second = np.split(ranks, [len(mine)])
     found = stats.mannwhitneyu(first, second, method="exact" if exact else "asymptotic")
     return 1 - float(found.statistic) / (len(mine) * len(theirs)), float(found.pvalue)
 
@@ -201,6 +204,8 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
     pairs = comb(len(values), 2)
     medians = {name: quartiles(own)[1] for name, own in values.items()}
     best = min(medians, key=lambda name: medians[name])
+    if not np.isfinite(medians[best]):
+        return "no method has such a motion in the median"
     if attainable_p(runs, max(map(len, values.values())), pairs) >= ALPHA:
         return f"no verdict: {say_power(runs, len(values))}"
     table = pairs_on(results, problem, column).query("p_holm >= @ALPHA")

@@ -9,6 +9,7 @@ from math import comb
 
 import moocore
 import numpy as np
+import pandas as pd
 import pytest
 from quietarm.metaheuristics import Job, finished_jobs, run_jobs
 from quietarm.metaheuristics.objective.population import ACCURACY
@@ -158,6 +159,13 @@ def test_tests_are_exact_and_no_verdict_is_given_without_power(fronts):
     assert "no verdict: with 3 runs" in verdict_on(few, NAME)
 
 
+def test_of_motions_that_nobody_found_there_is_no_verdict(fronts):
+    far = [(job.label, replace(front, points=front.points[-1:])) for job, front in fronts.items()]
+    results = Results([Run(qa.problem_of(NAME), *one) for one in far])
+    assert set(pairs_on(results, NAME, "energy_1mm")["p"]) == {1.0}
+    assert verdict_on(results, NAME, "energy_1mm") == "no method has such a motion in the median"
+
+
 def test_problems_of_one_move_count_once():
     groups = moves_of([qa.problem_of(name) for name in (NAME, *OTHERS)])
     assert sorted(len(group) for group in groups) == [1, 2]
@@ -217,6 +225,10 @@ def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
     assert (tmp_path / "curves.png").stat().st_size > 10_000
     text = (tmp_path / "report.md").read_text()
     assert "5 runs of each of 4 methods (6 pairs)" in text
+    assert "By energy within 1 mm: epsilon-constraint, SQP (points=8) ends nearest" in text
+    pairs = pd.read_csv(tmp_path / "pairs.csv")
+    assert pairs["measure"].value_counts().to_dict() == {"missing": 6, "energy_1mm": 6}
+    assert pairs[["effect", "p", "p_holm"]].stack().between(0, 1).all()
     table = problem_table(results, NAME)
     assert table["missing [%]"].is_monotonic_increasing
     assert table["method"].iloc[-1] == "random search"

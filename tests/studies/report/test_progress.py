@@ -16,19 +16,3 @@ def test_elsewhere_than_on_a_terminal_every_piece_is_one_plain_line():
         for name in ("arm, N = 2", "[bold]arm[/bold]", "arm, N = 6"):
             begin(name)
     assert pipe.file.getvalue() == "[1/3] arm, N = 2\n[2/3] [bold]arm[/bold]\n[3/3] arm, N = 6\n"
-
-
-def test_a_terminal_shows_a_bar_that_counts_finished_pieces_and_goes_away():
-    terminal = console(force_terminal=True)
-    with progress(2, terminal) as begin:
-        begin("first")
-        begin("second [x]")
-    text = terminal.file.getvalue()
-    assert "\x1b[" in text  # drawn in place
-    assert "1/2" in text
-    assert "second [x]" in text
-    assert "2/2" not in text  # the second was begun, never reported as finished
-    assert text.endswith("\x1b[2K")  # the last line is erased
-
-
-# Many small pieces
