@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics.quality import CORNER, objectives, within
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
-from quietarm.ocp.checks import not_negative, positive
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.saved import plain
 from quietarm.studies.compare.staircase import best_of, evenly_spaced, filled
@@ -168,8 +167,6 @@ def compare_fronts(
     names = names or [f"front {i}" for i in range(1, len(fronts) + 1)]
     if not fronts or len(names) != len(fronts):
         raise ValueError(f"{len(fronts)} fronts have {len(names)} names; give each front a name")
-    levels = [positive("level", level, "m") for level in levels]
-    floor = None if floor is None else not_negative("floor", floor, "J")
     given = [*fronts, *([reference] if reference else [])]
     _refuse(given, [*names, reference_name][: len(given)], len(fronts))
     found = [objectives(front) for front in fronts]

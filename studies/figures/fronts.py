@@ -43,8 +43,8 @@ def draw_fronts(
     Parameters
     ----------
     fronts : sequence of Front
-        Of one task, by any methods. Those that were interrupted are drawn dashed; residual limits
-        that failed are crosses, and ranges that no weight reaches are grey.
+        Of one task, by any methods. Residual limits that failed are crosses, and ranges that no
+        weight reaches are grey.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
     labels : sequence of str, optional
@@ -56,7 +56,7 @@ def draw_fronts(
     Returns
     -------
     matplotlib.axes.Axes
-        The axes, with a legend where there are a few fronts; of one front the knee is marked.
+        The axes, with a legend where there are a few fronts.
     """
     ax = axes_or_new(ax)
     for i, (front, name) in enumerate(zip(fronts, labels or _names(fronts), strict=True)):
@@ -71,7 +71,7 @@ def draw_fronts(
             np.insert(np.maximum(front.residuals, REST), places, np.nan),  # rest has no logarithm
             np.insert(front.energies, places, np.nan),
             exact=method_of(front.record.method).kind is Kind.GRADIENT, color=own.colour,
-            marker=own.mark, linestyle="-", markersize=3, alpha=0.8, label=name,
+            marker=own.mark, markersize=3, alpha=0.8, label=name,
         )  # fmt: skip
         limits = [1e3 * one.asked.get(RESIDUAL_LIMIT, np.nan) for one in front.failures]
         if limits:  # weights have no residual
@@ -79,16 +79,11 @@ def draw_fronts(
                 limits, np.full(len(limits), 0.03), "x", color=RED,
                 transform=ax.get_xaxis_transform(), label=f"{len(limits)} not found",
             )  # fmt: skip
-    if len(fronts) == 1 and len(fronts[0].points) > 2:
-        knee = fronts[0].knee()
-        label = f"knee: {knee.energy:.4g} J at {millimetres(knee.residual)}"
-        ax.plot(1e3 * max(knee.residual, REST), knee.energy, "o", color=BLUE, fillstyle="none",
-                label=label)  # fmt: skip
     if not linear:
         every = [max(point.residual, REST) for front in fronts for point in front.points]
         logarithmic(ax, every, least_span=_LOGARITHMIC_FROM)
     name_objectives(ax)
-    if len(fronts) <= _MOST_NAMED:
+    if 1 < len(fronts) <= _MOST_NAMED:
         ax.legend(fontsize=8)
     return ax
 
@@ -181,14 +176,14 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     Parameters
     ----------
     fronts : sequence of Front
-        One for every seed. Those of interrupted searches are drawn dashed, and count in no
-        quartile.
+        One for every seed.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Energy against residual; of searches the median hypervolume with its quartiles against
-        candidates; for several seeds also the least energy of each within 1 mm.
+        Energy against residual, of a single front with its knee; of searches the median
+        hypervolume with its quartiles against candidates; for several seeds also the least energy
+        of each within 1 mm.
     """
     method = method_of(fronts[0].record.method)
     gradient = method.kind is Kind.GRADIENT
@@ -197,6 +192,12 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     title = f"{method.label}: {title_of(fronts[0].task)}"
     figure, axes = side_by_side(panels, title, width=4.2 if panels > 1 else 6.4)
     draw_fronts(fronts, axes[0], linear=gradient)
+    if len(fronts) == 1 and len(fronts[0].points) > 2:
+        knee = fronts[0].knee()
+        label = f"knee: {knee.energy:.4g} J at {millimetres(knee.residual)}"
+        axes[0].plot(1e3 * max(knee.residual, REST), knee.energy, "o", color=BLUE,
+                     fillstyle="none", label=label)  # fmt: skip
+        axes[0].legend(fontsize=8)
     for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:], strict=False):
         draw(fronts, ax)
     return figure

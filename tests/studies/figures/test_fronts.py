@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from quietarm.ocp import Mark
+from quietarm.ocp import FailedPoint, Mark
 from quietarm.studies.figures import front_figure
 
 
@@ -34,6 +34,19 @@ def test_each_front_is_drawn_point_by_point_and_named(fronts):
         # the energy that a residual allows is that of the last point as still
         assert line.get_drawstyle() == "steps-post"
     assert left.get_legend() is not None
+
+
+def test_of_one_front_the_knee_is_named_and_what_failed_is_counted(front_of):
+    points, failed = [(0, 0.9), (1, 0.4), (9, 0.3)], FailedPoint({"residual_limit": 5e-3}, "none")
+    front = front_of(points, "epsilon", seed=None, failures=(failed,), gaps=((2e-3, 6e-3),))
+    (panel,) = front_figure([front]).axes
+    names = [text.get_text() for text in panel.get_legend().get_texts()]
+    assert names == [
+        "no weight reaches these", "epsilon constraint", "1 not found", "knee: 0.4 J at 1 mm"
+    ]  # fmt: skip
+    line = panel.lines[0]
+    assert line.get_drawstyle() == "default"
+    assert np.isnan(line.get_xdata()).tolist() == [False, False, True, False]  # none over the gap
 
 
 def test_the_hypervolume_is_drawn_with_its_quartiles(fronts):
