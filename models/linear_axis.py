@@ -63,6 +63,12 @@ class LinearAxis(Plant):
         """How many modal amplitudes it has."""
         return int(self.mode_count)
 
+    @property
+    def measured(self) -> dict[str, float]:
+        """The parameters that may be wrong by a share: of one mode, not those of the second."""
+        known = super().measured
+        return {name: v for name, v in known.items() if self.modes == 2 or not name.endswith("2")}
+
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """Accelerations of the load by each mode, seen from the carriage [m/s^2]."""
         modes = (
