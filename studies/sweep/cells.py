@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from quietarm.ocp import (
     InfeasibleTaskError,
     PointToPoint,
@@ -22,8 +21,8 @@ from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.robustness.perturbed import sensitivities_of_moves
 from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
 
-Columns = dict[str, NDArray[Any]]
-"""Variables by name, a row a cell; NaN where a cell has no plan."""
+Row = dict[str, Any]
+"""What is known of a cell: its variables by name; without a plan its status alone."""
 _CHECKED, _COLD_STARTS = 10, 4
 """One cell in so many, at random, is planned from so many starts of its own as well."""
 _ABOVE = 1e-4
@@ -31,132 +30,117 @@ _ABOVE = 1e-4
 
 
 @one_at_a_time
-def plan_chunk(definition: Definition, number: int) -> Columns:
-    """The variables of a chunk; its moves are planned together as far as they have one plant."""
-    tasks = definition.tasks(number)
-    groups = [list(each) for _, each in groupby(tasks, key=lambda task: task.plant)]
-    each = [_plan_group(definition, group, number) for group in groups]
-    return {name: np.concatenate([columns[name] for columns in each]) for name in each[0]}
-
-
-def _plan_group(definition: Definition, tasks: list[PointToPoint], seed: int) -> Columns:
-    """The variables of moves of one plant."""
-    columns = _plan_checked(definition, tasks, seed)
-    solved = np.flatnonzero(np.isfinite(columns["energy"]))
-    if len(solved):
-        some = [tasks[k] for k in solved]
-        changes = sensitivities_of_moves(some, definition.profile, columns[COEFFICIENTS][solved])
-        for name, (energy, residual) in changes.items():
-            columns[f"energy_by_{name}"][solved] = energy
-            columns[f"residual_by_{name}"][solved] = residual
-    for k in solved.tolist() if definition.front else ():
-        _add_front(definition, tasks[k], columns, k)
-    return columns
-
-
-def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) -> Columns:
-    """Plans from neighbours, and of a tenth the excess over cold plans; the cheaper ones stay."""
-    columns = _plan(definition, tasks, definition.settings.starts)
-    solved = np.flatnonzero(np.isfinite(columns["energy"]))
-    if not len(solved):
-        return columns
-    random = np.random.default_rng(seed)
-    checked = random.choice(solved, -(-len(solved) // _CHECKED), replace=False)
-    cold = _plan(definition, [tasks[k] for k in checked], _COLD_STARTS)["energy"]
-    if (columns["energy"][checked] > (1 + _ABOVE) * cold).any():
-        others = _plan(definition, tasks, _COLD_STARTS)
-        cheaper = others["energy"] < columns["energy"]
-        cheaper |= np.isnan(columns["energy"])
-        for name, values in others.items():
-            columns[name][cheaper] = values[cheaper]
-    columns["cold_excess"][checked] = columns["energy"][checked] / cold - 1
-    return columns
+def plan_chunk(definition: Definition, number: int) -> tuple[int, list[Row]]:
+    """The number of a chunk, and its cells; those of one plant are planned together."""
+    tasks = definition.planned.tasks(definition.chunks[number])
+    rows = list[Row]()
+    for group in _by_plant(tasks):
+        found = _plan_checked(definition, group, number)
+        _add_sensitivities(definition, group, found)
+        rows += found
+    for task, row in zip(tasks, rows, strict=True) if definition.front else ():
+        if "energy" in row:
+            row |= _front_of(definition, task)
+    return number, rows
 
 
 def plan_energies(
-    definition: Definition, tasks: Sequence[PointToPoint], starts: int
-) -> NDArray[np.float64]:
-    """Energies of the plans of moves, whatever their plants; NaN where one has no plan."""
-    energies = np.full(len(tasks), np.nan)
-    for plant in {task.plant for task in tasks}:
-        places = [k for k, task in enumerate(tasks) if task.plant == plant]
-        columns = _plan(definition, [tasks[k] for k in places], starts)
-        energies[places] = columns["energy"]
-    return energies
+    definition: Definition, tasks: Iterable[PointToPoint], starts: int
+) -> list[float]:
+    """Energies of the plans of moves; NaN where one has no plan."""
+    rows = [row for group in _by_plant(tasks) for row in _plan(definition, group, starts)]
+    return [row.get("energy", np.nan) for row in rows]
 
 
-def _plan(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Columns:
-    plan = _plan_robust if tasks[0].ranges else _plan_certain
-    return plan(definition, tasks, starts)
+def _by_plant(tasks: Iterable[PointToPoint]) -> Iterator[list[PointToPoint]]:
+    return (list(group) for _, group in groupby(tasks, key=lambda task: task.plant))
 
 
-def _empty(definition: Definition, cells: int) -> Columns:
-    columns = {
-        name: np.full([cells, *(size for _, size in variable.beside)], np.nan)
-        for name, variable in definition.variables.items()
-    }
-    return columns | {STATUS: np.zeros(cells, np.int8)}
+def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) -> list[Row]:
+    """Plans from neighbours, and of a tenth the excess over cold plans; the cheaper ones stay."""
+    rows = _plan(definition, tasks, definition.settings.starts)
+    solved = [k for k, row in enumerate(rows) if "energy" in row]
+    if not solved:
+        return rows
+    random = np.random.default_rng(seed)
+    checked = random.choice(solved, -(-len(solved) // _CHECKED), replace=False).tolist()
+    cold = dict(
+        zip(
+            checked,
+            plan_energies(definition, [tasks[k] for k in checked], _COLD_STARTS),
+            strict=True,
+        )
+    )
+    if any(rows[k]["energy"] > (1 + _ABOVE) * energy for k, energy in cold.items()):
+        others = _plan(definition, tasks, _COLD_STARTS)
+        rows = [min(both, key=lambda row: row.get("energy", np.inf))
+                for both in zip(rows, others, strict=True)]  # fmt: skip
+    for k, energy in cold.items():
+        rows[k]["cold_excess"] = rows[k]["energy"] / energy - 1
+    return rows
 
 
-def _number_of(status: SolveStatus) -> int:
-    return STATES.index(status.value)
+def _add_sensitivities(definition: Definition, tasks: list[PointToPoint], rows: list[Row]) -> None:
+    solved = [k for k, row in enumerate(rows) if "energy" in row]
+    if not solved:
+        return
+    coefficients = np.array([rows[k][COEFFICIENTS] for k in solved])
+    some = [tasks[k] for k in solved]
+    changes = sensitivities_of_moves(some, definition.profile, coefficients)
+    for name, of_name in changes.items():
+        for k, energy, residual in zip(solved, *of_name, strict=True):
+            rows[k] |= {f"energy_by_{name}": energy, f"residual_by_{name}": residual}
 
 
-def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Columns:
+def _plan(definition: Definition, tasks: list[PointToPoint], starts: int) -> list[Row]:
+    """Plans of moves of one plant."""
+    return [*(_plan_robust if tasks[0].ranges else _plan_certain)(definition, tasks, starts)]
+
+
+def _plan_certain(definition: Definition, tasks: list[PointToPoint], starts: int) -> Iterator[Row]:
     """Plans of certain plants, all at once."""
-    settings, columns = definition.settings, _empty(definition, len(tasks))
-    moves = plan_moves(
-        tasks, definition.profile, residual_limit=settings.residual_limit, bound=settings.bound,
-        starts=starts, seed=settings.seed, solver=settings.solver,
-    )  # fmt: skip
-    columns[STATUS][:] = [_number_of(status) for status in moves.status]
-    solved = np.isfinite(moves.energy)
-    peaks = {f"peak_{name}": values for name, values in moves.peaks.items()}
-    for name, values in {
-        "energy": moves.energy, "residual": moves.residual, "iterations": moves.iterations,
-        COEFFICIENTS: moves.coefficients, **peaks,
-    }.items():  # fmt: skip
-        columns[name][solved] = values[solved]
-    for k, prices in enumerate(moves.shadow_prices):
-        for name, price in prices.items() if solved[k] else ():
-            columns[f"price_{name}"][k] = price
-    return columns
+    least, bound = definition.settings.residual_limit, definition.settings.bound
+    moves = plan_moves(tasks, definition.profile, residual_limit=least, bound=bound, starts=starts)
+    for k, status in enumerate(moves.status):
+        row: Row = {STATUS: STATES.index(status.value)}
+        if np.isfinite(moves.energy[k]):
+            for name in ("energy", "residual", "iterations", COEFFICIENTS):
+                row[name] = getattr(moves, name)[k]
+            row |= {f"peak_{name}": values[k] for name, values in moves.peaks.items()}
+            row |= {f"price_{name}": price for name, price in moves.shadow_prices[k].items()}
+        yield row
 
 
-def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Columns:
+def _plan_robust(definition: Definition, tasks: list[PointToPoint], starts: int) -> Iterator[Row]:
     """Plans of uncertain plants one after another, each from the last one's coefficients."""
-    settings, columns, guess = definition.settings, _empty(definition, len(tasks)), None
-    for k, task in enumerate(tasks):
+    least, bound = definition.settings.residual_limit or None, definition.settings.bound
+    guess = None
+    for task in tasks:
         try:
             plan = plan_move(
-                task, definition.profile, residual_limit=settings.residual_limit or None,
-                bound=settings.bound, starts=starts, seed=settings.seed, solver=settings.solver,
+                task, definition.profile, residual_limit=least, bound=bound, starts=starts,
                 guess=guess if starts == 1 else None,
             )  # fmt: skip
         except QuietarmError as error:
             infeasible = isinstance(error, InfeasibleTaskError)
             status = SolveStatus.INFEASIBLE if infeasible else SolveStatus.ITERATION_LIMIT
-            columns[STATUS][k] = _number_of(status)
+            yield {STATUS: STATES.index(status.value)}
             continue
-        guess = np.array(plan.coefficients)
-        columns[STATUS][k], columns[COEFFICIENTS][k] = _number_of(plan.status), guess
-        columns["energy"][k], columns["residual"][k] = plan.energy, plan.residual
-        for name, quantity in QUANTITIES.items():
-            columns[quantity.peak][k] = plan.motion.peak(name)
-    return columns
+        guess = plan.coefficients
+        peaks = {quantity.peak: plan.motion.peak(name) for name, quantity in QUANTITIES.items()}
+        yield {STATUS: STATES.index(plan.status.value), COEFFICIENTS: guess,
+               "energy": plan.energy, "residual": plan.residual, **peaks}  # fmt: skip
 
 
-def _add_front(definition: Definition, task: PointToPoint, columns: Columns, k: int) -> None:
-    """Fill in the front of a move, as far as it has points; one without a range has none."""
-    settings = definition.settings
+def _front_of(definition: Definition, task: PointToPoint) -> Row:
+    """The front of a move, as far as it has points; one without a range has none."""
+    settings, points = definition.settings, definition.front
     try:
         front = epsilon_front(
-            task, definition.profile, bound=settings.bound, points=definition.front,
-            starts=max(settings.starts, 2), seed=settings.seed, solver=settings.solver,
+            task, definition.profile, bound=settings.bound, points=points,
+            starts=max(settings.starts, 2),
         )  # fmt: skip
     except QuietarmError:
-        return
-    for i, point in enumerate(front.points):
-        columns["front_residual"][k, i] = point.residual
-        columns["front_energy"][k, i] = point.energy
-        columns["front_coefficients"][k, i] = point.coefficients
+        return {}
+    names = ("residual", "energy", COEFFICIENTS)
+    return {f"front_{name}": [getattr(point, name) for point in front.points] for name in names}

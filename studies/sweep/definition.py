@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from itertools import product
+from typing import Any, NamedTuple
 
-from quietarm.ocp import PointToPoint, SolveSettings, SolveStatus
+import numpy as np
+from quietarm.ocp import SolveSettings, SolveStatus
 from quietarm.ocp.checks import positive
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import RESIDUAL, quantities_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness.perturbed import OF_MODES
-from quietarm.ocp.saved import plain, typed
-from quietarm.ocp.solvers.transcription import RESIDUAL
-from quietarm.studies.sweep.grid import Axis, Grid
+from quietarm.studies.sweep.grid import Grid
 
 STATUS, COEFFICIENTS, JUMP = "status", "coefficients", "jump"
 STATES = ("not computed", *(status.value for status in SolveStatus))
@@ -23,12 +25,13 @@ _WORK_OF_ROBUST = _WORK_OF_FRONT = 32
 _MOST_MARGIN = 0.5
 
 
-@dataclass(frozen=True)
-class Variable:
-    """A variable of the dataset: its unit, and its dimensions beside the axes with their sizes."""
+class Variable(NamedTuple):
+    """A variable of the dataset: its dimensions beside the axes, and what it is of no plan."""
 
     unit: str
-    beside: tuple[tuple[str, int], ...] = ()
+    beside: Mapping[str, int] = {}
+    empty: Any = np.nan
+    attributes: Mapping[str, Any] = {}
 
 
 @dataclass(frozen=True)
@@ -65,62 +68,78 @@ class Definition:
             positive("limit margin", self.margin, most=_MOST_MARGIN)
             if not self.grid.task.limits:
                 raise ValueError("the limit margin is of limits, and none is given; give one")
-        work = (_WORK_OF_ROBUST if self.grid.task.ranges else 1) * (
-            _WORK_OF_FRONT if self.front else 1
-        )
-        at_once = max(1, _CELLS_OF_A_CHUNK // work)
-        object.__setattr__(self, "grid", replace(self.grid, at_once=at_once))
 
-    def tasks(self, number: int) -> list[PointToPoint]:
-        """The moves of a chunk as they are planned: their limits less the margin."""
-        share, of = 1 - self.margin, self.grid.task
+    @cached_property
+    def chunk(self) -> tuple[int, ...]:
+        """Cells of a chunk along each axis; along one that is cut, chunks are alike."""
+        work = _WORK_OF_ROBUST if self.grid.task.ranges else 1
+        work *= _WORK_OF_FRONT if self.front else 1
+        sizes, room = list[int](), max(1, _CELLS_OF_A_CHUNK // work)
+        for length in reversed(self.grid.shape):
+            parts = -(-length // max(1, room))
+            sizes.append(-(-length // parts))
+            room //= sizes[-1]
+        return tuple(reversed(sizes))
+
+    @cached_property
+    def chunks(self) -> list[tuple[slice, ...]]:
+        """The cells of every chunk."""
+        return [*product(*(
+            [slice(first, min(first + size, length)) for first in range(0, length, size)]
+            for size, length in zip(self.chunk, self.grid.shape, strict=True)
+        ))]  # fmt: skip
+
+    @cached_property
+    def planned(self) -> Grid:
+        """The moves as they are planned: their limits less the margin."""
+        share, task = 1 - self.margin, self.grid.task
         limits: dict[str, Any] = {
-            quantity.limit: tuple(share * one for one in given)
-            if isinstance(given, tuple)
-            else share * given
-            for quantity in QUANTITIES.values()
-            if (given := getattr(of, quantity.limit)) is not None
+            one.quantity.limit: (share * one.lower, share * one.upper)
+            for one in task.limits
+            if hasattr(task, one.quantity.limit)
         }
-        if of.torque_speed is not None:
-            limits["torque_speed"] = tuple((share * torque, at) for torque, at in of.torque_speed)
-        return [replace(task, **limits) for task in self.grid.tasks(self.grid.chunks[number])]
+        if task.torque_speed is not None:
+            limits["torque_speed"] = tuple((share * torque, at) for torque, at in task.torque_speed)
+        return replace(self.grid, task=replace(task, **limits)) if self.margin else self.grid
 
     @property
     def variables(self) -> dict[str, Variable]:
-        """The numbers of every cell by name; `status` and `jump` are apart."""
-        units = {"energy": "J", "residual": "m"}
-        units |= {f"peak_{name}": quantity.unit for name, quantity in QUANTITIES.items()}
-        units[f"price_{RESIDUAL}"] = "J/m"
-        limits = self.grid.task.limits
-        units |= {f"price_{one.name}": f"J/({one.quantity.unit or '1'})" for one in limits}
+        """The dataset's variables by name."""
+        task = self.grid.task
+        units = {"energy": "J", "residual": "m", f"price_{RESIDUAL}": "J/m"}
+        units |= {one.peak: one.unit for one in quantities_of(task.plant.joint).values()}
+        units |= {f"price_{one.name}": f"J/({one.quantity.unit or '1'})" for one in task.limits}
         units |= {f"energy_by_{name}": "J" for name in OF_MODES}
         units |= {f"residual_by_{name}": "m" for name in OF_MODES}
         units |= {"iterations": "1", "cold_excess": "1"}
-        variables = {name: Variable(unit) for name, unit in units.items()}
-        of_profile = ("coefficient", self.profile.size)
-        variables[COEFFICIENTS] = Variable("1", (of_profile,))
+        of_profile = {"coefficient": self.profile.size}
+        states = {
+            "flag_values": [*range(len(STATES))],
+            "flag_meanings": " ".join(state.replace(" ", "_") for state in STATES),
+        }
+        jumps = {
+            "flag_masks": [1 << k for k in range(len(self.grid.axes))],
+            "flag_meanings": " ".join(f"to_the_next_{name}" for name in self.grid.names),
+        }
+        variables = {name: Variable(unit) for name, unit in units.items()} | {
+            COEFFICIENTS: Variable("1", of_profile),
+            STATUS: Variable("1", {}, np.int8(0), states),
+            JUMP: Variable("1", {}, np.int32(0), jumps),
+        }
         if self.front:
-            point = ("point", self.front)
-            variables["front_residual"] = Variable("m", (point,))
-            variables["front_energy"] = Variable("J", (point,))
-            variables["front_coefficients"] = Variable("1", (point, of_profile))
+            point = {"point": self.front}
+            variables["front_residual"] = Variable("m", point)
+            variables["front_energy"] = Variable("J", point)
+            variables["front_coefficients"] = Variable("1", point | of_profile)
         return variables
 
-    def to_json(self) -> dict[str, Any]:
-        """What makes two sweeps the same, in numbers and text."""
-        axes = {axis.name: [axis.unit, *axis.values] for axis in self.grid.axes}
-        return {
-            "axes": axes, "task": plain(self.grid.task), "profile": plain(self.profile),
-            "settings": {**plain(self.settings), "front": self.front, "margin": self.margin},
-        }  # fmt: skip
+    def difference(self, other: Definition) -> str:
+        """Names of all in which two sweeps differ."""
+        mine, others = self._entries(), other._entries()
+        return ", ".join(name for name in mine | others if mine.get(name) != others.get(name))
 
-    @classmethod
-    def from_json(cls, saved: dict[str, Any]) -> Definition:
-        """The definition of what `to_json` gave."""
-        axes = (Axis(name, tuple(values), unit) for name, (unit, *values) in saved["axes"].items())
-        settings = dict(saved["settings"])
-        front, margin = settings.pop("front"), settings.pop("margin")
-        return cls(
-            Grid(typed(saved["task"], PointToPoint), tuple(axes)),
-            typed(saved["profile"], JointProfile), typed(settings, SolveSettings), front, margin,
-        )  # fmt: skip
+    def _entries(self) -> dict[str, Any]:
+        of = self, self.settings, self.grid.task
+        entries = {entry.name: getattr(one, entry.name) for one in of for entry in fields(one)}
+        del entries["grid"], entries["settings"]
+        return entries | {axis.name: axis for axis in self.grid.axes}

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
+from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint
 
 OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
@@ -18,11 +19,14 @@ _WHOLE_STEPS = 1e-6
 
 @dataclass(frozen=True)
 class Axis:
-    """Values of one quantity."""
+    """Values of one quantity, which are made to rise."""
 
     name: str
     values: tuple[float, ...]
     unit: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", tuple(sorted(map(float, self.values))))
 
 
 def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
@@ -51,23 +55,27 @@ def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class Grid:
-    """The cells of several axes, in the order of their last axis first; some at once are a chunk.
+    """The moves of several axes, in C order.
 
     Parameters of the plant come before the quantities of the move: chunks then have few plants.
     """
 
     task: PointToPoint
     axes: tuple[Axis, ...]
-    at_once: int = 256
 
     def __post_init__(self) -> None:
         known = {axis.name: axis.values for axis in self.axes}
         starts = known.get("start", (self.task.start,))
         for same in sorted({*starts} & {*known.get("target", (self.task.target,))}):
             raise ValueError(
-                f"start and target are both {same:g} rad in some cells: there is no move; leave "
-                "that value out of one axis"
+                f"start and target are both {same:g} {joint_unit('rad', self.task.plant.joint)} in "
+                "some cells: there is no move; leave that value out of one axis"
             )
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the axes."""
+        return [axis.name for axis in self.axes]
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -79,36 +87,15 @@ class Grid:
         """How many moves there are."""
         return math.prod(self.shape)
 
-    @cached_property
-    def chunk(self) -> tuple[int, ...]:
-        """Cells of a chunk along each axis; along one that is cut, chunks are alike."""
-        sizes, room = list[int](), self.at_once
-        for length in reversed(self.shape):
-            parts = -(-length // max(1, room))
-            sizes.append(-(-length // parts))
-            room //= sizes[-1]
-        return tuple(reversed(sizes))
+    def tasks(self, chunk: tuple[slice, ...]) -> list[PointToPoint]:
+        """The moves of some cells."""
+        parts = (axis.values[cut] for axis, cut in zip(self.axes, chunk, strict=True))
+        return [self.task_at(dict(zip(self.names, values, strict=True)))
+                for values in product(*parts)]  # fmt: skip
 
-    @cached_property
-    def chunks(self) -> list[tuple[slice, ...]]:
-        """The cells of every chunk."""
-        counts = [-(-n // size) for n, size in zip(self.shape, self.chunk, strict=True)]
-        return [
-            tuple(
-                slice(k * size, min((k + 1) * size, n))
-                for k, size, n in zip(place, self.chunk, self.shape, strict=True)
-            )
-            for place in np.ndindex(*counts)
-        ]
-
-    def tasks(self, chunk: Sequence[slice]) -> list[PointToPoint]:
-        """The moves of a chunk, in C order."""
-        parts = [axis.values[cut] for axis, cut in zip(self.axes, chunk, strict=True)]
-        return [self._task([part[i] for part, i in zip(parts, place, strict=True)])
-                for place in np.ndindex(*map(len, parts))]  # fmt: skip
-
-    def _task(self, values: Sequence[float]) -> PointToPoint:
-        given = {axis.name: value for axis, value in zip(self.axes, values, strict=True)}
-        move = {name: given.pop(name) for name in OF_MOVES if name in given}
+    def task_at(self, at: Mapping[str, float]) -> PointToPoint:
+        """The move of a value of every axis."""
+        move = {name: at[name] for name in OF_MOVES if name in at}
         plant: Any = self.task.plant
+        given = {name: value for name, value in at.items() if name not in move}
         return replace(self.task, plant=replace(plant, **given), **move)

@@ -47,9 +47,9 @@ class Interpolation:
     Parameters
     ----------
     axes : sequence of ndarray
-        Values that rise or fall; `axes` has them rising.
+        Values that rise.
     cells : ndarray, shape (*lengths, size)
-        Coefficients, NaN where there is no plan; `cells` has them in the order of the axes.
+        Coefficients, NaN where there is no plan.
 
     Attributes
     ----------
@@ -59,20 +59,16 @@ class Interpolation:
     """
 
     def __init__(self, axes: Sequence[Array], cells: Array) -> None:
-        falling = tuple(k for k, axis in enumerate(axes) if axis[-1] < axis[0])
-        self.axes, self.cells = [np.sort(axis) for axis in axes], np.flip(cells, falling)
-        self.lengths = [len(axis) for axis in axes]
-        self.orders = np.zeros([length - 1 for length in self.lengths], np.uint8)
-        marks = find_jumps(self.axes, self.cells)
+        self.axes, self.cells = axes, cells
+        self.orders = np.zeros([len(axis) - 1 for axis in axes], np.uint8)
+        marks, boxes = find_jumps(axes, cells), np.indices(self.orders.shape)
         for order in ORDERS:
             usable = self._find_usable(order, marks)
-            boxes = np.meshgrid(*map(np.arange, self.orders.shape), indexing="ij", sparse=True)
-            first = tuple(self._first(box, order, k) for k, box in enumerate(boxes))
-            self.orders[(self.orders == 0) & usable[first]] = order
+            self.orders[(self.orders == 0) & usable[self._first(boxes, order)]] = order
 
     def _find_usable(self, order: int, marks: NDArray[np.int32]) -> NDArray[np.bool_]:
         """Whether windows of cells have plans and no jumps, by the place of their first cell."""
-        sizes = [min(order, length) for length in self.lengths]
+        sizes = [min(order, len(axis)) for axis in self.axes]
         inner = tuple(range(len(sizes), 2 * len(sizes)))
         planned = np.isfinite(self.cells).all(axis=-1)
         usable = np.asarray(sliding_window_view(planned, sizes).all(axis=inner))
@@ -82,47 +78,32 @@ class Interpolation:
             usable &= sliding_window_view(smooth, window).all(axis=inner)
         return usable
 
-    def _first(self, box: Any, order: int, axis: int) -> Any:
-        """The first of the cells along an axis through which the polynomial of a box goes."""
-        size = min(order, self.lengths[axis])
-        return np.clip(box - (size // 2 - 1), 0, self.lengths[axis] - size)
+    def _first(self, box: Sequence[Any], order: int) -> tuple[Any, ...]:
+        """The first of the cells along each axis through which the polynomial of a box goes."""
+        sizes = [min(order, len(axis)) for axis in self.axes]
+        return tuple(
+            np.clip(place - (size // 2 - 1), 0, len(axis) - size)
+            for place, size, axis in zip(box, sizes, self.axes, strict=True)
+        )
 
     def __call__(self, places: Array) -> Array:
         """Coefficients at places within the axes, shape (places, size).
 
         A place has a value for each axis. NaN where it has no polynomial, unless it is a cell.
         """
-        found = np.full((len(places), self.cells.shape[-1]), np.nan)
-        corners = np.stack([
-            np.clip(np.searchsorted(axis, values, side="right") - 1, 0, len(axis) - 2)
-            for axis, values in zip(self.axes, places.T, strict=True)
-        ])  # fmt: skip
-        boxes: Any = np.ravel_multi_index(tuple(corners), self.orders.shape)
-        order = np.argsort(boxes, kind="stable")
-        for rows in np.split(order, np.flatnonzero(np.diff(boxes[order])) + 1):
-            if len(rows):
-                found[rows] = self._through(tuple(corners[:, rows[0]]), places[rows])
-        for row in np.flatnonzero(np.isnan(found[:, 0])):
-            found[row] = self._cell_at(places[row])
-        return found
+        return np.array([self._at(place) for place in places])
 
-    def _through(self, box: tuple[int, ...], places: Array) -> Array:
-        """Values of the polynomial of a box; NaN where it has none."""
-        order = int(self.orders[box])
-        if order == 0:
-            return np.full((len(places), self.cells.shape[-1]), np.nan)
-        firsts = [self._first(place, order, k) for k, place in enumerate(box)]
-        window = tuple(slice(first, first + order) for first in firsts)
-        values = np.broadcast_to(self.cells[window], (len(places), *self.cells[window].shape))
-        for axis, cut, at in zip(self.axes, window, places.T, strict=True):
-            nodes = axis[cut]
-            weights = BarycentricInterpolator(nodes, np.eye(len(nodes)))(at)
-            values = np.einsum("pn...,pn->p...", values, weights)
-        return values
-
-    def _cell_at(self, place: Array) -> Array:
-        """The cell whose place this is; NaN where it is none's."""
-        near = [int(np.abs(axis - at).argmin()) for axis, at in zip(self.axes, place, strict=True)]
+    def _at(self, place: Array) -> Array:
+        each = [*zip(self.axes, place, strict=True)]
+        near = tuple(int(np.abs(axis - at).argmin()) for axis, at in each)
         values = [axis[k] for axis, k in zip(self.axes, near, strict=True)]
-        same = np.allclose(values, place, rtol=_SAME, atol=_SAME)
-        return self.cells[tuple(near)] if same else np.full(self.cells.shape[-1], np.nan)
+        if np.allclose(values, place, rtol=_SAME, atol=_SAME):
+            return self.cells[near]
+        box = tuple(min(np.searchsorted(axis, at, "right"), len(axis) - 1) - 1 for axis, at in each)
+        if not (order := int(self.orders[box])):
+            return np.full(self.cells.shape[-1], np.nan)
+        window = tuple(slice(first, first + order) for first in self._first(box, order))
+        values = self.cells[window]
+        for (axis, at), cut in zip(each, window, strict=True):
+            values = BarycentricInterpolator(axis[cut], values)(at)
+        return values

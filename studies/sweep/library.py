@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from functools import cached_property
+from itertools import islice
 from math import ceil
 from pathlib import Path
 
@@ -18,14 +20,14 @@ from quietarm.ocp import (
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.studies.sweep.cells import plan_energies
 from quietarm.studies.sweep.definition import COEFFICIENTS
-from quietarm.studies.sweep.grid import Grid
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.store import Store
 
 Array = NDArray[np.float64]
 _SAMPLES = 100
 """Random moves between the cells, by which a library says how good it is."""
-_STARTS = 2
+_STARTS, _TRIES = 2, 20
+"""Starts of a plan of such a move; places that are tried for each."""
 _SPARE = 1.5
 """A margin is advised that is this much larger than the worst excess of these."""
 _ALONE = "plan this move by itself: leave --from out"
@@ -118,17 +120,15 @@ class MoveLibrary:
         self._check_names(at)
         for axis in self.grid.axes:
             values = np.asarray(at[axis.name], float)
-            low, high = min(axis.values), max(axis.values)
+            low, high = axis.values[0], axis.values[-1]
             if not ((low <= values) & (values <= high)).all():
                 worst = values.ravel()[np.argmax(np.abs(values - (low + high) / 2))]
                 raise ValueError(
                     f"{axis.name} is {worst:g} {axis.unit}, and the grid has {low:g} to {high:g}; "
                     f"sweep a wider one, or {_ALONE}"
                 )
-        places = np.stack(
-            np.broadcast_arrays(*(np.asarray(at[axis.name], float) for axis in self.grid.axes)),
-            axis=-1,
-        )
+        columns = np.broadcast_arrays(*(np.asarray(at[name], float) for name in self.grid.names))
+        places = np.stack(columns, axis=-1)
         found = self.interpolation(places.reshape(-1, places.shape[-1]))
         if not np.isfinite(found).all():
             raise ValueError(
@@ -137,26 +137,24 @@ class MoveLibrary:
             )
         return found.reshape(*places.shape[:-1], -1)
 
-    def _check_names(self, at: dict[str, ArrayLike]) -> None:
-        names = [axis.name for axis in self.grid.axes]
+    def _check_names(self, at: Mapping[str, object]) -> None:
+        names = self.grid.names
         if {*at} != {*names}:
             raise ValueError(f"give a value of each axis, {', '.join(names)}, and no other")
 
     def task(self, **at: float) -> PointToPoint:
         """The move of some values of the axes."""
-        self._check_names({**at})
-        axes = (replace(axis, values=(at[axis.name],)) for axis in self.grid.axes)
-        one = Grid(self.grid.task, tuple(axes))
-        return one.tasks(one.chunks[0])[0]
+        self._check_names(at)
+        return self.grid.task_at(at)
 
     def plan(self, **at: float) -> Plan:
         """The move between the cells, with its figures by CVODES; it may break a limit.
 
         ValueError where the library has no coefficients for it.
         """
-        coefficients = self.coefficients(**at)
+        task, coefficients = self.task(**at), self.coefficients(**at)
         return evaluate_coefficients(
-            self.task(**at), coefficients, profile=self.profile, method="interpolated"
+            task, coefficients, profile=self.profile, method="interpolated"
         )
 
     def between(self, samples: int = _SAMPLES) -> Between:
@@ -164,28 +162,26 @@ class MoveLibrary:
         known = self.store.note("between the cells")
         if known.get("samples") == samples:
             return Between(**known)
-        random, tasks, plans = np.random.default_rng(0), list[PointToPoint](), list[Plan]()
-        for _ in range(20 * samples):
-            if len(tasks) == samples:
-                break
-            at = {one.name: float(random.uniform(min(one.values), max(one.values)))
-                  for one in self.grid.axes}  # fmt: skip
-            try:
-                plans.append(self.plan(**at))
-            except ValueError:
-                continue
-            tasks.append(self.task(**at))
-        if not tasks:
+        ends = np.array([(axis.values[0], axis.values[-1]) for axis in self.grid.axes])
+        random = np.random.default_rng(0).uniform(*ends.T, (_TRIES * samples, len(ends)))
+        inside = (one for one in random if np.isfinite(self.interpolation([one])).all())
+        places = [dict(zip(self.grid.names, one.tolist(), strict=True))
+                  for one in islice(inside, samples)]  # fmt: skip
+        if not places:
             raise ValueError(
                 f"{self.store.path} has no move between its cells that has coefficients"
             )
-        least = plan_energies(self.store.definition, tasks, _STARTS)
-        energies = np.array([plan.energy for plan in plans])
-        worst = max(plan.residual for plan in plans)
-        peaks = [
-            max(one.motion.exceeded(one.task.limits, -1).values(), default=0.0) for one in plans
-        ]
-        found = Between(worst, float(np.nanmax(energies / least - 1)), max(peaks), len(tasks))
+        plans = [self.plan(**one) for one in places]
+        tasks = [plan.task for plan in plans]
+        least = np.array(plan_energies(self.store.definition, tasks, _STARTS))
+        found = Between(
+            max(plan.residual for plan in plans),
+            float(np.nanmax([plan.energy for plan in plans] / least - 1)),
+            max(
+                max(one.motion.exceeded(one.task.limits, -1).values(), default=0.0) for one in plans
+            ),
+            len(plans),
+        )
         self.store.keep("between the cells", asdict(found))
         return found
 

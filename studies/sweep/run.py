@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.models.joint_motion import joint_unit
@@ -47,7 +47,7 @@ def sweep(
         What the moves have in common.
     axes : mapping of str to sequence of float
         Values of ``"start"``, ``"target"``, ``"duration"`` and of parameters of the plant, in SI
-        units, rising or falling.
+        units.
     path : str or Path
         The dataset, a folder.
     profile, residual_limit, bound, starts
@@ -79,7 +79,7 @@ def sweep(
         if name not in units:
             raise ValueError(has_no(task.plant.name, "axis", name, units))
     order = sorted(axes, key=lambda name: name in OF_MOVES)  # chunks then have few plants
-    grid = Grid(task, tuple(Axis(name, tuple(map(float, axes[name])), units[name])
+    grid = Grid(task, tuple(Axis(name, tuple(axes[name]), units[name])
                             for name in order))  # fmt: skip
     settings = SolveSettings(residual_limit, bound, starts)
     profile = CycloidPolynomial() if profile is None else profile
@@ -98,11 +98,11 @@ def run_sweep(
 ) -> None:
     """Plan the chunks of a part that are missing; each is in the store as soon as it is done."""
     missing, done = store.missing(part), 0
-    planned = side_by_side(partial(_plan_numbered, store.definition), missing, workers, scheduler)
+    planned = side_by_side(partial(plan_chunk, store.definition), missing, workers, scheduler)
     try:
-        for number, columns in planned:
+        for number, rows in planned:
             with note_interrupts() as came:
-                store.write(number, columns)
+                store.write(number, rows)
             done += 1
             report(done, len(missing))
             if came:
@@ -112,7 +112,3 @@ def run_sweep(
     if not store.missing():
         with note_interrupts():
             store.mark_jumps()
-
-
-def _plan_numbered(definition: Definition, number: int) -> tuple[int, Any]:
-    return number, plan_chunk(definition, number)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from importlib.util import find_spec
@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import install
 from quietarm.ocp.record import versions
-from quietarm.studies.sweep.definition import COEFFICIENTS, JUMP, STATES, STATUS, Definition
+from quietarm.ocp.saved import plain, typed
+from quietarm.studies.sweep.cells import Row
+from quietarm.studies.sweep.definition import COEFFICIENTS, JUMP, STATUS, Definition
 from quietarm.studies.sweep.interpolation import find_jumps
 
 if TYPE_CHECKING:
     import xarray
 
-Array = NDArray[np.float64]
 NEEDS = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
 _FORMAT = "quietarm-sweep"
 
@@ -34,9 +35,8 @@ class Store:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.dataset = _open(path)
-        with damage_told(path):
-            self.definition = Definition.from_json(self.note("sweep"))
-            self._dims = [axis.name for axis in self.definition.grid.axes]
+        with _damage_told(path):
+            self.definition = typed(self.note("sweep"), Definition)
 
     @classmethod
     def of(cls, path: Path, definition: Definition) -> Store:
@@ -44,44 +44,48 @@ class Store:
         if not path.exists():
             _lay_out(path, definition)
         store = cls(path)
-        _check_same(path, store.note("sweep"), json.loads(json.dumps(definition.to_json())))
+        if differing := definition.difference(store.definition):
+            raise FileFormatError(
+                f"{path} is of another sweep: it differs in {differing}; give the line of that "
+                "sweep, or another name"
+            )
         return store
 
     def read(self, name: str) -> NDArray[Any]:
         """All of a variable; FileFormatError where a file of it is broken."""
-        with damage_told(self.path / name):
+        with _damage_told(self.path / name):
             return self.dataset[name].to_numpy()
 
     def missing(self, part: tuple[int, int] = (1, 1)) -> list[int]:
         """The chunks of a part, i of n, that are not computed."""
         (number, of), status = part, self.read(STATUS)
-        return [
-            k for k, chunk in enumerate(self.definition.grid.chunks)
-            if k % of == number - 1 and (status[chunk] == 0).any()
-        ]  # fmt: skip
+        chunks = [*enumerate(self.definition.chunks)][number - 1 :: of]
+        return [k for k, chunk in chunks if (status[chunk] == 0).any()]
 
-    def write(self, number: int, columns: Mapping[str, Array]) -> None:
+    def write(self, number: int, rows: Sequence[Row]) -> None:
         """Write a chunk; its status last, so that a killed run computes it again."""
-        chunk = self.definition.grid.chunks[number]
-        shape = [cut.stop - cut.start for cut in chunk]
-        beside = {name: one.beside for name, one in self.definition.variables.items()}
-        region = {
-            name: ([*self._dims, *dict(beside.get(name, ()))],
-                   values.reshape(*shape, *values.shape[1:]))
-            for name, values in columns.items()
-        }  # fmt: skip
-        status = {STATUS: region.pop(STATUS)}
-        for variables in (region, status):
-            self._write(variables, region=dict(zip(self._dims, chunk, strict=True)))
+        names = self.definition.grid.names
+        region = dict(zip(names, self.definition.chunks[number], strict=True))
+        part = self.dataset.drop_vars([*names, JUMP]).isel(region).load()
+        for name, variable in part.items():
+            values = variable.to_numpy().reshape(len(rows), *variable.shape[len(names) :])
+            for k, row in enumerate(rows):
+                if np.ndim(row.get(name)):
+                    values[k, : len(row[name])] = row[name]
+                elif name in row:
+                    values[k] = row[name]
+        for some in (part.drop_vars(STATUS), part[[STATUS]]):
+            self._write(some, region)
 
     def mark_jumps(self) -> None:
         """Mark where the least energy jumps from one motion to another, once all is computed."""
         axes = [np.array(axis.values) for axis in self.definition.grid.axes]
-        self._write({JUMP: (self._dims, find_jumps(axes, self.read(COEFFICIENTS)))})
+        marks = self.dataset[[JUMP]].copy(data={JUMP: find_jumps(axes, self.read(COEFFICIENTS))})
+        self._write(marks.drop_vars(self.definition.grid.names), None)
 
-    def _write(self, variables: Mapping[str, Any], **place: Any) -> None:
+    def _write(self, some: xarray.Dataset, region: Any) -> None:
         try:
-            _xarray().Dataset(variables).to_zarr(self.path, mode="r+", consolidated=False, **place)
+            some.to_zarr(self.path, mode="r+", consolidated=False, region=region)
         except OSError as error:  # nothing is damaged: the chunk counts as not computed
             raise QuietarmError(
                 f"{self.path}: {error.strerror or error}; make room, and give the same line again"
@@ -102,43 +106,35 @@ class Store:
 
 def _lay_out(path: Path, definition: Definition) -> None:
     """Make a dataset whole or not at all, also where two begin at once."""
-    xr = _xarray()
-    grid = definition.grid
-    variables, encoding = dict[str, Any](), dict[str, Any]()
-
-    def add(name: str, beside: Any, empty: Any, **attributes: Any) -> None:
-        names, sizes = dict(beside), [size for _, size in beside]
-        values = np.broadcast_to(empty, [*grid.shape, *sizes])  # takes no memory
-        variables[name] = [axis.name for axis in grid.axes] + [*names], values, attributes
-        encoding[name] = {"chunks": (*grid.chunk, *sizes), "_FillValue": None, "fill_value": empty}
-
+    xr, grid = _xarray(), definition.grid
+    variables = {axis.name: (axis.name, np.array(axis.values), {"units": axis.unit})
+                 for axis in grid.axes}  # fmt: skip
     for name, one in definition.variables.items():
-        add(name, one.beside, np.float64("nan"), units=one.unit)
-    words = " ".join(state.replace(" ", "_") for state in STATES)
-    add(STATUS, (), np.int8(0), units="1", flag_values=[*range(len(STATES))], flag_meanings=words)
-    edges = " ".join(f"to_the_next_{axis.name}" for axis in grid.axes)
-    masks = [1 << k for k in range(len(grid.axes))]
-    add(JUMP, (), np.int32(0), units="1", flag_masks=masks, flag_meanings=edges)
-    axes = {axis.name: (axis.name, np.array(axis.values), {"units": axis.unit})
-            for axis in grid.axes}  # fmt: skip
-    texts = {"sweep": definition.to_json(), "versions": versions()}
+        sizes = one.beside.values()
+        variables[name] = (
+            [*grid.names, *one.beside],
+            np.broadcast_to(one.empty, [*grid.shape, *sizes]),  # takes no memory
+            {"units": one.unit, **one.attributes},
+            {"chunks": (*definition.chunk, *sizes), "_FillValue": None, "fill_value": one.empty},
+        )
+    texts = {"sweep": plain(definition), "versions": versions()}
     attributes = {"format": _FORMAT, **{name: json.dumps(one) for name, one in texts.items()}}
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".sweep-") as folder:
         place = Path(folder) / "store"
-        empty = xr.Dataset(variables, axes, attributes)
-        empty.to_zarr(place, encoding=encoding, consolidated=False, zarr_format=3)
+        xr.Dataset(variables, attrs=attributes).to_zarr(place, consolidated=False, zarr_format=3)
         with suppress(OSError):  # another process was first
             os.rename(place, path)
 
 
 @contextmanager
-def damage_told(path: Path) -> Iterator[None]:
+def _damage_told(path: Path) -> Iterator[None]:
     """Tell whatever zarr makes of a damaged dataset in a line."""
     try:
         yield
     except Exception as error:
         raise FileFormatError(
-            f"{path} is damaged ({type(error).__name__}); remove the dataset and sweep it again"
+            f"{path} is damaged or of another version ({type(error).__name__}); remove the dataset "
+            "and sweep it again"
         ) from None
 
 
@@ -158,14 +154,3 @@ def _open(path: Path) -> xarray.Dataset:
         if dataset.attrs.get("format") == _FORMAT:
             return dataset
     raise FileFormatError(f"{path} is no dataset of a sweep; give another name")
-
-
-def _check_same(path: Path, there: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
-    for entry, mine in wanted.items():
-        its = there.get(entry) or {}
-        names = [name for name in {**mine, **its} if mine.get(name) != its.get(name)]
-        if names:
-            raise FileFormatError(
-                f"{path} is of another sweep: {entry} differ in {', '.join(names)}; give the line "
-                "of that sweep, or another name"
-            )

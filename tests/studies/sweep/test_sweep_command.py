@@ -126,7 +126,7 @@ def test_the_dataset_of_another_sweep_is_left_alone(call, folder):
     assert call(FEW)[0] == 0
     code, out, err = call(FEW.replace("30deg,60deg", "30deg,70deg"))
     assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "is of another sweep: axes differ in target" in err
+    assert "is of another sweep: it differs in target" in err
 
 
 def test_python_makes_the_same_dataset(call, folder):
