@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -29,53 +28,31 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
             f"{name}.c would hold a function {name}_at, which is no name in C; give a file name "
             "of letters, digits and _ that begins with a letter"
         )
-    words = _words_of_plan(moves) if isinstance(moves, Plan) else _words_of_library(moves)
-    task = moves.task if isinstance(moves, Plan) else moves.grid.task
-    words["unit"] = joint_unit("rad", task.plant.joint)
-    words["way"] = f"{'angle' if words['unit'] == 'rad' else 'position'} [{words['unit']}]"
-    words["title"] = words["title"].replace("*/", "")
-    words["helpers"], words["statements"] = _path_in_c(moves.profile)
+    if isinstance(moves, Plan):
+        task, versions, between, axes = moves.task, moves.record.versions, None, ()
+        title = f"{moved(task)}, {move_of(task)}"
+        figures = f"energy {moves.energy:.4g} J, residual {1e3 * moves.residual:.3g} mm"
+        figures = ", ".join([figures, *limit_words(task)])
+    else:
+        task, versions = moves.grid.task, moves.store.note("versions")
+        between, axes = moves.interpolation, moves.grid.axes
+        title, figures = f"moves of {moved(task)}", moves.between().words
+    move = dict(zip(OF_MOVES, map(repr, task.move), strict=True))
+    helpers, statements = _path_in_c(moves.profile)
     texts = templates(keep_trailing_newline=True)
     texts.filters["row"] = _row
     header, source = (
-        texts.get_template(f"export/templates/move.{kind}")
-        .render(name=name, upper=name.upper(), size=moves.profile.size, **words)
+        texts.get_template(f"export/templates/move.{kind}").render(
+            name=name, upper=name.upper(), size=moves.profile.size, title=title.replace("*/", ""),
+            figures=figures[0].upper() + figures[1:], version=versions.get("quietarm", ""),
+            unit=joint_unit("rad", task.plant.joint), axes=axes, between=between, most=max(ORDERS),
+            move=move | {axis.name: axis.name for axis in axes if axis.name in move},
+            coefficients=() if between else moves.coefficients, helpers=helpers,
+            statements=statements, no_plan=np.nan_to_num,
+        )
         for kind in "hc"
     )  # fmt: skip
     return header, source
-
-
-def _words_of_plan(plan: Plan) -> dict[str, Any]:
-    return {
-        "title": f"{moved(plan.task)}, {move_of(plan.task)}",
-        "version": plan.record.versions.get("quietarm", ""),
-        "figures": ", ".join([
-            f"Energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
-            *limit_words(plan.task),
-        ]),
-        "axes": (), "given": "", "move": [repr(value) for value in plan.task.move],
-        "coefficients": plan.coefficients,
-    }  # fmt: skip
-
-
-def _words_of_library(library: MoveLibrary) -> dict[str, Any]:
-    axes, between = library.grid.axes, library.interpolation
-    names = [axis.name for axis in axes]
-    of_move = dict(zip(OF_MOVES, map(repr, library.grid.task.move), strict=True))
-    parameters = [f"double {name}, " for name in names if name in OF_MOVES]
-    return {
-        "title": f"moves of {moved(library.grid.task)}",
-        "version": library.store.note("versions").get("quietarm", ""),
-        "figures": library.between().words.capitalize(),
-        "axes": between.axes, "lengths": between.lengths, "most": max(ORDERS),
-        "units": [f"{axis.name} [{axis.unit}]" for axis in axes],
-        "places": ", ".join(f"double at_{name}" for name in names),
-        "place_names": ", ".join(f"at_{name}" for name in names),
-        "given": f"const double coefficients[{library.profile.size}], {''.join(parameters)}",
-        "move": [name if name in names else value for name, value in of_move.items()],
-        "orders": between.orders.reshape(-1, between.orders.shape[-1]),
-        "cells": np.nan_to_num(between.cells).reshape(-1, library.profile.size),
-    }  # fmt: skip
 
 
 def _path_in_c(profile: JointProfile) -> tuple[list[str], str]:

@@ -4,19 +4,26 @@ from __future__ import annotations
 
 import base64
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
 import numpy as np
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
+from matplotlib.animation import (
+    AbstractMovieWriter,
+    FFMpegWriter,
+    FuncAnimation,
+    HTMLWriter,
+    PillowWriter,
+)
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
-from quietarm.ocp.checks import positive, whole
+from quietarm.ocp.checks import positive
 from quietarm.ocp.files import write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
@@ -25,10 +32,9 @@ from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.pictures import as_written
 from quietarm.studies.report.words import move_of, moved, residual_words, title_of
 
-_MOST_MOTIONS, _MOST_FRAMES = 6, 500
-"""More could not be seen side by side, or would take minutes."""
+_MOST_FRAMES = 500
+"""More would take minutes."""
 _LEAST_A_SECOND, _MOST_A_SECOND = 1, 50
-_LEAST_WIDTH, _MOST_WIDTH = 200, 2000
 _ROUNDING = 1e-6
 """Of a frame: one that is this close to the end belongs to it."""
 _COLUMNS = {1: 1, 2: 2, 4: 2}
@@ -87,16 +93,12 @@ class Film:
                 "an mp4 needs the program ffmpeg, which is not found here; install it, or make a "
                 "gif or html"
             )
-        figure, updates = _draw(self)
+        figure, update = _draw(self)
+        writer = _WRITERS[name](fps=self.rate)
         with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
             place = Path(folder) / f"film.{name}"
-            writer = _writer(name, self.rate)
-            with writer.saving(figure, str(place), figure.dpi):
-                for k in range(self.frames):
-                    for update in updates:
-                        update(k)
-                    writer.grab_frame()
-                    report(k + 1, self.frames)
+            animation = FuncAnimation(figure, update, self.frames)
+            animation.save(place, writer, progress_callback=lambda k, _: report(k + 1, self.frames))
             return place.read_bytes()
 
     def _repr_html_(self) -> str:
@@ -122,7 +124,7 @@ def animate(
     Parameters
     ----------
     motions : sequence of Line, Plan or Floor
-        The motions, of any plants and durations, 6 at most; a plan alone is drawn beside the plain
+        The motions, of any plants and durations; a plan alone is drawn beside the plain
         cycloid of its task.
     deflection_scale : float, optional
         Scale of the deflections, which is stated in the picture; by default such that the largest
@@ -133,7 +135,7 @@ def animate(
         Frames in a second, 50 at most. A gif counts hundredths of a second: 50, 25 and 20 are
         exact, 30 is rounded.
     width : int
-        Width of the picture [pixels], 200 to 2000.
+        Width of the picture [pixels].
 
     Returns
     -------
@@ -143,44 +145,21 @@ def animate(
     Raises
     ------
     ValueError
-        When there is no motion or too many, or a number is out of range.
+        When there is no motion, or a number is out of range.
     """
     lines = lines_of(motions)
-    if len(lines) > _MOST_MOTIONS:
-        raise ValueError(
-            f"{len(lines)} motions are given, where {_MOST_MOTIONS} are the most that can be seen "
-            "side by side; give fewer"
-        )
-    width = whole("width", width, _LEAST_WIDTH, _MOST_WIDTH, "more pixels make a huge file")
     if deflection_scale is not None:
         positive("deflection scale", deflection_scale)
     end = max(line.plan.task.duration + line.plan.task.residual_window for line in lines)
-    times = _frame_times(end, speed, rate)
-    return Film(structures_of(lines, times, end, deflection_scale), end, speed, rate, width)
-
-
-def _frame_times(end: float, speed: float, rate: float) -> NDArray[np.float64]:
-    """When the frames are; ValueError where they are too many, or too few in a second."""
-    positive("speed", speed)
-    if not _LEAST_A_SECOND <= rate <= _MOST_A_SECOND:
-        raise ValueError(
-            f"the rate of frames is {rate:g} Hz; give {_LEAST_A_SECOND} to {_MOST_A_SECOND}: "
-            "browsers show no more of a gif, and slow motion is a lower speed"
-        )
-    frames = end * rate / speed
-    if frames > _MOST_FRAMES:
+    frames = end * rate / positive("speed", speed)
+    if not _LEAST_A_SECOND <= rate <= _MOST_A_SECOND or frames > _MOST_FRAMES:
         raise ValueError(
             f"{end:g} s at {rate:g} frames per second and speed {speed:g} make {frames:.0f} "
-            f"frames, where {_MOST_FRAMES} are the most that can be drawn and shown in reasonable "
-            "time; give a lower rate or a higher speed"
+            f"frames, where {_MOST_FRAMES} are the most, and {_LEAST_A_SECOND} to {_MOST_A_SECOND} "
+            "per second what browsers show; give another rate or speed"
         )
-    return np.arange(float(int(frames + _ROUNDING) + 1)) * speed / rate
-
-
-def _writer(name: str, rate: Any) -> AbstractMovieWriter:
-    if name == "html":
-        return HTMLWriter(fps=rate, embed_frames=True, embed_limit=_MEGABYTES)
-    return FFMpegWriter(fps=rate) if name == "mp4" else _GifWriter(fps=rate)
+    times = np.arange(float(int(frames + _ROUNDING) + 1)) * speed / rate
+    return Film(structures_of(lines, times, end, deflection_scale), end, speed, rate, width)
 
 
 class _GifWriter(PillowWriter):
@@ -189,14 +168,23 @@ class _GifWriter(PillowWriter):
     _frames: list[Image.Image]
 
     def finish(self) -> None:
-        """Write the file."""
+        """Write the file, unless there is no frame yet, as after Ctrl-C."""
+        if not self._frames:
+            return
         last, none = self._frames[-1], Image.Dither.NONE
         palette = last.quantize(_COLOURS, dither=none)
         self._frames = [one.quantize(palette=palette, dither=none) for one in self._frames]
         super().finish()
 
 
-def _draw(film: Film) -> tuple[Figure, list[Update]]:
+_WRITERS: Mapping[str, Callable[..., AbstractMovieWriter]] = {
+    "gif": _GifWriter,
+    "mp4": FFMpegWriter,
+    "html": partial(HTMLWriter, embed_frames=True, embed_limit=_MEGABYTES),
+}
+
+
+def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     """The figure, laid out, and what brings it to a frame."""
     structures, times = film.structures, film.structures[0].times
     columns = _COLUMNS.get(len(structures), 3)
@@ -233,7 +221,7 @@ def _draw(film: Film) -> tuple[Figure, list[Update]]:
     with as_written(figure):
         figure.draw_without_rendering()
     figure.set_layout_engine("none")
-    return figure, updates
+    return figure, lambda k: [one(k) for one in updates]
 
 
 def _title(one: Structure, same: bool, room: int) -> list[str]:

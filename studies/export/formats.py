@@ -6,19 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import InfeasibleTaskError, Plan
 from quietarm.ocp.checks import positive, unknown
 from quietarm.ocp.files import write_whole
-from quietarm.studies.export.tables import (
-    LINEAR,
-    UNITS,
-    columns_of,
-    csv_text,
-    mat_bytes,
-    ros_text,
-    table,
-)
+from quietarm.studies.export.tables import columns_of, csv_text, mat_bytes, ros_text, table
 
 COLUMNS, RATE, FRAMES, JOINT = "time,angle,speed,acceleration", 1000.0, 25.0, "joint"
 _FILM = ("speed", "deflection_scale", "width", "rate")
@@ -110,8 +101,7 @@ def export_plan(
     if name == "ros":
         content: str | bytes = ros_text(plan, joint, rate)
     else:
-        units = UNITS if plan.task.plant.joint == ROTARY else LINEAR
-        rows = table(plan, columns_of(columns, units), rate)
+        rows = table(plan, columns_of(columns, plan.task.plant.joint), rate)
         facts = {"coefficients": plan.coefficients, "duration_s": plan.task.duration}
         content = csv_text(rows) if name == "csv" else mat_bytes(rows, facts)
     write_whole(path, content)

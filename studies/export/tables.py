@@ -10,52 +10,51 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models.joint_motion import ROTARY
+from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.planning.plan import ticks_of_move
 from quietarm.studies.report.templates import templates
 
 Array = NDArray[np.float64]
-_ANGLE = {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi}
-UNITS: Mapping[str, Mapping[str, float]] = {
-    "time": {"s": 1.0, "ms": 1e3, "us": 1e6},
-    "angle": _ANGLE,
-    "speed": {f"{unit}/s": factor for unit, factor in _ANGLE.items()} | {"rpm": 30 / np.pi},
-    "acceleration": {f"{unit}/s^2": factor for unit, factor in _ANGLE.items()},
-    "jerk": {f"{unit}/s^3": factor for unit, factor in _ANGLE.items()},
-    "tip": {"m": 1.0, "mm": 1e3},
-    "torque": {"Nm": 1.0, "mNm": 1e3},
-    "power": {"W": 1.0, "mW": 1e3},
+_WAYS: Mapping[str, Mapping[str, float]] = {
+    ROTARY: {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi},
+    LINEAR: {"m": 1.0, "mm": 1e3},
 }
-"""What a column may hold, and its units; the first is that where none is given."""
-_LENGTH = {"m": 1.0, "mm": 1e3}
-LINEAR: Mapping[str, Mapping[str, float]] = {
-    **UNITS,
-    "angle": _LENGTH,
-    "speed": {f"{unit}/s": factor for unit, factor in _LENGTH.items()},
-    "acceleration": {f"{unit}/s^2": factor for unit, factor in _LENGTH.items()},
-    "jerk": {f"{unit}/s^3": factor for unit, factor in _LENGTH.items()},
-    "torque": {"N": 1.0, "kN": 1e-3},
+_FORCES: Mapping[str, Mapping[str, float]] = {
+    ROTARY: {"Nm": 1.0, "mNm": 1e3},
+    LINEAR: {"N": 1.0, "kN": 1e-3},
 }
-"""The same of a linear axis, whose angle is its position and whose torque is its force."""
-_NAMES = {"angle": "position", "torque": "force"}
+_LINEAR_NAMES = {"angle": "position", "torque": "force"}
 
 
-def columns_of(
-    text: str, known: Mapping[str, Mapping[str, float]] = UNITS, what: str = "column"
-) -> dict[str, tuple[str, float]]:
+def units_of(joint: str) -> Mapping[str, Mapping[str, float]]:
+    """What a column may hold, and its units; the first is that where none is given."""
+    way, speeds = _WAYS[joint], {"rpm": 30 / np.pi} if joint == ROTARY else {}
+    return {
+        "time": {"s": 1.0, "ms": 1e3, "us": 1e6},
+        "angle": way,
+        "speed": {f"{unit}/s": factor for unit, factor in way.items()} | speeds,
+        "acceleration": {f"{unit}/s^2": factor for unit, factor in way.items()},
+        "jerk": {f"{unit}/s^3": factor for unit, factor in way.items()},
+        "tip": _WAYS[LINEAR],
+        "torque": _FORCES[joint],
+        "power": {"W": 1.0, "mW": 1e3},
+    }
+
+
+def columns_of(text: str, joint: str) -> dict[str, tuple[str, float]]:
     """Columns as `time:ms,angle:deg,speed`: their units and the factors to these.
 
     ValueError where one or its unit is unknown, or one comes twice.
     """
-    columns: dict[str, tuple[str, float]] = {}
+    columns, known = dict[str, tuple[str, float]](), units_of(joint)
     for one in text.split(","):
         name, _, unit = (part.strip() for part in one.partition(":"))
         if name not in known:
-            raise ValueError(unknown(what, name, known))
+            raise ValueError(unknown("column", name, known))
         if name in columns:
-            raise ValueError(f"{what} {name} is given twice; give it once")
+            raise ValueError(f"column {name} is given twice; give it once")
         unit = unit or next(iter(known[name]))
         if unit not in known[name]:
             raise ValueError(unknown(f"unit of {name}", unit, known[name]))
@@ -70,26 +69,30 @@ def table(plan: Plan, columns: Mapping[str, tuple[str, float]], rate: float) -> 
     robust plan in each scenario, which its heading names.
     """
     times = _ticks(plan, rate)
-    motion = plan.sampled(times)
+    motion, tips = plan.sampled(times), _tips(plan, times)
     values: dict[str, Array] = {
         "time": motion.time, "angle": motion.joint[:, 0], "speed": motion.joint[:, 1],
         "acceleration": motion.joint[:, 2], "jerk": motion.jerk, "torque": motion.torque,
         "power": motion.power,
     }  # fmt: skip
+    names = {} if plan.task.plant.joint == ROTARY else _LINEAR_NAMES
     found: dict[str, Array] = {}
-    names = {} if plan.task.plant.joint == ROTARY else _NAMES
     for name, (unit, factor) in columns.items():
         ending = unit.replace("/", "_").replace("^", "")
-        if name != "tip":
-            found[f"{names.get(name, name)}_{ending}"] = factor * values[name]
-            continue
-        for candidate, errors in zip(plan.candidate.scenarios, plan.task.scenarios, strict=True):
-            named = zip(plan.task.error_names, errors, strict=True)
-            scenario = [f" {name} {100 * error:+.4g} %" for name, error in named if error]
-            tips = candidate.sample(times).tips.T
-            for i, tip in enumerate(tips, 1):
-                number = "" if len(tips) == 1 else f"_{i}"
-                found[f"tip{number}_{ending}{''.join(scenario)}"] = factor * tip
+        of_name = tips if name == "tip" else {(names.get(name, name), ""): values[name]}
+        found |= {f"{one}_{ending}{after}": factor * v for (one, after), v in of_name.items()}
+    return found
+
+
+def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:
+    """Displacements of every tip in every scenario, by what stands before and after the unit."""
+    found: dict[tuple[str, str], Array] = {}
+    for candidate, errors in zip(plan.candidate.scenarios, plan.task.scenarios, strict=True):
+        named = zip(plan.task.error_names, errors, strict=True)
+        scenario = "".join(f" {name} {100 * error:+.4g} %" for name, error in named if error)
+        tips = candidate.sample(times).tips.T
+        names = ["tip"] if len(tips) == 1 else [f"tip_{i}" for i in range(1, len(tips) + 1)]
+        found |= {(name, scenario): tip for name, tip in zip(names, tips, strict=True)}
     return found
 
 
@@ -99,21 +102,19 @@ def _ticks(plan: Plan, rate: float) -> Array:
 
 def csv_text(columns: Mapping[str, Array]) -> str:
     """Comma-separated values under a heading."""
-    text = io.StringIO()
-    rows, heading = np.column_stack(list(columns.values())), ",".join(columns)
-    np.savetxt(text, rows, delimiter=",", header=heading, comments="", fmt="%.12g")
-    return text.getvalue()
+    import pandas  # not at the top: it takes half a second to load
+
+    return pandas.DataFrame(columns).to_csv(index=False, float_format="%.12g", lineterminator="\n")
 
 
 def mat_bytes(columns: Mapping[str, Array], facts: Mapping[str, Any]) -> bytes:
     """A MATLAB v5 file: a column vector for each column, and some facts."""
     from scipy.io import savemat  # slow to load
 
-    file, signs = io.BytesIO(), {"-": "minus ", "+": "plus ", " %": ""}
-    vectors = {
-        re.sub(r"\W+", "_", re.sub("[-+]| %", lambda sign: signs[sign[0]], name)): column
-        for name, column in columns.items()
-    }
+    file, vectors = io.BytesIO(), dict[str, Array]()
+    for name, column in columns.items():
+        words = name.replace("-", "minus ").replace("+", "plus ").replace(" %", "")
+        vectors[re.sub(r"\W+", "_", words)] = column
     savemat(file, {**facts, **vectors}, oned_as="column")
     return file.getvalue()
 

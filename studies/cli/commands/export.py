@@ -9,7 +9,7 @@ import click
 from quietarm.ocp.files import check_writable
 from quietarm.studies.cli.files import finish
 from quietarm.studies.cli.options import command, counting, typed
-from quietarm.studies.cli.types import INPUT, SHARE, WHOLE, Parsed
+from quietarm.studies.cli.types import INPUT, SHARE, Parsed
 from quietarm.studies.export.formats import (
     COLUMNS,
     FORMATS,
@@ -41,7 +41,13 @@ from quietarm.studies.reading.saved import load_plans
 @click.option("--deflection-scale", type=float,
               help="Draw deflections so many times larger than they are. [default: the largest "
               "becomes up to a fifth of the structure]")  # fmt: skip
-@click.option("--width", type=WHOLE, default=800, show_default=True, help="Of a film, in pixels.")
+@click.option(
+    "--width",
+    type=click.IntRange(200, 2000),
+    default=800,
+    show_default=True,
+    help="Of a film, in pixels.",
+)
 def export(plans: tuple[Path, ...], output: Path, **settings: Any) -> None:
     """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB) or as a film (gif, mp4, html).
 

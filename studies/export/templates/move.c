@@ -1,3 +1,7 @@
+{% set names = axes | map(attribute="name") | list %}
+{% set places %}{% for one in names %}{{ ", " if loop.index > 1 }}double at_{{ one }}{% endfor %}{% endset %}
+{% set given %}{% if axes %}const double coefficients[{{ size }}], {% for one in names if one in move %}double {{ one }}, {% endfor %}{% endif %}{% endset %}
+{% set moving = move.values() | list %}
 /* {{ name }}: {{ title }}. By quietarm {{ version }}. */
 #include "{{ name }}.h"
 
@@ -18,27 +22,27 @@ static void path(const double **arg, double **res)
 #define AXES {{ axes | length }}
 #define MOST {{ most }}
 
-{% for values in axes %}
-static const double values_{{ loop.index }}[] = { {{- values | row -}} };
+{% for axis in axes %}
+static const double values_{{ loop.index }}[] = { {{- axis.values | row -}} };
 {% endfor %}
 static const double *const values[AXES] = { {%- for _ in axes %}{{ ", " if loop.index > 1 }}values_{{ loop.index }}{% endfor %} };
-static const int lengths[AXES] = { {{- lengths | join(", ") -}} };
+static const int lengths[AXES] = { {%- for axis in axes %}{{ ", " if loop.index > 1 }}{{ axis.values | length }}{% endfor %} };
 
 /* Cells along an axis that the polynomial of each box goes through; 0 where there is none. */
 static const unsigned char orders[] = {
-{% for box in orders %}
+{% for box in between.orders.reshape(-1, between.orders.shape[-1]) %}
     {{ box | join(", ") }},
 {% endfor %}
 };
 static const double cells[][{{ size }}] = {
-{% for cell in cells %}
+{% for cell in no_plan(between.cells).reshape(-1, size) %}
     { {{- cell | row -}} },
 {% endfor %}
 };
 
 int {{ name }}_plan({{ places }}, double coefficients[{{ size }}])
 {
-    const double at[AXES] = { {{- place_names -}} };
+    const double at[AXES] = { {%- for one in names %}{{ ", " if loop.index > 1 }}at_{{ one }}{% endfor %} };
     int first[AXES], width[AXES], node[AXES], box = 0, order, i, j, k, cell;
     double weights[AXES][MOST], weight;
 
@@ -94,7 +98,7 @@ static const double coefficients[] = { {{- coefficients | row or "0.0" -}} };
 void {{ name }}_at({{ given }}double time,
     double *angle, double *speed, double *acceleration)
 {
-    const double move[] = { {{- move | join(", ") -}} };
+    const double move[] = { {{- moving | join(", ") -}} };
     double fraction, joint[3];
     const double *arg[] = { &fraction, coefficients, move };
     double *res[] = { joint };

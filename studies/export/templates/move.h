@@ -1,3 +1,7 @@
+{% set names = axes | map(attribute="name") | list %}
+{% set places %}{% for one in names %}{{ ", " if loop.index > 1 }}double at_{{ one }}{% endfor %}{% endset %}
+{% set given %}{% if axes %}const double coefficients[{{ size }}], {% for one in names if one in move %}double {{ one }}, {% endfor %}{% endif %}{% endset %}
+{% set moving = move.values() | list %}
 /* {{ name }}: {{ title }}. By quietarm {{ version }}.
    {{ figures }}. */
 #ifndef QUIETARM_{{ upper }}_H
@@ -6,20 +10,20 @@
 {% if axes %}
 #define {{ upper }}_COEFFICIENTS {{ size }}
 
-/* Coefficients of the move at {{ units | join(", ") }}.
+/* Coefficients of the move at {% for axis in axes %}{{ ", " if loop.index > 1 }}{{ axis.name }} [{{ axis.unit }}]{% endfor %}.
    Returns 0; or, without writing any, 1 beyond the grid and 2 next to a cell without a plan or
    at a change of motion. */
 int {{ name }}_plan({{ places }}, double coefficients[{{ size }}]);
 
-/* The joint's {{ way }}, speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2] on such a move, a time [s]
+/* The joint's {{ "angle" if unit == "rad" else "position" }} [{{ unit }}], speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2] on such a move, a time [s]
    after its start. */
 {% else %}
 /* How long the move takes [s], and where the joint rests before and after it [{{ unit }}]. */
-#define {{ upper }}_DURATION {{ move[2] }}
-#define {{ upper }}_START {{ move[0] }}
-#define {{ upper }}_TARGET {{ move[1] }}
+#define {{ upper }}_DURATION {{ move.duration }}
+#define {{ upper }}_START {{ move.start }}
+#define {{ upper }}_TARGET {{ move.target }}
 
-/* The joint's {{ way }}, speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2], a time [s] after the start. */
+/* The joint's {{ "angle" if unit == "rad" else "position" }} [{{ unit }}], speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2], a time [s] after the start. */
 {% endif %}
 void {{ name }}_at({{ given }}double time,
     double *angle, double *speed, double *acceleration);
