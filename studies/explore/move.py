@@ -6,35 +6,31 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from math import ceil, degrees
+from math import ceil, degrees, tau
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from quietarm.models import Plant
+from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import (
     CycloidPolynomial,
     Front,
     Plan,
     PointToPoint,
-    Robustness,
     epsilon_front,
     evaluate_coefficients,
-    evaluate_robustness,
     plan_move,
 )
 from quietarm.ocp.front.curve import Report, no_report
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import quantities_of
 from quietarm.studies.export.formats import export_plan
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
-from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary
 
 FRONT_POINTS = 20
 """Enough for a line, within a second."""
-FREQUENCY = 0.2
-"""Largest error of the frequency that is looked at."""
-_ANGLE, _SHORTEST, _LONGEST, _LEAST, _MOST = 360.0, 0.1, 5.0, 1e-3, 1e4
-"""Ranges of sliders [deg, s, s], and of limits in the unit that is shown."""
+_SHORTEST, _LONGEST, _LEAST, _MOST = 0.1, 5.0, 1e-3, 1e4
+"""Ranges of durations [s], and of limits in the unit that is shown."""
 _SHOWN = {"rad": ("deg", degrees(1.0)), "m": ("mm", 1e3)}
 """Units that are shown in the place of SI's, and the factors to them."""
 FILES = ("plan.json", "move.csv", "move.c", "move.h")
@@ -42,27 +38,23 @@ FILES = ("plan.json", "move.csv", "move.c", "move.h")
 
 
 class Dial(NamedTuple):
-    """A number that is set by hand, and its range in the unit that is shown."""
+    """A number that is set by hand: its range in the unit that is shown, the factor to that."""
 
     label: str
     least: float
     most: float
     factor: float = 1.0
-    """From SI to this unit."""
     optional: bool = False
     """Whether it may be empty, as a limit."""
 
-    def clip(self, shown: float | None) -> float | None:
-        """The nearest value in the range, in SI; None stays None where that may be."""
-        if shown is None:
-            return None if self.optional else self.least / self.factor
-        return min(max(shown, self.least), self.most) / self.factor
-
-
-def _dial(name: str, unit: str, least: float, most: float, optional: bool = False) -> Dial:
-    """A dial in the unit that is shown for this one of SI; the range is in the shown unit."""
-    shown, factor = _SHOWN.get(unit, (unit, 1.0))
-    return Dial(name if unit == "-" else f"{name} [{shown}]", least, most, factor, optional)
+    @classmethod
+    def of(cls, name: str, unit: str, ends: tuple[float, float] | None = None) -> Dial:
+        """In the unit that is shown for one of SI, as its ends are; without ends a limit."""
+        shown, factor = _SHOWN.get(unit, (unit, 1.0))
+        label = name if unit == "-" else f"{name} [{shown}]"
+        if ends is None:
+            return cls(label, 0.0 if name == "residual" else _LEAST, _MOST, factor, True)
+        return cls(label, factor * ends[0], factor * ends[1], factor)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,11 +84,6 @@ class Explored:
         """The move in hand."""
         return self.plan.task
 
-    @cached_property
-    def coefficients(self) -> dict[str, float]:
-        """The coefficients by the names of their dials."""
-        return {f"a{i}": value for i, value in enumerate(self.plan.coefficients, start=1)}
-
     @property
     def profile(self) -> str:
         """The name of the profile's family; its label where it has none."""
@@ -104,20 +91,26 @@ class Explored:
         return kinds.get(type(self.plan.profile), self.plan.profile.label)
 
     @cached_property
+    def coefficients(self) -> dict[str, float]:
+        """The coefficients by the names of their dials."""
+        return {f"a{i}": value for i, value in enumerate(self.plan.coefficients, start=1)}
+
+    @cached_property
     def dials(self) -> dict[str, Dial]:
         """What can be set, by name."""
-        shortest, longest = min(_SHORTEST, self.task.duration), max(_LONGEST, self.task.duration)
-        dials = {name: _dial(name, "rad", -_ANGLE, _ANGLE) for name in ("start", "target")}
-        dials["duration"] = _dial("duration", "s", shortest, longest)
+        task, joint = self.task, self.task.plant.joint
+        way = tau if joint == ROTARY else max(1.0, 2 * abs(task.start), 2 * abs(task.target))
+        ends = dict.fromkeys(("start", "target"), (joint_unit("rad", joint), (-way, way)))
+        ends["duration"] = "s", (min(_SHORTEST, task.duration), max(_LONGEST, task.duration))
         for axis in self.library.grid.axes if self.library else ():
-            _, factor = _SHOWN.get(axis.unit, ("", 1.0))
-            ends = factor * min(axis.values), factor * max(axis.values)
-            dials[axis.name] = _dial(axis.name, axis.unit, *ends)
-        for name, quantity in QUANTITIES.items():
-            dials[quantity.limit] = _dial(name, quantity.unit, _LEAST, _MOST, optional=True)
-        dials["residual_limit"] = _dial("residual", "m", 0.0, _MOST, optional=True)
-        dials["bound"] = _dial("largest |a_n|", "-", _LEAST, _MOST, optional=True)
-        return dials | {name: Dial(name, -self.reach, self.reach) for name in self.coefficients}
+            ends[axis.name] = axis.unit, (axis.values[0], axis.values[-1])
+        limits = {one.limit: (one.name, one.unit) for one in quantities_of(joint).values()}
+        limits |= {"residual_limit": ("residual", "m"), "bound": ("largest |a_n|", "-")}
+        return (
+            {name: Dial.of(name, *one) for name, one in ends.items()}
+            | {name: Dial.of(*one) for name, one in limits.items()}
+            | {name: Dial(name, -self.reach, self.reach) for name in self.coefficients}
+        )
 
     @cached_property
     def _values(self) -> dict[str, Any]:
@@ -128,30 +121,33 @@ class Explored:
 
     @property
     def shown(self) -> dict[str, float | None]:
-        """Values of the dials in the units that are shown."""
+        """Values of the dials in the units that are shown; a limit of two sides shows none."""
         return {
-            name: None
-            if value is None or isinstance(value, tuple)  # a limit that differs by direction
-            else float(f"{value * self.dials[name].factor:.12g}")
+            name: float(f"{value * self.dials[name].factor:.12g}")
+            if isinstance(value, float | int) else None
             for name, value in self._values.items()
-        }
+        }  # fmt: skip
 
     def change(self, shown: Mapping[str, float | None]) -> Explored:
-        """The same with some dials set, each within its range.
+        """The same with some dials set, in the units that are shown, each within its range.
 
         ValueError where there is no such move, or the library has none.
         """
-        clipped = {name: self.dials[name].clip(value) for name, value in shown.items()}
-        values: dict[str, Any] = {**self._values, **clipped}
-        coefficients: Any = [values[name] for name in self.coefficients]
-        limits = {quantity.limit: values[quantity.limit] for quantity in QUANTITIES.values()}
-        limits["torque_speed"] = self.task.torque_speed
-        task = replace(self.task, **{name: values[name] for name in OF_MOVES}, **limits)
-        axes = self.library.grid.axes if self.library else ()
-        at = {axis.name: values[axis.name] for axis in axes}
-        if self.library and not clipped.keys().isdisjoint(at):
-            coefficients = self.library.coefficients(**at)
-            task = replace(self.library.task(**at), **limits)
+        values = dict(self._values)
+        for name, value in shown.items():
+            dial = self.dials[name]
+            if value is not None:
+                values[name] = min(max(value, dial.least), dial.most) / dial.factor
+            elif dial.optional:
+                values[name] = None
+        at = {name: values[name] for name in (self.library.grid.names if self.library else ())}
+        if self.library and not shown.keys().isdisjoint(at):
+            task, coefficients = self.library.task(**at), self.library.coefficients(**at)
+        else:
+            ends = {name: values[name] for name in ("start", "target", "duration")}
+            task, coefficients = replace(self.task, **ends), [values[a] for a in self.coefficients]
+        limits = {name: value for name, value in values.items() if name in _LIMITS}
+        task = replace(task, **limits, torque_speed=self.task.torque_speed)
         same = task == self.task and values["bound"] == self.bound
         return replace(
             self._evaluate(task, coefficients), front=self.front if same else None,
@@ -169,18 +165,13 @@ class Explored:
     def choose_plant(self, plant: Plant) -> Explored:
         """The same move and motion of another plant, which begins at rest."""
         task = replace(self.task, plant=plant, initial=None, final=None)
-        changed = self._evaluate(task, self.plan.coefficients)
-        return replace(changed, library=None, front=None)
+        return replace(self._evaluate(task, self.plan.coefficients), library=None, front=None)
 
     def choose_profile(self, name: str, terms: int | None = None) -> Explored:
         """The same move by another profile, of its usual size by default."""
         profile = profile_of(name, self.task, terms)
         plan = evaluate_coefficients(self.task, profile.plain, profile=profile)
         return replace(self, plan=plan, front=None, reach=1.0)
-
-    def choose_terms(self, terms: int | None) -> Explored:
-        """The same with so many terms."""
-        return self.choose_profile(self.profile, terms)
 
     def solve(self) -> Explored:
         """The same with the gradient's motion; it raises what `plan_move` does."""
@@ -218,12 +209,6 @@ class Explored:
         """The plain cycloid of this move."""
         return _cycloid(self.task)
 
-    @cached_property
-    def robustness(self) -> Robustness:
-        """The residual of the motion over the error of the frequency."""
-        plan, ranges = self.plan, {"frequency": FREQUENCY}
-        return evaluate_robustness(self.task, plan.profile, plan.coefficients, ranges, samples=1)
-
     def file(self, name: str) -> str:
         """The text of one of `FILES`."""
         with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
@@ -235,6 +220,9 @@ class Explored:
             else:
                 export_plan(self.plan, path.with_suffix(".c"))
             return path.read_text(encoding="utf-8")
+
+
+_LIMITS = tuple(quantity.limit for quantity in quantities_of(ROTARY).values())
 
 
 @lru_cache(maxsize=8)

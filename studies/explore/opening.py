@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from contextlib import suppress
 from math import pi
 from pathlib import Path
 
-from quietarm.models import Plant
-from quietarm.models.joint_motion import ROTARY
+from quietarm.models import Plant, known_plants
+from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import CycloidPolynomial, PointToPoint, evaluate_coefficients
 from quietarm.ocp.files import read_bytes
 from quietarm.studies.explore.move import Explored
@@ -17,15 +16,13 @@ from quietarm.studies.reading.saved import load_front, load_plans
 from quietarm.studies.report.words import plant_words
 from quietarm.studies.sweep.library import MoveLibrary
 
-_TARGET, _DURATION = pi / 6, 0.8
-"""The paper's first move."""
+_TARGETS, _DURATION = {ROTARY: pi / 6, LINEAR: 0.3}, 0.8
+"""The paper's first move, and 300 mm of a linear axis."""
 
 
 def open_plant(plant: Plant) -> Explored:
-    """The plain cycloid of a plant that turns, with the coefficients of six terms to be set."""
-    if plant.joint != ROTARY:
-        raise ValueError(f"the page is for joints that turn, and {plant.name} slides; give another")
-    task, profile = PointToPoint(plant, _TARGET, _DURATION), CycloidPolynomial()
+    """The plain cycloid of a plant, with the coefficients of six terms to be set."""
+    task, profile = PointToPoint(plant, _TARGETS[plant.joint], _DURATION), CycloidPolynomial()
     return Explored(evaluate_coefficients(task, profile.plain, profile=profile))
 
 
@@ -33,8 +30,7 @@ def open_file(path: Path) -> Explored:
     """What a file or a folder holds; FileFormatError where that is none of these."""
     if path.is_dir() or path.suffix == ".zarr":
         library = MoveLibrary(path)
-        middle = {axis.name: sorted(axis.values)[len(axis.values) // 2]
-                  for axis in library.grid.axes}  # fmt: skip
+        middle = {axis.name: axis.values[len(axis.values) // 2] for axis in library.grid.axes}
         return Explored(library.plan(**middle), library=library)
     if _format_of(path) == "quietarm-front":
         front = load_front(path)
@@ -63,11 +59,12 @@ def _format_of(path: Path) -> object:
     return None
 
 
-def menu(plant: Plant, kinds: Mapping[str, type[Plant]]) -> dict[str, Plant]:
-    """A plant, and those of other kinds that have a value for every parameter, by their words."""
+def menu(plant: Plant) -> dict[str, Plant]:
+    """A plant, and those of its kind of joint that have a value for every parameter, by words."""
     plants = {plant_words(plant): plant}
-    for kind in kinds.values():
+    for kind in known_plants().values():
         with suppress(TypeError):  # a parameter without a value
             other = kind()
-            plants.setdefault(plant_words(other), other)
+            if other.joint == plant.joint:
+                plants.setdefault(plant_words(other), other)
     return plants

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import logging
 import webbrowser
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 
 from bokeh.document import Document
 from bokeh.server.server import Server
-from quietarm.models import Plant
 from quietarm.studies.explore.move import Explored
+from quietarm.studies.explore.opening import menu
 from quietarm.studies.explore.page import Page
 
 
-def serve(
-    explored: Explored,
-    plants: Mapping[str, Plant],
-    tell: Callable[[str], object],
-    browser: bool = True,
-) -> None:
+def serve(explored: Explored, tell: Callable[[str], object], browser: bool = True) -> None:
     """Show the page, which begins with `explored`, until Ctrl-C, of which `tell` tells."""
+    plants = menu(explored.task.plant)
 
     def fill(document: Document) -> None:
         Page(document, explored, plants)

@@ -120,7 +120,7 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
         columns = QUANTITIES[quantity].of(at.motion, list(at.tips.T), at.torque)
     else:
         columns = [at.joint[:, 0] if quantity == "angle" else at.power]
-    return [_factor(quantity) * np.asarray(column) for column in columns]
+    return [scale_of(quantity) * np.asarray(column) for column in columns]
 
 
 def heading(quantity: str, joint: str = ROTARY) -> str:
@@ -130,7 +130,7 @@ def heading(quantity: str, joint: str = ROTARY) -> str:
     return f"{joint_label(label, joint)} [{unit}]"
 
 
-def _factor(quantity: str) -> float:
+def scale_of(quantity: str) -> float:
     """From the quantity's unit to the one that is shown."""
     return 1e3 if _LABELS[quantity][1] == "m" else 1.0
 
@@ -221,7 +221,7 @@ def _draw_limits(ax: Axes, lines: Sequence[Line], quantity: str, values: Array) 
     limits = [line.plan.task.limit_of(quantity) for line in lines]
     bounds = {bound for one in limits if one is not None for bound in (one.lower, one.upper)}
     label = "limit"
-    for level in sorted(_factor(quantity) * bound for bound in bounds):
+    for level in sorted(scale_of(quantity) * bound for bound in bounds):
         if (values * np.sign(level)).max() >= _IN_SIGHT * abs(level):
             ax.axhline(level, color="black", linewidth=1.1, linestyle=":", label=label)
             label = "_"  # once in the legend

@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from quietarm.models import known_plants
-from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp.checks import install
 from quietarm.studies.cli.options import command, plant_file
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
@@ -32,7 +30,7 @@ def explore(what: str | None, parameters: tuple[tuple[str, str], ...], no_browse
       quietarm explore dual-link
       quietarm explore plan.json --no-browser
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.studies.explore.opening import is_file, menu, open_file, open_plant
+    from quietarm.studies.explore.opening import is_file, open_file, open_plant
 
     try:
         from quietarm.studies.explore.server import serve
@@ -46,5 +44,4 @@ def explore(what: str | None, parameters: tuple[tuple[str, str], ...], no_browse
     else:
         kind = parse_plant(what or _USUAL) if what or plant_file() is None else None
         explored = open_plant(chosen_plant(kind, plant_file(), parameters))
-    turning = {name: kind for name, kind in known_plants().items() if kind.joint == ROTARY}
-    serve(explored, menu(explored.task.plant, turning), click.echo, not no_browser)
+    serve(explored, click.echo, not no_browser)

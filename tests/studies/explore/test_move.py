@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from quietarm.models import SingleLinkManipulator
+from quietarm.models import LinearAxis, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
     CycloidSpline,
@@ -14,7 +14,7 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.studies.cli import main
-from quietarm.studies.explore.opening import open_file, open_plant
+from quietarm.studies.explore.opening import menu, open_file, open_plant
 from quietarm.studies.sweep.library import MoveLibrary
 
 LINK = SingleLinkManipulator()
@@ -41,12 +41,19 @@ def test_what_is_set_is_what_is_evaluated(begun):
     assert now.change({"deflection_limit": None}).task.limits == ()
 
 
-@pytest.mark.parametrize(
-    ("name", "given", "held"),
-    [("target", 999.0, 360.0), ("duration", 0.0, 0.1), ("torque_limit", -5.0, 1e-3)],
-)
-def test_values_outside_their_range_are_held(begun, name, given, held):
-    assert begun.change({name: given}).shown[name] == pytest.approx(held)
+def test_values_outside_their_range_are_held(begun):
+    now = begun.change({"target": 999.0, "duration": 0.0, "torque_limit": -5.0, "a1": None})
+    assert (now.shown["target"], now.shown["duration"], now.shown["a1"]) == (360, 0.1, 0)
+    assert now.shown["torque_limit"] == pytest.approx(1e-3)
+
+
+def test_a_linear_axis_is_set_in_millimetres_and_newtons():
+    axis = LinearAxis()
+    now = open_plant(axis).change({"target": 250.0, "torque_limit": 90.0, "deflection_limit": 4.0})
+    assert now.task == PointToPoint(axis, 0.25, 0.8, torque_limit=90.0, deflection_limit=0.004)
+    labels = [now.dials[name].label for name in ("target", "torque_limit", "speed_limit")]
+    assert labels == ["target [mm]", "torque [N]", "speed [m/s]"]
+    assert all(plant.joint == "linear" for plant in menu(axis).values())
 
 
 def test_a_move_that_is_none_is_refused_with_its_remedy(begun):
@@ -75,10 +82,10 @@ def test_another_profile_begins_from_its_plain_motion_and_terms_are_refused_by_n
     now = begun.keep().choose_profile("spline", 8)
     assert (now.profile, len(now.coefficients), now.kept) == ("spline", 8, begun.plan)
     assert now.plan.coefficients == tuple(CycloidSpline(8).plain)
-    assert begun.choose_terms(4).plan.profile == CycloidPolynomial(4)
+    assert begun.choose_profile("polynomial", 4).plan.profile == CycloidPolynomial(4)
     assert begun.keep().keep().kept is None
     with pytest.raises(ValueError, match="give a whole number from 4 up"):
-        now.choose_terms(2)
+        now.choose_profile("spline", 2)
 
 
 def test_a_plan_and_a_front_are_opened_with_what_they_were_asked_for(tmp_path):

@@ -19,10 +19,10 @@ api.expect.set_options(1e3 * GUARD)
 # Where a point of the front is on the page.
 PLACE = """number => {
     const {id, renderers} = Bokeh.documents[0].get_model_by_name("front");
-    const view = Bokeh.index.find_one_by_id(id), {residual, energy} = renderers[1].data_source.data;
+    const view = Bokeh.index.find_one_by_id(id), points = renderers[1].data_source.data;
     const {x, y} = view.canvas_view.el.getBoundingClientRect();
     const {x_scale, y_scale} = view.frame;
-    return [x + x_scale.compute(residual[number]), y + y_scale.compute(energy[number])];
+    return [x + x_scale.compute(points.x[number]), y + y_scale.compute(points.y[number])];
 }"""
 
 
