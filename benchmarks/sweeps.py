@@ -46,8 +46,8 @@ def speed() -> None:
             axes = Axis("target", tuple(targets), "rad"), Axis("duration", tuple(durations), "s")
             grid = Grid(PointToPoint(plant, 1.0, 1.0), axes)
             sweep = Definition(grid, CycloidPolynomial(), SolveSettings(starts=1))
-            middle = len(sweep.grid.chunks) // 2
-            tasks = sweep.grid.tasks(sweep.grid.chunks[middle])
+            middle = len(sweep.chunks) // 2
+            tasks = sweep.grid.tasks(sweep.chunks[middle])
             in_grid, unchecked, alone = list[float](), list[float](), list[float]()
             for _ in range(repetitions):
                 marks = [time.process_time()]

@@ -25,6 +25,7 @@ from quietarm.ocp.front.curve import Report, no_report
 from quietarm.ocp.limits import quantities_of
 from quietarm.studies.export.formats import export_plan
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
+from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary
 
 FRONT_POINTS = 20
@@ -100,8 +101,9 @@ class Explored:
         """What can be set, by name."""
         task, joint = self.task, self.task.plant.joint
         way = tau if joint == ROTARY else max(1.0, 2 * abs(task.start), 2 * abs(task.target))
-        ends = dict.fromkeys(("start", "target"), (joint_unit("rad", joint), (-way, way)))
-        ends["duration"] = "s", (min(_SHORTEST, task.duration), max(_LONGEST, task.duration))
+        angle, time = joint_unit("rad", joint), task.duration
+        ends = dict.fromkeys(OF_MOVES, (angle, (-way, way)))
+        ends["duration"] = "s", (min(_SHORTEST, time), max(_LONGEST, time))
         for axis in self.library.grid.axes if self.library else ():
             ends[axis.name] = axis.unit, (axis.values[0], axis.values[-1])
         limits = {one.limit: (one.name, one.unit) for one in quantities_of(joint).values()}
@@ -144,7 +146,7 @@ class Explored:
         if self.library and not shown.keys().isdisjoint(at):
             task, coefficients = self.library.task(**at), self.library.coefficients(**at)
         else:
-            ends = {name: values[name] for name in ("start", "target", "duration")}
+            ends = {name: values[name] for name in OF_MOVES}
             task, coefficients = replace(self.task, **ends), [values[a] for a in self.coefficients]
         limits = {name: value for name, value in values.items() if name in _LIMITS}
         task = replace(task, **limits, torque_speed=self.task.torque_speed)

@@ -7,21 +7,24 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from html import escape
+from pathlib import Path
 from typing import Any
 
 from bokeh.document import Document
-from bokeh.layouts import column, row
 from bokeh.models import (
     Button,
+    Column,
     ColumnDataSource,
     CustomJS,
     Div,
     GridBox,
+    Row,
     Select,
     Slider,
     Spinner,
     UIElement,
 )
+from bokeh.themes import Theme
 from jinja2 import Environment, PackageLoader
 from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
@@ -37,16 +40,9 @@ _WAIT = 5
 """Milliseconds in which changes are gathered: a slider sends more of them than are drawn."""
 _WORK = ThreadPoolExecutor(1, "explore")
 """Where plans and fronts are computed, while the page goes on."""
-_WIDE: Mapping[str, Any] = {"sizing_mode": "stretch_width"}
 _FORMAT = "0[.][0000]"
 _FOLLOW = "if (cb_obj.value !== null) other.value = cb_obj.value"
-_SAVE = """
-const link = document.createElement("a");
-link.href = URL.createObjectURL(new Blob([file.data.text[0]], {type: "text/plain"}));
-link.download = file.data.name[0];
-link.click();
-URL.revokeObjectURL(link.href);
-"""
+_HERE = Path(__file__).parent
 
 
 class Page:
@@ -57,17 +53,19 @@ class Page:
         self._pending: dict[str, float | None] = {}
         self._filling, self._saved, self._sliders = False, 0, (list[str](), 0.0)
         self._fields: dict[str, Any] = {}
-        self._shape, self._figures = (column(name="shape", **_WIDE), Div(name="figures", **_WIDE))
+        self._shape, self._figures = (Column(name="shape"), Div(name="figures"))
         self._plots = Plots(document, explored.task.plant.joint, self._pick)
         self._file = ColumnDataSource({"name": [], "text": [], "number": []})
-        self._file.js_on_change("data", CustomJS(args={"file": self._file}, code=_SAVE))
+        self._file.js_on_change(
+            "data", CustomJS(args={"file": self._file}, code=(_HERE / "save.js").read_text())
+        )
         # as a tag it is part of the document
-        self._said = Div(name="said", tags=[self._file], **_WIDE)
+        self._said = Div(name="said", tags=[self._file])
         families: Any = list(dict.fromkeys([*FAMILIES, explored.profile]))
         self._choices: dict[str, Any] = {
-            "plant": Select(title="plant", options=list(plants), **_WIDE),
-            "profile": Select(title="profile", options=families, **_WIDE),
-            "terms": Spinner(title="terms", low=1, step=1, **_WIDE),
+            "plant": Select(title="plant", options=list(plants)),
+            "profile": Select(title="profile", options=families),
+            "terms": Spinner(title="terms", low=1, step=1),
         }
         for name, field in self._choices.items():
             field.on_change("value", partial(self._chosen, name))
@@ -81,6 +79,7 @@ class Page:
         for root in self._roots():
             document.add_root(root)
         document.title = "quietarm explore"
+        document.theme = Theme(_HERE / "theme.yaml")
         loader = PackageLoader("quietarm.studies", "explore")
         document.template = Environment(loader=loader, autoescape=True).get_template("page.html")
         document.template_variables["panels"] = PANELS
@@ -93,40 +92,42 @@ class Page:
         move, limits = list[UIElement](), list[UIElement]()
         for name, dial in self._explored.dials.items():
             if dial.optional:
-                limits.append(self._field(name, dial, placeholder="none", **_WIDE))
+                limits.append(self._field(name, dial, placeholder="none"))
             elif name not in self._explored.coefficients:
                 move.append(self._slider(name, dial))
         files = [_button(name, partial(self._save, name)) for name in FILES]
-        answers = plant, row(*others, **_WIDE), _in_twos(self._buttons)
+        answers = [plant, Row(children=others), _in_twos(self._buttons)]
         return [
             self._said, self._figures, *self._plots.roots, self._shape,
-            column(*answers, name="answers", **_WIDE), column(*move, name="move", **_WIDE),
+            Column(children=answers, name="answers"), Column(children=move, name="move"),
             _in_twos(limits, "limits"), _in_twos(files, "files"),
         ]  # fmt: skip
 
     def _field(self, name: str, dial: Dial, **look: Any) -> Spinner:
         field = Spinner(title=dial.label, format=_FORMAT, **look)
         field.on_change("value", partial(self._typed, name))
-        self._fields[name] = field
-        return field
+        return self._fields.setdefault(name, field)
 
     def _slider(self, name: str, dial: Dial) -> UIElement:
         """A field, and a slider that follows it and is followed."""
         step = float(10 ** math.floor(math.log10((dial.most - dial.least) / 500)))
-        value = self._explored.shown[name]
-        field = self._field(name, dial, value=value, step=step, width=95)
+        value = self._explored.shown[name] or 0.0
+        field = self._field(name, dial, value=value, step=step, width=95, sizing_mode="fixed")
         slider = Slider(start=dial.least, end=dial.most, value=value, step=step, show_value=False,
-                        align="end", **_WIDE)  # fmt: skip
+                        align="end")  # fmt: skip
         for one, other in ((field, slider), (slider, field)):
             one.js_on_change("value", CustomJS(args={"other": other}, code=_FOLLOW))
-        return row(field, slider, **_WIDE)
+        return Row(children=[field, slider])
 
     def _typed(self, name: str, attribute: str, old: Any, new: float | None) -> None:
         if self._filling:
             return
         if not self._pending:
-            self._document.add_timeout_callback(lambda: self._change(lambda same: same), _WAIT)
+            self._document.add_timeout_callback(self._take, _WAIT)
         self._pending[name] = new
+
+    def _take(self) -> None:
+        self._change(lambda same: same)
 
     def _chosen(self, name: str, attribute: str, old: Any, new: Any) -> None:
         changes: dict[str, Change] = {
@@ -225,12 +226,12 @@ def _facts(explored: Explored) -> str:
     return "".join(lines).replace(HARD_REMEDY, "enter what the drive can do under Limits")
 
 
-def _button(label: str, pressed: Callable[[], object]) -> Button:
-    button = Button(label=label, **_WIDE)
-    button.on_click(lambda: pressed() and None)
+def _button(label: str, pressed: Callable[[], Any]) -> Button:
+    button = Button(label=label)
+    button.on_click(pressed)
     return button
 
 
 def _in_twos(elements: Sequence[UIElement], name: str | None = None) -> UIElement:
     places: Any = [(one, k // 2, k % 2) for k, one in enumerate(elements)]
-    return GridBox(children=places, name=name, **_WIDE)
+    return GridBox(children=places, name=name)

@@ -30,7 +30,7 @@ _DIGITS = 6
 """Of what is drawn, behind the point: lists are in the browser sooner than many arrays."""
 _IN_SIGHT = 0.4
 """A limit is drawn where the motion comes to this share of it; else it would flatten the motion."""
-_HIGH, _HIGHER = 200, 280
+_HIGHER = 280
 _NO_FRONT = "Press Front to see what each millimetre saves"
 _PLAY = Path(__file__).with_name("play.js").read_text()
 """The frame of the moment, and the last one for a second."""
@@ -62,8 +62,8 @@ class Plots:
             rows[name] = [(1e3 * one.residual, one.energy) for one in motions]
         rows |= {name: [*_quantity(explored, name)] for name in PANELS}
         for name, source in self._sources.items():
-            columns = zip(*rows[name], strict=True) if rows[name] else ((), (), (), ())
-            source.data = {key: list(one) for key, one in zip(source.data, columns, strict=False)}
+            columns: Any = [*zip(*rows[name], strict=True)] or [()] * len(source.column_names)
+            source.data = dict(zip(source.column_names, map(list, columns), strict=True))
 
     def _source(self, name: str, columns: Sequence[str]) -> ColumnDataSource:
         self._sources[name] = ColumnDataSource({column: [] for column in columns})
@@ -71,7 +71,7 @@ class Plots:
 
     def _stage(self, document: Document) -> Any:
         """The structure, which the browser plays by itself."""
-        plot = _plot("stage", " ", height=_HIGHER, match_aspect=True)
+        plot: Any = figure(name="stage", title=" ", tools="", height=_HIGHER, match_aspect=True)
         plot.grid.visible = plot.axis.visible = False
         film = self._source("film", (*_BODY, "frames", "words"))
         shown = ColumnDataSource({name: [] for name in _BODY})
@@ -79,10 +79,7 @@ class Plots:
         plot.x_range, plot.y_range = (
             DataRange1d(renderers=[room], range_padding=0.2) for _ in _POINT
         )
-        plot.add_layout(ScaleBar(
-            range=plot.x_range, unit="m", location="bottom_right", background_fill_alpha=0,
-            border_line_alpha=0,
-        ))  # fmt: skip
+        plot.add_layout(ScaleBar(range=plot.x_range, unit="m"))
         plot.multi_line("xs", "ys", source=self._source("paths", ("xs", "ys")), color=GREY)
         plot.multi_line("xs", "ys", source=shown, color="colour", line_width="width",
                         line_cap="round", line_join="round")  # fmt: skip
@@ -94,8 +91,11 @@ class Plots:
 
     def _tradeoff(self, pick: Callable[[int], None]) -> Any:
         """The front, and where the motion in hand lies."""
-        self._front = plot = _plot("front", _NO_FRONT, tools="tap")
-        plot.xaxis.axis_label, plot.yaxis.axis_label = "residual F1 [mm]", "energy F2 [J]"
+        plot: Any = figure(
+            name="front", title=_NO_FRONT, tools="tap", x_axis_label="residual F1 [mm]",
+            y_axis_label="energy F2 [J]",
+        )  # fmt: skip
+        self._front = plot
         points, here = self._source("points", _POINT), self._source("here", _POINT)
         points.selected.on_change("indices", lambda _, old, new: pick(new[0]) if new else None)
         plot.line(*_POINT, source=points, color=BLUE)
@@ -106,20 +106,10 @@ class Plots:
 
     def _panel(self, name: str, title: str, below: str) -> Any:
         """Curves over one axis."""
-        plot = _plot(name, title)
-        plot.xaxis.axis_label = below
+        plot: Any = figure(name=name, title=title, tools="", x_axis_label=below)
         plot.multi_line("xs", "ys", source=self._source(name, _CURVE), line_color="colour",
                         line_dash="dash", line_width=1.6)  # fmt: skip
         return plot
-
-
-def _plot(name: str, title: str, height: int = _HIGH, tools: str = "", **more: Any) -> Any:
-    plot: Any = figure(
-        name=name, title=title, height=height, tools=tools, toolbar_location=None,
-        sizing_mode="stretch_width", **more,
-    )  # fmt: skip
-    plot.title.text_font_size = "12px"
-    return plot
 
 
 def _quantity(explored: Explored, name: str) -> Iterator[tuple[Any, ...]]:

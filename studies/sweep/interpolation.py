@@ -64,7 +64,7 @@ class Interpolation:
         marks, boxes = find_jumps(axes, cells), np.indices(self.orders.shape)
         for order in ORDERS:
             usable = self._find_usable(order, marks)
-            self.orders[(self.orders == 0) & usable[self._first(boxes, order)]] = order
+            self.orders[(self.orders == 0) & usable[self._first([*boxes], order)]] = order
 
     def _find_usable(self, order: int, marks: NDArray[np.int32]) -> NDArray[np.bool_]:
         """Whether windows of cells have plans and no jumps, by the place of their first cell."""

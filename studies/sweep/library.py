@@ -163,8 +163,9 @@ class MoveLibrary:
         if known.get("samples") == samples:
             return Between(**known)
         ends = np.array([(axis.values[0], axis.values[-1]) for axis in self.grid.axes])
-        random = np.random.default_rng(0).uniform(*ends.T, (_TRIES * samples, len(ends)))
-        inside = (one for one in random if np.isfinite(self.interpolation([one])).all())
+        low, high = ends.T
+        random = np.random.default_rng(0).uniform(low, high, (_TRIES * samples, len(ends)))
+        inside = (one for one in random if np.isfinite(self.interpolation(one[None])).all())
         places = [dict(zip(self.grid.names, one.tolist(), strict=True))
                   for one in islice(inside, samples)]  # fmt: skip
         if not places:

@@ -67,13 +67,14 @@ class Store:
         names = self.definition.grid.names
         region = dict(zip(names, self.definition.chunks[number], strict=True))
         part = self.dataset.drop_vars([*names, JUMP]).isel(region).load()
-        for name, variable in part.items():
-            values = variable.to_numpy().reshape(len(rows), *variable.shape[len(names) :])
-            for k, row in enumerate(rows):
-                if np.ndim(row.get(name)):
-                    values[k, : len(row[name])] = row[name]
-                elif name in row:
-                    values[k] = row[name]
+        for k, row in enumerate(rows):
+            for name, value in row.items():
+                variable = part[name].to_numpy()
+                cell = variable.reshape(len(rows), *variable.shape[len(names) :])[k : k + 1]
+                if np.ndim(value):
+                    cell[0, : len(value)] = value
+                else:
+                    cell[0] = value
         for some in (part.drop_vars(STATUS), part[[STATUS]]):
             self._write(some, region)
 
@@ -107,8 +108,9 @@ class Store:
 def _lay_out(path: Path, definition: Definition) -> None:
     """Make a dataset whole or not at all, also where two begin at once."""
     xr, grid = _xarray(), definition.grid
-    variables = {axis.name: (axis.name, np.array(axis.values), {"units": axis.unit})
-                 for axis in grid.axes}  # fmt: skip
+    variables: dict[str, Any] = {
+        axis.name: (axis.name, np.array(axis.values), {"units": axis.unit}) for axis in grid.axes
+    }
     for name, one in definition.variables.items():
         sizes = one.beside.values()
         variables[name] = (

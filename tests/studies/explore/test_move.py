@@ -26,14 +26,9 @@ def begun():
     return open_plant(LINK)
 
 
-def test_it_begins_with_the_plain_cycloid_of_the_papers_first_move(begun):
-    assert begun.task == TASK
-    assert begun.plan.energy == pytest.approx(evaluate_coefficients(TASK, []).energy, rel=1e-9)
-    assert begun.shown["target"] == 30.0
-    assert begun.shown["torque_limit"] is None
-
-
-def test_what_is_set_is_what_is_evaluated(begun):
+def test_it_begins_with_the_papers_first_move_and_what_is_set_is_evaluated(begun):
+    assert (begun.task, begun.plan.coefficients) == (TASK, (0.0,) * 6)
+    assert (begun.shown["target"], begun.shown["torque_limit"]) == (30.0, None)
     now = begun.change({"target": 45.0, "duration": 0.9, "a2": -0.2, "deflection_limit": 60.0})
     task = PointToPoint(LINK, math.pi / 4, 0.9, deflection_limit=0.06)
     assert now.task == task

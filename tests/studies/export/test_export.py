@@ -1,11 +1,10 @@
 """Plans in the forms that controllers read."""
 
 import csv
-import ctypes
-import shutil
-import subprocess
+from ctypes import c_double
 from dataclasses import replace
-from math import degrees, pi
+from functools import partial
+from math import pi
 
 import numpy as np
 import pytest
@@ -24,8 +23,8 @@ from quietarm.ocp import (
 from quietarm.studies.export.formats import export_plan
 from scipy.io import loadmat
 
-COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC"]
+from tests.helpers.c_library import compiled, joint_by, needs_compiler
+
 LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8, start=-0.2)
 PROFILES = {
     "polynomial": CycloidPolynomial(6),
@@ -47,34 +46,18 @@ def plan():
     return plan_along(CycloidPolynomial(6))
 
 
-def joint_in_c(folder, plan):
-    """The function of the exported C, compiled with all warnings as errors."""
-    export_plan(plan, folder / "move.c")
-    library = folder / "move.so"
-    line = [COMPILER, *STRICT, "-o", library, folder / "move.c", "-lm"]
-    subprocess.run(line, check=True, capture_output=True)
-    function = ctypes.CDLL(str(library)).move_at
-    function.argtypes = [ctypes.c_double, *[ctypes.POINTER(ctypes.c_double)] * 3]
-
-    def joint(time):
-        values = [ctypes.c_double() for _ in range(3)]
-        function(time, *map(ctypes.byref, values))
-        return [value.value for value in values]
-
-    return joint
-
-
-@pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+@needs_compiler
 @pytest.mark.parametrize("profile", PROFILES.values(), ids=PROFILES)
 def test_c_gives_the_joints_motion_at_any_time(profile, tmp_path):
     plan = plan_along(profile)
-    joint = joint_in_c(tmp_path, plan)
+    export_plan(plan, tmp_path / "move.c")
+    joint = partial(joint_by, compiled(tmp_path / "move.c").move_at)
     times = np.sort(np.random.default_rng(1).uniform(0, 0.8, 200))
     expected = plan.sampled(times).joint
-    found = np.array([joint(time) for time in times])
+    found = np.array([joint(c_double(time)) for time in times])
     assert found == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.abs(expected).max())
-    assert joint(-1.0) == [-0.2, 0.0, 0.0]
-    assert joint(5.0) == [pi / 6, 0.0, 0.0]
+    assert joint(c_double(-1.0)) == [-0.2, 0.0, 0.0]
+    assert joint(c_double(5.0)) == [pi / 6, 0.0, 0.0]
 
 
 def test_csv_has_the_columns_units_and_rate_that_are_asked_for(plan, tmp_path):
@@ -84,13 +67,13 @@ def test_csv_has_the_columns_units_and_rate_that_are_asked_for(plan, tmp_path):
     assert list(rows[0]) == ["time_ms", "speed_rpm", "angle_deg", "tip_mm", "torque_Nm"]
     assert [float(row["time_ms"]) for row in rows] == pytest.approx(10.0 * np.arange(81))
     motion = plan.sampled(np.arange(81) / 100)
-    assert [float(row["angle_deg"]) for row in rows] == pytest.approx(
-        [degrees(angle) for angle in motion.joint[:, 0]]
-    )
     # a turn a minute is 2 pi in 60 s
-    speeds = motion.joint[:, 1] * 60 / (2 * pi)
-    assert [float(row["speed_rpm"]) for row in rows] == pytest.approx(speeds, abs=1e-9)
-    assert [float(row["torque_Nm"]) for row in rows] == pytest.approx(motion.torque, abs=1e-10)
+    expected = {
+        "speed_rpm": motion.joint[:, 1] * 30 / pi, "tip_mm": 1e3 * motion.tips[:, 0],
+        "angle_deg": np.degrees(motion.joint[:, 0]), "torque_Nm": motion.torque,
+    }  # fmt: skip
+    for name, values in expected.items():
+        assert [float(row[name]) for row in rows] == pytest.approx(values, abs=1e-9)
 
 
 def test_ros_reads_a_trajectory_of_the_joint(plan, tmp_path):

@@ -2,7 +2,7 @@
 
 import math
 import shutil
-import subprocess
+from ctypes import c_double
 
 import numpy as np
 import pytest
@@ -13,23 +13,8 @@ from quietarm.studies.cli import main
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.library import MoveLibrary, plan_from
 
-MAIN = """
-#include <stdio.h>
-#include "moves.h"
-int main(void)
-{
-    double a[MOVES_COEFFICIENTS], angle, speed, acceleration;
-    int i;
-    printf("%d ", moves_plan(0.65, 0.93, a));
-    printf("%d ", moves_plan(3.0, 0.93, a));
-    moves_plan(0.65, 0.93, a);
-    for (i = 0; i < MOVES_COEFFICIENTS; i++)
-        printf("%.17g ", a[i]);
-    moves_at(a, 0.65, 0.93, 0.4, &angle, &speed, &acceleration);
-    printf("%.17g %.17g %.17g", angle, speed, acceleration);
-    return 0;
-}
-"""
+from tests.helpers.c_library import compiled, joint_by, needs_compiler
+
 LINE = (
     "sweep single-link --target 20deg:60deg:5deg --duration 800ms:1.1s:50ms --quiet "
     "--output moves.zarr"
@@ -108,21 +93,18 @@ def test_a_margin_makes_moves_between_the_cells_keep_their_limits(call, tmp_path
     assert call(f"export {place} --output {tmp_path / 'moves.c'}")[0] == 0
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="no compiler of C")
+@needs_compiler
 def test_a_controller_gets_the_same_coefficients_and_path(call, tmp_path):
     assert call(f"export moves.zarr --output {tmp_path / 'moves.c'}")[0] == 0
-    (tmp_path / "main.c").write_text(MAIN)
-    parts = [str(tmp_path / name) for name in ("main.c", "moves.c")]
-    program = str(tmp_path / "main")
-    strict = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
-    subprocess.run(["cc", *strict, *parts, "-lm", "-o", program], check=True)
-    printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
+    code = compiled(tmp_path / "moves.c")
+    target, duration, beyond, time = map(c_double, (0.65, 0.93, 3.0, 0.4))
+    a = (c_double * 6)()
+    assert [code.moves_plan(one, duration, a) for one in (beyond, target)] == [1, 0]
     library, at = MoveLibrary("moves.zarr"), {"target": 0.65, "duration": 0.93}
-    assert printed[:2] == ["0", "1"]  # the second move is beyond the grid
-    assert [float(one) for one in printed[2:8]] == pytest.approx(library.coefficients(**at))
+    assert list(a) == pytest.approx(library.coefficients(**at))
     path = library.plan(**at).path
     expected = [float(path(0.4, order)) for order in range(3)]
-    assert [float(one) for one in printed[8:]] == pytest.approx(expected)
+    assert joint_by(code.moves_at, a, target, duration, time) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("broken", ["coefficients/c/0/0/0", "zarr.json"])
@@ -136,10 +118,8 @@ def test_a_damaged_dataset_is_told_in_one_line(tmp_path, broken):
     assert "remove the dataset and sweep it again" in said or "is no dataset of a sweep" in said
 
 
-@pytest.mark.parametrize(
-    ("target", "why"), [(1.3, "the grid has 0.349066 to 1.0472"), (None, "each axis")]
-)
-def test_what_is_not_in_the_dataset_is_refused_with_a_remedy(target, why):
-    at = {} if target is None else {"target": target}
-    with pytest.raises(ValueError, match=why):
-        MoveLibrary("moves.zarr").coefficients(duration=0.9, **at)
+def test_what_is_not_in_the_dataset_is_refused_with_a_remedy():
+    library = MoveLibrary("moves.zarr")
+    for at, why in (({"target": 1.3}, "the grid has 0.349066 to 1.0472"), ({}, "each axis")):
+        with pytest.raises(ValueError, match=why):
+            library.coefficients(duration=0.9, **at)

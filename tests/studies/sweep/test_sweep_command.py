@@ -50,7 +50,7 @@ def test_one_axis_is_shown_as_a_table_and_too_short_a_move_says_so(call, folder)
     assert float(long[1]) < float(short[1])
 
 
-def test_every_cell_is_the_plan_of_its_move(call, folder):
+def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, folder):
     code, out, err = call(FEW + " --output few.png")
     assert (code, err) == (0, "")
     assert "4 of 4 have a plan" in out
@@ -71,6 +71,14 @@ def test_every_cell_is_the_plan_of_its_move(call, folder):
     assert np.isfinite(found.cold_excess).sum() == 1
     assert np.nanmax(found.cold_excess) < 1e-4  # issue 28
     assert (folder / "few.png").read_bytes().startswith(b"\x89PNG")
+    code, out, err = call(FEW.replace("30deg,60deg", "30deg,70deg"))
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "is of another sweep: it differs in target" in err
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), target=math.radians(60), duration=1.0)
+    axes = {"target": [math.radians(60), math.radians(30)], "duration": [0.8, 1.2]}
+    assert same(qa.sweep(task, axes, folder / "made.zarr").load(), found)
+    with pytest.raises(ValueError, match="did you mean 'omega'"):
+        qa.sweep(task, {"omga": [9.0, 10.0]}, folder / "other.zarr")
 
 
 def test_parameters_are_axes_and_what_cannot_be_has_a_reason(call, folder):
@@ -120,19 +128,3 @@ def test_workers_here_and_of_a_cluster_make_the_same_dataset(call, folder):
     one = dataset("one.zarr")
     assert call(f"{line} --workers 2 --output two.zarr")[0] == 0
     assert same(dataset("two.zarr"), one)
-
-
-def test_the_dataset_of_another_sweep_is_left_alone(call, folder):
-    assert call(FEW)[0] == 0
-    code, out, err = call(FEW.replace("30deg,60deg", "30deg,70deg"))
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "is of another sweep: it differs in target" in err
-
-
-def test_python_makes_the_same_dataset(call, folder):
-    assert call(FEW)[0] == 0
-    task = qa.PointToPoint(qa.SingleLinkManipulator(), target=math.radians(60), duration=1.0)
-    axes = {"target": [math.radians(30), math.radians(60)], "duration": [0.8, 1.2]}
-    assert same(qa.sweep(task, axes, folder / "made.zarr").load(), dataset("few.zarr"))
-    with pytest.raises(ValueError, match="did you mean 'omega'"):
-        qa.sweep(task, {"omga": [9.0, 10.0]}, folder / "other.zarr")
