@@ -34,7 +34,7 @@ MOST_STARTS, MOST_POINTS = 10_000, 10_000
 
 
 def versions() -> dict[str, str]:
-    """Versions of what computed an answer."""
+    """Versions of the software that computed an answer."""
     return {
         "quietarm": __version__,
         "casadi": ca.CasadiMeta.version(),
@@ -45,7 +45,7 @@ def versions() -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Record:
-    """What found an answer, and what that took.
+    """Method, settings and effort behind an answer.
 
     Attributes
     ----------
@@ -181,5 +181,5 @@ class Verification:
 
     @classmethod
     def between(cls, steps: int, energy: float, residual: float, motion: Motion) -> Verification:
-        """Compare fixed-step figures [J, m] with those of CVODES."""
+        """Compare values by fixed steps [J, m] with those of CVODES."""
         return cls(steps, energy, residual, energy - motion.energy, residual - motion.residual)

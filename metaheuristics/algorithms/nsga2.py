@@ -44,8 +44,8 @@ class PaperNSGA2(NSGA2):
     """NSGA-II with the paper's settings: crossover rate 0.8, mutation rate 0.01 for each gene.
 
     pymoo's polynomial mutation has one probability for an individual and one for a gene; the
-    paper's rate is read as that of a gene, and any individual may mutate. What the paper leaves
-    open is as in pymoo, and written out here so that new defaults of pymoo change nothing.
+    paper's rate is taken as that of a gene, and any individual may mutate. What the paper does not
+    state is as in pymoo, and written out here so that new defaults of pymoo change nothing.
 
     Parameters
     ----------

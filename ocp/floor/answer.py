@@ -120,7 +120,7 @@ class Floor(MotionAnswer):
 
     @cached_property
     def candidate(self) -> Candidate:
-        """The motion on the nominal plant, judged by CVODES."""
+        """The motion on the nominal plant, evaluated by CVODES."""
         return Candidate.of_free_motion(self.task.certain, self.free)
 
     @property

@@ -66,7 +66,7 @@ def energy_floor(
     Returns
     -------
     Floor
-        The motion, with the figures of an independent integrator.
+        The motion, with values by CVODES.
 
     Raises
     ------

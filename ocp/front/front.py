@@ -59,7 +59,7 @@ class Front(Answer):
     failures : tuple of FailedPoint
         Points that could not be found, with the reason.
     gaps : tuple of (float, float)
-        Ranges of the residual [m] in which a weighted sum has no point, whatever the weight.
+        Ranges of the residual [m] in which a weighted sum has no point for any weight.
     history : tuple of Mark
         Its quality during the run, the end last.
 

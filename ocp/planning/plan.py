@@ -103,14 +103,14 @@ class Plan(MotionAnswer):
         return self.worst.residual / self.residual_limit - 1
 
     def on(self, task: PointToPoint) -> Plan:
-        """The same motion with its figures on an uncertain task, of which it is the nominal one."""
+        """The same motion for an uncertain task with the same nominal plant."""
         motion = Candidate.of_profile(task, self.profile, self.coefficients).motion
         worst = worst_of(task, self.profile, self.coefficients)
         return replace(self, task=task, motion=motion, worst=worst)
 
     @cached_property
     def candidate(self) -> Candidate:
-        """The motion, judged by CVODES."""
+        """The motion, evaluated by CVODES."""
         return Candidate.of_profile(self.task, self.profile, self.coefficients)
 
     @property

@@ -161,7 +161,7 @@ class Results:
     def expected_running_time(
         self, problem: str, method: str, target: float, by: str = "seconds"
     ) -> tuple[float, float, float]:
-        """What all runs spent until the target, or in all, over the number that reached it.
+        """Effort of all runs until the target, or in all, divided by the number that reached it.
 
         As COCO defines it: runs that did not reach it are censored, not left out; infinite where
         none did.

@@ -157,7 +157,7 @@ def compare_fronts(
     Returns
     -------
     Comparison
-        Every front with its figures.
+        Every front with its measures.
 
     Raises
     ------

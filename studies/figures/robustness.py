@@ -29,7 +29,7 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     Parameters
     ----------
     plans : mapping of str to Robustness
-        The figures of each plan by what the legend calls it.
+        The robustness of each plan by its name in the legend.
     name : str
         The error: ``"frequency"``, ``"damping"`` or a parameter; each plan has a sweep of it.
     ax : matplotlib.axes.Axes, optional

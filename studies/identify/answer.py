@@ -17,19 +17,19 @@ _LEAST_ERROR = 1e-6
 
 @dataclass(frozen=True)
 class Estimate:
-    """A parameter that recordings tell.
+    """A parameter that recordings identify.
 
     Attributes
     ----------
     parameter : str
         Its name.
     value : float
-        The mean over the parts, weighed by how well each tells it [SI units].
+        The mean over the parts, weighted by their accuracy [SI units].
     low, high : float
         Ends of the interval that covers the mean in 95 of 100 cases.
     next_low, next_high : float or None
-        Ends of the interval that covers the next swing's in 95 of 100 cases, by how much the parts
-        differ beyond their own uncertainty; None where there is one part.
+        Ends of the interval that covers the next recording's in 95 of 100 cases, from the scatter
+        of the parts beyond their own uncertainty; None with one part.
     """
 
     parameter: str
@@ -68,17 +68,17 @@ class Part:
     values, deviations : dict of str to float
         The parameters by this part alone, and their standard deviations.
     amplitude : float
-        Of the swing at its begin, in the signal's unit.
+        Of the vibration at the begin, in the signal's unit.
     misfit : float
-        Root mean square of what the fit leaves, as a share of the swing's.
+        Root mean square of the residuals, as a share of the vibration's.
     noise : float
         The recording's own noise, as a share of the same.
     cause, warning : str
-        Why the fit leaves more than noise: a word, and a sentence; empty where it does not.
+        Why the residuals are more than noise: a word, and a sentence; empty if they are not.
     saturated : int
-        Samples at the sensor's limit, which are left out.
+        Samples at the sensor's limit, which are excluded.
     drifts : bool
-        Whether a slow motion of the signal is left out.
+        Whether a slow drift of the signal is excluded.
     hub : str
         How the joint's recorded motion is met: not at all where it is empty, ``"creeps"`` beside a
         free decay, ``"moves"`` all of it, ``"equations"`` all of it by the plant's own equations.
@@ -101,22 +101,22 @@ class Part:
 
 @dataclass(frozen=True)
 class Identified(Saved):
-    """A plant as recordings tell it.
+    """A plant that is identified from recordings.
 
     Attributes
     ----------
     plant : Plant
-        With what is identified; all else is as it was given.
+        With the identified parameters; all others are as given.
     estimates : tuple of Estimate
-        The parameters that the recordings tell.
+        The identified parameters.
     not_identifiable : dict of str to str
-        Those asked for that they do not tell, and why.
+        Parameters that are not identifiable by the recordings, and why.
     parts : tuple of Part
-        What was fitted.
+        The fitted parts.
     left_out : dict of str to str
-        Recordings that were not, and why.
+        Recordings that were not fitted, and why.
     warnings : tuple of str
-        What is doubtful about the recordings themselves, as their units.
+        Doubts about the recordings, such as their units.
     versions : dict of str to str
         Of what identified it.
     """
@@ -134,7 +134,7 @@ class Identified(Saved):
 
     @property
     def errors(self) -> dict[str, float]:
-        """Relative errors of the plant by the intervals of the next swing, for an `Uncertainty`.
+        """Relative errors by the intervals of the next recording, for an `Uncertainty`.
 
         Raises
         ------
@@ -173,7 +173,7 @@ class Identified(Saved):
         Raises
         ------
         ValueError
-            When one shows in how the plant swings, and not in its torque alone.
+            When one affects the vibration of the plant, and not its torque alone.
         """
         for name in names:
             if name in self.plant.measured and not in_torque_alone(self.plant, name):

@@ -148,7 +148,7 @@ class MoveLibrary:
         return self.grid.task_at(at)
 
     def plan(self, **at: float) -> Plan:
-        """The move between the cells, with its figures by CVODES; it may break a limit.
+        """The move between the cells, evaluated by CVODES; it may violate a limit.
 
         ValueError where the library has no coefficients for it.
         """
