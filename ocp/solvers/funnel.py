@@ -67,10 +67,10 @@ class End(Enum):
 
     SOLVED = "a local optimum"
     CREEPING = "feasible, and hardly better for many iterations"
-    VANISHED = "feasible, and no step that the trust region still allows is better"
+    VANISHED = "feasible, and no step within the trust region is better"
     INFEASIBLE = "no smaller violation nearby"
     UNFINISHED = "the iterations ran out"
-    AGREED = "left, since another start led to the same, or others agreed"
+    AGREED = "stopped, since another start led to the same point, or others agreed"
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def minimise(
 
     The last `linear` entries of v are linear and kept from the start on. Rows of one number in
     `groups` are starts of one program: once half of them, and more than one, agree on the least f,
-    the others are left. The objective is rounded off over the widths, one after another, the last
+    the others are stopped. The objective is smoothed over the widths, one after another, the last
     of them 0; trust regions have the radius `reach` at first, rows at most `most` iterations. `log`
     prints a line for each.
     """

@@ -66,7 +66,7 @@ class Sqp:
             Whether the starts are beside minima.
         groups : sequence of int, optional
             Problems of one number are one problem from several starts: once half of them, and more
-            than one, agree on the least objective, the others are left.
+            than one, agree on the least objective, the others are stopped.
 
         Returns
         -------
