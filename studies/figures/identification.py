@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from quietarm.studies.figures.looks import BLUE, GREY, RED
 from quietarm.studies.identify import Identified, Part, Recording
 from quietarm.studies.identify.diagnosis import spectrum_of
-from quietarm.studies.identify.forced import Forced
-from quietarm.studies.identify.identification import fit_again
+from quietarm.studies.identify.identification import curve_of
 
 _MOST = 6
 """Parts that are drawn; of more the first."""
@@ -59,17 +58,14 @@ def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Rec
     over = row.add_subplot(grid[0, 0])
     left = row.add_subplot(grid[1, 0], sharex=over)
     spectrum = row.add_subplot(grid[:, 1])
-    fit = fit_again(found, part, recordings)
     recording = next(one for one in recordings if one.name == part.recording)
-    piece = recording.part(recording.rows(part.begin, part.end))
-    time = fit.time if isinstance(fit, Forced) else fit.window.begin + fit.window.time
-    fitted, residual = fit.fitted[:, 0], fit.residual[:, 0]
+    model, signals = curve_of(found, part, recordings)
+    time, fitted = model.time, signals[:, 0]
+    residual = np.where(model.kept, model.values[:, 0] - fitted, np.nan)
     size = max(float(np.abs(fitted - fitted.mean()).max()), 1e-300)
-    drawn = time, fitted
-    if not (part.hub or isinstance(fit, Forced)):
-        drawn = piece.time, fit.at(piece.time)[:, 0]
+    piece = recording.part(recording.rows(part.begin, part.end))
     over.plot(piece.time, piece.values[:, 0], color=GREY, linewidth=2.2, label="measured")
-    over.plot(*drawn, color=BLUE, linewidth=1.0, label="fitted")
+    over.plot(time, fitted, color=BLUE, linewidth=1.0, label="fitted")
     over.set_title(f"{part.recording}, {part.begin:.3g} to {part.end:.3g} s: {part.misfit:.1%} "
                    f"left, noise {part.noise:.1%}", loc="left", fontsize=8)  # fmt: skip
     quantity = next(iter(recording.signals))
@@ -80,7 +76,7 @@ def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Rec
     left.axhline(0, color="0.3", linewidth=0.5)
     left.set_ylabel("left [%]", fontsize=8)
     left.set_xlabel("time [s]", fontsize=8)
-    at, amplitude = spectrum_of(time, residual[:, None])
+    at, amplitude = spectrum_of(time[model.kept], residual[model.kept, None])
     spectrum.loglog(at[1:], 100 * amplitude[1:] / size + 1e-9, color=RED, linewidth=0.7)
     for frequency in _frequencies(found, part):
         spectrum.axvline(frequency, color=BLUE, linewidth=0.8, linestyle="--")

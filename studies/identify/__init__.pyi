@@ -1,7 +1,7 @@
-from .answer import Estimate as Estimate
-from .answer import Identified as Identified
-from .answer import Part as Part
 from .identification import identify as identify
+from .machine import Estimate as Estimate
+from .machine import Identified as Identified
+from .machine import Part as Part
 from .prediction import Prediction as Prediction
 from .prediction import predict as predict
 from .recording import Recording as Recording

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.studies.identify.answer import Estimate, Part
+from quietarm.studies.identify.machine import Estimate, Part
 
 Array = NDArray[np.float64]
 _LEVEL = 0.95

@@ -4,41 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import tau
 
 import numpy as np
+from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
-from quietarm.studies.identify.answer import Identified, Part, in_torque_alone
 from quietarm.studies.identify.combine import combine
-from quietarm.studies.identify.forced import (
-    Forced,
-    ForcedModel,
-    described,
-    fit_forced,
-    not_identifiable,
-)
-from quietarm.studies.identify.parameters import is_modal, started_at, values_of
-from quietarm.studies.identify.parts import candidates, longest_rest, moves, prominence
+from quietarm.studies.identify.fitting import Model
+from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
+from quietarm.studies.identify.machine import Identified, Part, in_torque_alone
+from quietarm.studies.identify.parameters import is_modal
+from quietarm.studies.identify.parts import PartFitter
 from quietarm.studies.identify.recording import Recording
-from quietarm.studies.identify.response import Response
-from quietarm.studies.identify.ring_down import RingDowns
-from quietarm.studies.identify.swing import Swing, averaged
+from quietarm.studies.identify.ring_downs import moves
 
-_SLOWEST, _FASTEST = 0.02, 500.0
-"""Frequencies [Hz] that no arm has: a wrong unit of the time is more likely."""
-_COARSE, _DOUBTFUL = 0.2, 0.1
-"""A step [s] and a frequency [Hz] that may come from a time in milliseconds."""
-_TURNS = 2 * tau
-"""A joint that turns further may be in degrees."""
+Array = NDArray[np.float64]
+_DEPENDENT = 1e-3
+"""Parameters cannot be told apart where others explain all but this share of what one does."""
 _BAD = 0.9
-"""Share of the signal's size that a forced fit may leave."""
-_FACTORS = (1.0, 0.8, 1.25, 0.6, 1.6)
-"""Of the spectrum's frequency, from which forced fits start, beside the plant's own."""
-_SAMPLES = 200
-"""A period, of what is fitted to the joint's motion."""
+"""Share of the swing's size that a fit of all of a recording may leave."""
 
 
 @one_at_a_time
@@ -77,86 +63,59 @@ def identify(
         When a parameter is unknown, the recordings have different signals, nothing in them rings
         for two periods, or no parameters of the plant meet them.
     """
-    recordings = list(recordings)
-    if not recordings:
-        raise ValueError("no recording is given; give one")
-    kinds = list(recordings[0].signals)
-    for one in recordings[1:]:
-        if list(one.signals) != kinds:
-            raise ValueError(
-                f"{one.name} has {' and '.join(one.signals)}, {recordings[0].name} "
-                f"{' and '.join(kinds)}; give recordings of the same signals"
-            )
-    _check_tips(plant, recordings)
+    kinds = _check(recordings, plant)
     names = _sought(plant, free, kinds)
     frequencies = find_frequencies(recordings)
-    warnings = _doubts(recordings, frequencies)
+    each = list(zip(recordings, frequencies, strict=True))
     fitted, left_out, unknown = list[Part](), dict[str, str](), dict[str, str]()
-    if _swings_alone(plant, names, kinds):
-        fitter = RingDowns(plant, names)
-        for one, frequency in zip(recordings, frequencies, strict=True):
-            found, why = fitter.fit(one, frequency, parts)
+    if "torque" not in kinds and all(is_modal(plant, name) for name in names):
+        for one, frequency in each:
+            found, why = PartFitter(plant, names, one, frequency).ring_downs(parts)
             fitted += found
             if why:
                 left_out[one.name] = why
         if not fitted and not any(moves(one) for one in recordings):
             raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
     if not fitted:
-        fitted, unknown = _forced(recordings, plant, names, frequencies)
         left_out = {}
-    known = [name for name in names if name not in unknown]
-    estimates, wide = combine(known, fitted)
+        unknown = _not_identifiable(each, plant, names)
+        fitted = _wholes(each, plant, [name for name in names if name not in unknown])
+    estimates, wide = combine([name for name in names if name not in unknown], fitted)
     unknown |= wide
     return Identified(
         replace(plant, **{one.parameter: one.value for one in estimates}),
         tuple(estimates), {name: unknown[name] for name in names if name in unknown},
-        tuple(fitted), left_out, tuple(warnings), versions(),
+        tuple(fitted), left_out, tuple(doubt_units(recordings, frequencies)), versions(),
     )  # fmt: skip
 
 
-def fit_again(found: Identified, part: Part, recordings: Sequence[Recording]) -> Swing | Forced:
-    """The fit of a part, as it was made from the recordings."""
+def curve_of(found: Identified, part: Part, recordings: Sequence[Recording]) -> tuple[Model, Array]:
+    """What was fitted in a part, and the signals that it was met by (rows, signals)."""
     recording = next(one for one in recordings if one.name == part.recording)
-    names = list(part.values)
-    if part.hub == "equations":
-        model = _model(found.plant, names, _thinned(recording, find_frequencies([recording])[0]))
-        return fit_forced(model, [found.plant], names)
-    return RingDowns(found.plant, names).again(part, recording)
+    fitter = PartFitter(found.plant, list(part.values), recording, 1.0)
+    fitter.frequency = fitter.frequency_of(part)
+    model = fitter.model(part)
+    return model, model.fitted(np.array(list(part.values.values())))
 
 
-def _swings_alone(plant: Plant, names: Sequence[str], kinds: Sequence[str]) -> bool:
-    """Whether only frequencies and dampings are sought, which need no scale."""
-    return "torque" not in kinds and all(is_modal(plant, name) for name in names)
-
-
-def _model(plant: Plant, names: Sequence[str], recording: Recording) -> ForcedModel:
-    kinds = list(recording.signals)
-    return ForcedModel(Response(plant, names, kinds), recording, _swings_alone(plant, names, kinds))
-
-
-def _thinned(recording: Recording, frequency: float) -> Recording:
-    """A recording averaged to what a forced fit needs."""
-    given = {
-        k: v for k, v in vars(recording).items() if isinstance(v, np.ndarray) and k != "values"
-    }
-    share = _SAMPLES * frequency * recording.step
-    if not share or share > 0.5:
-        return recording
-    mean = {
-        k: averaged(v.reshape(len(v), -1), share).reshape(-1, *v.shape[1:])
-        for k, v in given.items()
-    }
-    return replace(recording, **mean)
-
-
-def _check_tips(plant: Plant, recordings: Sequence[Recording]) -> None:
+def _check(recordings: Sequence[Recording], plant: Plant) -> list[str]:
+    """The kinds of the recordings' signals, that are the same in all of them."""
+    if not recordings:
+        raise ValueError("no recording is given; give one")
+    first = recordings[0]
     for one in recordings:
+        if list(one.signals) != list(first.signals):
+            raise ValueError(
+                f"{one.name} has {' and '.join(one.signals)}, {first.name} "
+                f"{' and '.join(first.signals)}; give recordings of the same signals"
+            )
         for kind, values in one.signals.items():
             if kind != "torque" and values.shape[1] != plant.tips:
                 raise ValueError(
                     f"{one.name} has {values.shape[1]} of {kind}; {plant.name} has {plant.tips} "
                     "tips, give one of each"
                 )
+    return list(first.signals)
 
 
 def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> list[str]:
@@ -175,90 +134,43 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
     return names
 
 
-def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
-    """The frequency of every recording's swing [Hz]: that of all, where it is a candidate."""
-    rests = [longest_rest(one) for one in recordings]
-    tables = [{f: prominence(one, f) for f in candidates(one)} for one in rests]
-    for one, table in zip(recordings, tables, strict=True):
-        if not any(table.values()):
-            if len(recordings) == 1:
-                raise ValueError(
-                    f"{one.name}: no swing stands out of the noise; push harder, or record longer "
-                    "and with more samples"
-                )
-            table[0.0] = 0.0
-    pooled: dict[float, float] = {}
-    for table in tables:
-        total = sum(table.values()) + 1e-300
-        for frequency, loud in table.items():
-            key = next((k for k in pooled if k and abs(frequency / k - 1) < 0.3), frequency)
-            pooled[key] = pooled.get(key, 0.0) + loud / total
-    common = max(pooled, key=lambda key: pooled[key])
-    found: list[float] = []
-    for table in tables:
-        near = {f: v for f, v in table.items() if common and abs(f / common - 1) < 0.3}
-        own = max(table, key=lambda f: table[f])
-        best = max(near, key=lambda f: near[f]) if near else own
-        found.append(best if near and near[best] > 0.05 * table[own] else own)
-    for one, frequency in zip(recordings, found, strict=True):
-        if frequency and not _SLOWEST <= frequency <= _FASTEST:
-            raise ValueError(
-                f"{one.name} swings at {frequency:.3g} Hz, as no arm does; is its time in another "
-                "unit? say so by --units, as time:ms"
-            )
+def _wholes(
+    each: Sequence[tuple[Recording, float]], plant: Plant, names: Sequence[str]
+) -> list[Part]:
+    """Every recording by all of its joint's motion."""
+    found = [PartFitter(plant, names, one, frequency).whole() for one, frequency in each]
+    least = min(part.misfit for part in found)
+    if least > _BAD:
+        raise ValueError(
+            f"{found[0].recording}: with no {' and '.join(names)} does {plant.name} move so, "
+            f"{least:.0%} of the swing is left; check columns and units"
+        )
     return found
 
 
-def _doubts(recordings: Sequence[Recording], frequencies: Sequence[float]) -> list[str]:
-    """What units may be wrong."""
-    found: list[str] = []
-    for one, frequency in zip(recordings, frequencies, strict=True):
-        if one.step >= _COARSE or 0 < frequency < _DOUBTFUL:
-            found.append(
-                f"{one.name}: {frequency:.3g} Hz by samples {one.step:.3g} s apart; is its time in "
-                "milliseconds? say so by --units time:ms"
-            )
-        if frequency > _FASTEST / 2:
-            found.append(
-                f"{one.name}: {frequency:.4g} Hz is fast for an arm; is its time in seconds? say "
-                "so by --units time:s"
-            )
-        if one.angle is not None and np.ptp(one.angle) > _TURNS:
-            found.append(
-                f"{one.name}: its joint turns by {np.ptp(one.angle):.3g} rad, more than two turns; "
-                "is it in degrees? say so by --units angle:deg"
-            )
-    return found
-
-
-def _forced(
-    recordings: Sequence[Recording], plant: Plant, names: list[str], frequencies: Sequence[float]
-) -> tuple[list[Part], dict[str, str]]:
-    """Every recording by all of its joint's motion, and what these do not tell."""
-    for one in recordings:
+def _not_identifiable(
+    each: Sequence[tuple[Recording, float]], plant: Plant, names: Sequence[str]
+) -> dict[str, str]:
+    """The parameters that recordings of moving joints cannot tell, and why."""
+    for one, _ in each:
         if not moves(one):
             raise ValueError(
                 f"{one.name}: the joint does not move, and what is sought shows while it moves "
                 "alone; record its angle during a move"
             )
-    modal, loudest = [name for name in names if is_modal(plant, name)], max(frequencies)
-    starts = [plant, *(started_at(plant, modal, loudest * factor) for factor in _FACTORS)]
-    thin = [_thinned(one, f) for one, f in zip(recordings, frequencies, strict=True)]
-    p = values_of(plant, names)
-    unknown = not_identifiable([_model(plant, names, one) for one in thin], names, p)
-    names = [name for name in names if name not in unknown]
-    if not names:
-        raise ValueError(
-            f"the recordings tell nothing of {', '.join(unknown)}; name others by free"
-        )
-    fits = [
-        fit_forced(_model(plant, names, one), list(dict.fromkeys(starts)), names) for one in thin
-    ]
-    least = min(fit.misfit for fit in fits)
-    if least > _BAD:
-        raise ValueError(
-            f"{thin[0].name}: with no {' and '.join(names)} does {plant.name} move so, {least:.0%} "
-            "of the signal is left; check columns and units"
-        )
-    each = zip(thin, fits, frequencies, strict=True)
-    return [described(one, names, fit, frequency) for one, fit, frequency in each], unknown
+    J = np.concatenate([PartFitter(plant, names, *one).sensitivities() for one in each])
+    largest = np.linalg.norm(J, axis=0).max()
+    kept: list[int] = []
+    cannot: dict[str, str] = {}
+    for k, name in enumerate(names):
+        size = np.linalg.norm(J[:, k])
+        share, *_ = np.linalg.lstsq(J[:, kept], J[:, k], rcond=None)
+        if size <= 1e-9 * largest:
+            cannot[name] = "nothing that was recorded depends on it"
+        elif kept and np.linalg.norm(J[:, k] - J[:, kept] @ share) < _DEPENDENT * size:
+            cannot[name] = f"it does what {names[kept[int(np.abs(share).argmax())]]} does"
+        else:
+            kept.append(k)
+    if not kept:
+        raise ValueError(f"the recordings tell nothing of {', '.join(cannot)}; name others by free")
+    return cannot

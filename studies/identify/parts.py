@@ -1,241 +1,276 @@
-"""Where a recording rings down by itself: found by how its swing grows and decays."""
+"""Each ring-down of a recording fitted alone, or all of it by its joint's motion."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import replace
+from math import tau
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.models import Plant
+from quietarm.studies.identify.diagnosis import cause_of, exceeds, saturated
+from quietarm.studies.identify.fitting import Fit, Model, fit
+from quietarm.studies.identify.machine import Part
+from quietarm.studies.identify.parameters import bounds_of, is_frequency, is_modal, values_of
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
+from quietarm.studies.identify.response import Driven, FreeDecay, Response, smooth
+from quietarm.studies.identify.ring_downs import LEAST_PERIODS, find_ring_downs, moves
 
 Array = NDArray[np.float64]
-Run = tuple[int, int]
+_PER_PERIOD = 64
+"""Samples a period of the fastest mode; more are averaged."""
+_HELPS = 0.9
+"""The hub is part of the model where what is left falls below this share by it."""
+_MET = 0.05
+"""Share of a whole recording that its joint's motion may leave, to be better than ring-downs."""
+_HUB = 0.015
+"""Of a frequency, that a hub which swings with the tip may shift it."""
+_FACTORS = np.geomspace(0.5, 2, 21)
+"""Of a frequency, from the best of which whole recordings are fitted."""
+_MORE = 2.0
+"""Times the noise that is left, from which on a delay of the angle matters."""
+_SLOW = 0.25
+"""Of the swing's frequency: slower motions are taken for drift."""
+_FAR = 4.0
+"""A quarter of a period belongs to a swing where it leaves less than so many times the usual."""
+_MUCH_DAMPING = 0.12
+"""More than a held beam has; a controller that gives way damps like that."""
+_DAMPINGS = (0.002, 0.01, 0.03, 0.08, 0.2, 0.4)
+_STARTS = 3
+"""Of whole recordings."""
 
-LEAST_PERIODS = 2.0
-_WINDOW = 3.0
-"""Periods that the swing is weighed over, by Hann's window."""
-_LEAST_SAMPLES = 4
-"""A period has to have."""
-_GAP = 1.0
-"""Periods without a sample, after which another part begins."""
-_GROWS = 1.15
-"""Factor by which a free decay never grows, beside the noise."""
-_SMALLEST = 0.05
-"""Of the largest swing: smaller ones are not called ring-downs."""
-_CREEPS = 0.03
-"""Of its whole way, what a joint may move in a period and be called at rest."""
-_CANDIDATES, _APART = 4, 0.05
-_STRETCHES = (1, 4, 16, 64)
-_STANDS_OUT = 1.5
-"""How far a peak of a spectrum is above what is beside it, as a logarithm."""
 
+class PartFitter:
+    """Fits of the parts of one recording, that swings at a frequency.
 
-@dataclass(frozen=True, eq=False)
-class Envelope:
-    """How much a recording swings at a frequency.
-
-    Attributes
+    Parameters
     ----------
+    plant : Plant
+        Its equations, and the values of what is not sought.
+    names : sequence of str
+        The parameters that are sought.
+    recording : Recording
+        What was measured.
     frequency : float
-        [Hz].
-    time, size : array
-        Amplitude, of several signals together, in units of their noise.
-    noise : float
-        Of it.
+        Of its swing [Hz].
     """
 
-    frequency: float
-    time: Array
-    size: Array
-    noise: float
+    def __init__(
+        self, plant: Plant, names: Sequence[str], recording: Recording, frequency: float
+    ) -> None:
+        self.plant, self.names, self.recording = plant, list(names), recording
+        self.frequency = frequency
+        kinds = [kind for kind, values in recording.signals.items() for _ in values.T]
+        self._response = Response(plant, names, kinds)
+        self._given = values_of(plant, names)
+        self._rates = np.array([is_frequency(plant, name) for name in names])
+        self._dampings = np.array([is_modal(plant, name) for name in names]) & ~self._rates
+        self._scaled = "torque" not in kinds and all(is_modal(plant, name) for name in names)
+        self._modes, _ = self._response.eigenvalues(self._given)
 
+    def model(self, part: Part, thin: bool = True) -> Model:
+        """The model of a part: without saturated samples, with drift or hub, as the part says."""
+        piece = self._piece(part)
+        fastest = self.frequency * float(self._modes[-1].imag / self._modes[0].imag)
+        spline = smooth(piece) if part.hub else None
+        if thin and not part.saturated:
+            piece = piece.averaged(1 / max(_PER_PERIOD * fastest * piece.step, 1e-9))
+        columns = FreeDecay(self._response, piece)
+        if spline:
+            columns = Driven(self._response, piece.time, spline, tau * fastest, self._scaled)
+        cosines = int(2 * _SLOW * self.frequency * np.ptp(piece.time)) if part.drifts else 0
+        model = Model(piece, columns, cosines, self._scaled)
+        if part.saturated:
+            model.kept = ~saturated(piece.values)
+            if part.values:  # by the fit: near the limit the noise is cut as well
+                model.kept = ~saturated(piece.values, model.fitted(_p(part)))
+        return model
 
-def envelope(
-    recording: Recording, frequency: float, values: Array | None = None
-) -> Envelope | None:
-    """The amplitude at a frequency over time, free of offset and slope; None where none fits in.
-
-    Cosine, sine, offset and slope are fitted to three periods at a time by weighted least squares:
-    that is two filters.
-    """
-    from scipy.signal import fftconvolve  # not at the top: it takes long to load
-
-    even, y = _evenly(recording, frequency, recording.values if values is None else values)
-    h = float(even[1] - even[0])
-    count = min(round(_WINDOW / (frequency * h)), len(even))
-    if frequency * h * _LEAST_SAMPLES > 1 or count < 8:
-        return None
-    t = (np.arange(count) - (count - 1) / 2) * h
-    phase = 2 * np.pi * frequency * t
-    X = np.stack([np.cos(phase), np.sin(phase), np.ones(count), t], axis=1)
-    weight = np.hanning(count + 2)[1:-1]
-    kernel = np.linalg.solve(X.T @ (weight[:, None] * X), X.T * weight)[:2]
-    parts = [fftconvolve(y, k[::-1, None], mode="valid", axes=0) for k in kernel]
-    noise = float(np.linalg.norm(kernel[0]))
-    size = np.sqrt(sum((part**2).sum(axis=1) for part in parts))
-    return Envelope(frequency, even[: len(size)] + (count - 1) / 2 * h, size, noise)
-
-
-def _evenly(recording: Recording, frequency: float, values: Array) -> tuple[Array, Array]:
-    """Times with the same step, and the signals there in units of their noise."""
-    time = recording.time
-    least = 1e-9 * np.ptp(values, axis=0) + 1e-12 * np.abs(values).max(axis=0) + 1e-300
-    noise = np.maximum(noise_of(values), least)
-    thin = max(1, int(1 / (32 * frequency * recording.step)))
-    rows = len(time) // thin * thin
-    mean = lambda x: x[:rows].reshape(-1, thin, *x.shape[1:]).mean(axis=1)  # noqa: E731
-    time, y = mean(time), mean(values / noise)
-    count = round(float(np.ptp(time)) / float(np.median(np.diff(time)))) + 1
-    even = np.linspace(time[0], time[-1], count)
-    return even, np.stack([np.interp(even, time, column) for column in y.T], axis=1)
-
-
-def candidates(recording: Recording) -> list[float]:
-    """Frequencies [Hz] at which a recording swings, by spectra of long and short stretches of it.
-
-    Peaks of displacement and of speed: the one is steep beside a slow motion, the other is not.
-    """
-    from scipy.signal import find_peaks, spectrogram  # not at the top: it takes long to load
-
-    even, y = _evenly(recording, 1 / (32 * recording.step), recording.values)
-    rate, total = 1 / float(even[1] - even[0]), len(even)
-    found: list[float] = []
-    for share in _STRETCHES:
-        length = total // share
-        if length < 32:
-            break
-        at, _, power = spectrogram(
-            y, rate, "hann", length, length // 2, 4 * length, detrend="linear", axis=0
-        )
-        known = slice(int(np.searchsorted(at, 1.5 * rate / length)), None)
-        levels = np.log(power.sum(axis=1).max(axis=-1)[known] + 1e-300)
-        for order in (0, 2):
-            steep = levels + order * np.log(at[known])
-            peaks, _ = find_peaks(steep, prominence=_STANDS_OUT)
-            best = peaks[np.argsort(steep[peaks])[::-1][:_CANDIDATES]]
-            found += [float(at[known][k]) for k in best]
-    apart: list[float] = []
-    for one in found:
-        if all(abs(one / other - 1) > _APART for other in apart):
-            apart.append(one)
-    return apart
-
-
-def prominence(recording: Recording, frequency: float) -> float:
-    """How much a recording rings at a frequency: the square of the amplitude, summed over periods.
-
-    Of an accelerometer as a displacement, so that a fast mode does not hide a slow one.
-    """
-    swing = envelope(recording, frequency)
-    if swing is None:
-        return 0.0
-    loud = swing.size > 4 * swing.noise
-    step = float(swing.time[1] - swing.time[0]) if len(swing.time) > 1 else recording.step
-    accelerates = "acceleration" in recording.signals and "tip" not in recording.signals
-    order = -4 if accelerates else 0
-    return float((swing.size[loud] ** 2).sum()) * step * frequency ** (1 + order)
-
-
-def ring_downs(recording: Recording, frequency: float, standing: NDArray[np.bool_]) -> list[slice]:
-    """The rows of every free decay of two periods or more, while the joint is at rest."""
-    found: list[tuple[float, slice]] = []
-    for run in _runs(_between_gaps(recording, frequency), standing):
-        if run[1] - run[0] < LEAST_ROWS:
-            continue
-        part = recording.part(slice(*run))
-        if (swing := envelope(part, frequency)) is None:
-            continue
-        for begin, end in _decays(swing, part):
-            rows = recording.rows(begin, end)
-            if (
-                end - begin
-            ) * frequency > 0.9 * LEAST_PERIODS and rows.stop - rows.start >= LEAST_ROWS:
-                among = (swing.time >= begin) & (swing.time <= end)
-                found.append((float(swing.size[among].max(initial=0.0)), rows))
-    largest = max((size for size, _ in found), default=0.0)
-    return [rows for size, rows in found if size >= _SMALLEST * largest]
-
-
-def _between_gaps(recording: Recording, frequency: float) -> list[Run]:
-    edges = np.flatnonzero(np.diff(recording.time) * frequency > _GAP) + 1
-    ends = [0, *edges.tolist(), len(recording.time)]
-    return list(pairwise(ends))
-
-
-def _runs(between: Sequence[Run], yes: NDArray[np.bool_]) -> list[Run]:
-    found: list[Run] = []
-    for first, last in between:
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], yes[first:last].astype(int), [0]])))
-        found += [
-            (first + int(a), first + int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)
-        ]
-    return found
-
-
-def _decays(swing: Envelope, part: Recording) -> list[tuple[float, float]]:
-    """Begin and end of each stretch in which the amplitude does not grow and is above the noise."""
-    size, half = swing.size, _WINDOW / 2 / swing.frequency
-    least = max(3 * swing.noise, 1e-6 * float(size.max()))
-    found: list[tuple[float, float]] = []
-    k, count = 0, len(size)
-    while k < count:
-        if size[k] < least:
-            k += 1
-            continue
-        # up to the top: where it has not been surpassed for half a window
-        top = k
-        reach = max(
-            1, round(half / max(float(swing.time[-1] - swing.time[0]) / max(count - 1, 1), 1e-300))
-        )
-        while True:
-            ahead = top + int(np.argmax(size[top : top + reach + 1]))
-            if ahead == top:
-                break
-            top = ahead
-        low, last = size[top], top
-        for last in range(top, count):
-            low = min(low, size[last])
-            if size[last] < least or size[last] > _GROWS * low + 2 * swing.noise:
-                break
+    def ring_downs(self, by_hand: Sequence[tuple[float, float]] = ()) -> tuple[list[Part], str]:
+        """The ring-downs of the recording, or why there are none."""
+        recording, frequency = self.recording, self.frequency
+        if not frequency:
+            return [], "no swing stands out of the noise"
+        if by_hand:
+            found = [recording.rows(*ends) for ends in by_hand]
+            found = [rows for rows in found if rows.stop - rows.start >= LEAST_ROWS]
         else:
-            last = count
-        grew = last < count and size[last] >= least
-        begin = part.time[0] if top == 0 else swing.time[top]
-        end = part.time[-1] if last == count else swing.time[last - 1]
-        if grew:  # what pushed it again is in the windows before
-            bottom = top + int(np.argmin(size[top:last]))
-            end = swing.time[bottom] - half / 3
-        if end > begin:
-            found.append((float(begin), float(end)))
-        k = max(last, top + 1)
-    return found
+            found = find_ring_downs(recording, frequency)
+        parts: list[Part] = []
+        end, why = 0, _no_ring_down(recording, frequency)
+        for rows in found:
+            part = self._ring_down(rows, end, bool(by_hand))
+            end = rows.stop
+            if part.misfit < 1 or by_hand:
+                parts.append(part)
+            else:
+                why = f"{part.begin:.3g} to {part.end:.3g} s is no free decay of {frequency:.3g} Hz"
+        if not by_hand and moves(recording):
+            parts = self._with_hub(parts)
+        return parts, "" if parts else why
+
+    def whole(self) -> Part:
+        """All of the recording, by how the plant answers its joint's motion."""
+        part = replace(self._part(slice(None)), hub="moves")
+        starts = [self._given, *self._starts(self.frequency * _FACTORS)]
+        best = sorted(starts, key=self.model(part).cost)[:_STARTS]
+        return min((self._met(part, start)[0] for start in best), key=lambda one: one.misfit)
+
+    def sensitivities(self) -> Array:
+        """How the whole recording would change by the given values, a column each.
+
+        What amplitudes and trend can do instead does not count.
+        """
+        model = self.model(replace(self._part(slice(None)), hub="moves"))
+        count, x = len(self.names), model.start(self._given)
+        J = model.jacobian(x, count) / model.values.std(axis=0)[:, None, None]
+        by_p, others = np.split(J.reshape(-1, len(x)), [count], axis=1)
+        by_p -= others @ np.linalg.lstsq(others, by_p, rcond=None)[0]
+        return by_p * np.where(self._given != 0, np.abs(self._given), 1e-2)
+
+    def frequency_of(self, part: Part) -> float:
+        """Of a part's slowest mode [Hz], by its values."""
+        return float(self._response.eigenvalues(_p(part))[0][0].imag) / tau
+
+    def _met(self, part: Part, start: Array) -> tuple[Part, Fit]:
+        """A fit of a part as it says, and the part with what that says."""
+        ends = bounds_of(self.plant, self.names, start)
+        best = fit(self.model(part), start, *ends, self.frequency)
+        return self._described(part, best), best
+
+    def _starts(self, frequencies: Array) -> list[Array]:
+        """Frequencies and dampings from which fits may start, whichever mode swings."""
+        found: list[Array] = []
+        for mode in self._modes:
+            for frequency in frequencies:
+                for damping in _DAMPINGS:
+                    p = self._given.copy()
+                    p[self._rates] *= tau * frequency / mode.imag
+                    p[self._dampings] = damping
+                    found.append(p)
+        return found
+
+    def _ring_down(self, rows: slice, earliest: int, by_hand: bool) -> Part:
+        """A ring-down fitted alone: grown to what it meets; then what helps its model is added."""
+        part = self._part(rows)
+        model = self.model(part)
+        near = self.frequency + np.linspace(-0.6, 0.6, 9) / float(np.ptp(model.time))
+        starts = self._starts(np.maximum(near, 0.3 * self.frequency))
+        part, best = self._met(part, min(starts, key=model.cost))
+        for _ in range(0 if by_hand else 2):
+            grown = self._grown(rows, best, earliest)
+            if grown == rows:
+                break
+            rows = grown
+            part, best = self._met(self._part(rows), best.p)
+        piece = self._piece(part)
+        flat = saturated(piece.values)
+        if flat.any() and np.count_nonzero(~flat) > max(LEAST_ROWS, 0.1 * len(flat)):
+            tried, other = self._met(replace(part, saturated=int(flat.sum()), values={}), best.p)
+            tried, other = self._met(tried, other.p)
+            if exceeds(piece.values, other.model.fitted(other.p), flat):
+                return tried
+        if moves(piece):
+            tried, other = self._met(replace(part, hub="creeps"), best.p)
+            if (other.residual.std(axis=0) < _HELPS * best.residual.std(axis=0)).any():
+                part, best = tried, other
+        if part.cause == "drift":
+            tried, _ = self._met(replace(part, drifts=True), best.p)
+            part = part if tried.cause == "drift" else tried
+        return part
+
+    def _piece(self, part: Part) -> Recording:
+        return self.recording.part(self.recording.rows(part.begin, part.end))
+
+    def _part(self, rows: slice) -> Part:
+        time = self.recording.time[rows]
+        return Part(self.recording.name, float(time[0]), float(time[-1]))
+
+    def _grown(self, rows: slice, best: Fit, earliest: int) -> slice:
+        """The rows with those before that the same swing meets, without those it does not."""
+        size = max(2, round(0.25 / (self.frequency * self.recording.step)))
+        first = max(earliest, rows.start - 12 * size)
+        wide = self.model(self._part(slice(first, rows.stop)), thin=False)
+        known = np.arange(first, rows.stop) >= rows.start
+        left = wide.values - wide.fitted(best.p, known)
+        count, inside = len(left) // size, (rows.stop - rows.start) // size
+        blocks = (left[len(left) - count * size :] ** 2).sum(axis=1).reshape(count, size)
+        power = blocks.mean(axis=1)
+        usual = _FAR**2 * float(np.median(power[-inside:]))
+        good = power < max(usual, 1e-6 * float((best.swinging**2).sum(axis=1).mean()))
+        begin = count - inside + min(8, inside // 3)  # at most two periods are lost
+        while begin > 0 and good[begin - 1]:
+            begin -= 1
+        return slice(rows.stop - (count - begin) * size, rows.stop)
+
+    def _with_hub(self, parts: list[Part]) -> list[Part]:
+        """The parts, or the whole recording where the hub swings with them and that meets it all.
+
+        A hub that swings with the tip shifts the frequency (docs/plants.md).
+        """
+        if parts and not any(self._hub_swings(part) for part in parts):
+            return parts
+        whole = self.whole()
+        if whole.misfit < max(_MET, 2 * whole.noise) and whole.cause != "delay":
+            return [whole]
+        apart = [abs(self.frequency_of(part) / self.frequency_of(whole) - 1) for part in parts]
+        return [
+            part if share < _HUB or part.warning else replace(part, cause="hub", warning=(
+                f"the hub swings with the tip, and the frequency is off by about {share:.0%}: hold "
+                "it, by a brake or a stiffer controller"
+            ))
+            for part, share in zip(parts, apart, strict=True)
+        ]  # fmt: skip
+
+    def _hub_swings(self, part: Part) -> bool:
+        """Whether the hub swings as the tip does in a part, by more than an encoder's noise."""
+        piece = self._piece(part)
+        assert piece.angle is not None
+        swing = FreeDecay(self._response, piece)(_p(part))[0][0, :, :2]
+        X = np.hstack([swing, np.vander(piece.time - piece.time[0], 2)])
+        share, *_ = np.linalg.lstsq(X, piece.angle, rcond=None)
+        noise = float(noise_of(piece.angle)[0])
+        return float(np.hypot(*share[:2])) > max(8 * noise / len(piece.time) ** 0.5, noise / 2)
+
+    def _described(self, part: Part, best: Fit) -> Part:
+        """The part with what a fit of it says."""
+        piece, model = self._piece(part), best.model
+        time = model.time[model.kept]
+        size = np.maximum(np.sqrt((best.swinging**2).mean(axis=0)), 1e-300)
+        thinned = (len(piece.time) / len(model.time)) ** 0.5
+        noise = float((noise_of(piece.values) / thinned / size).max())
+        part = replace(
+            part,
+            values=dict(zip(self.names, best.p.tolist(), strict=True)),
+            deviations=dict(zip(self.names, best.deviations.tolist(), strict=True)),
+            amplitude=float(np.abs(best.swinging[time <= time[0] + 1 / self.frequency]).max()),
+            misfit=best.misfit,
+            noise=noise,
+        )
+        if best.delay and part.hub == "moves" and best.misfit > _MORE * noise:
+            side = "late" if best.delay > 0 else "early"
+            return replace(part, cause="delay", warning=(
+                f"{best.misfit:.1%} of the swing is left, less if the angle were not "
+                f"{abs(best.delay) * 1e3:.3g} ms {side}: record both by one clock"
+            ))  # fmt: skip
+        damping = float(best.p[self._dampings].max(initial=0.0))
+        if damping > _MUCH_DAMPING and self.recording.angle is None:
+            return replace(part, cause="hub", warning=(
+                f"a damping ratio of {damping:.2g} is more than a beam on a held joint has: a "
+                "controller that gives way damps like that, and shifts the frequency; hold the "
+                "joint, or name its angle by --angle"
+            ))  # fmt: skip
+        cause, warning = cause_of(time, best.residual, best.swinging, self.frequency, noise)
+        return replace(part, cause=cause, warning=warning)
 
 
-def standing(recording: Recording, frequency: float) -> NDArray[np.bool_]:
-    """Where the joint is at rest: it moves no more in a period than its noise, or creeps."""
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d
-
-    angle = recording.angle
-    if angle is None:
-        return np.ones(len(recording.time), bool)
-    noise = 8 * float(noise_of(angle)[0])
-    size = max(3, round(1 / (frequency * recording.step)))
-    moved = maximum_filter1d(angle, size) - minimum_filter1d(angle, size)
-    return moved <= max(noise, _CREEPS * float(np.ptp(angle)))
+def _p(part: Part) -> Array:
+    return np.array(list(part.values.values()))
 
 
-def longest_rest(recording: Recording) -> Recording:
-    """The longest stretch in which the joint is at rest; all where there is no fifth of it."""
-    at_rest = standing(recording, 10 / float(np.ptp(recording.time)))
-    runs = _runs([(0, len(at_rest))], at_rest)
-    first, last = max(runs, key=lambda run: run[1] - run[0], default=(0, 0))
-    long = last - first >= max(len(at_rest) / 5, LEAST_ROWS)
-    return recording.part(slice(first, last)) if long else recording
-
-
-def moves(recording: Recording) -> bool:
-    """Whether the joint moves more than its encoder flickers."""
-    angle = recording.angle
-    return angle is not None and float(np.ptp(angle)) > 8 * float(noise_of(angle)[0])
+def _no_ring_down(recording: Recording, frequency: float) -> str:
+    lasts = float(np.ptp(recording.time)) * frequency
+    few = f": it lasts {lasts:.2g} periods of {frequency:.3g} Hz" if lasts < LEAST_PERIODS else ""
+    held = "" if recording.angle is not None else ", or the joint's angle, too"
+    return f"no ring-down of two periods{few}; record longer after a push{held}"

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import tau
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
-from quietarm.studies.identify.identification import find_frequencies
+from quietarm.studies.identify.fitting import Model
+from quietarm.studies.identify.frequencies import find_frequencies
+from quietarm.studies.identify.machine import Part
 from quietarm.studies.identify.parameters import is_modal, values_of
+from quietarm.studies.identify.parts import PartFitter
 from quietarm.studies.identify.recording import Recording
-from quietarm.studies.identify.ring_down import RingDowns
-from quietarm.studies.identify.swing import Eigenvalues, Window
 
 Array = NDArray[np.float64]
 PERIODS = 5.0
@@ -59,52 +59,43 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
         When there is no ring-down of three periods.
     """
     names = [name for name in plant.measured if is_modal(plant, name)]
-    p, eigenvalues = values_of(plant, names), Eigenvalues(plant, names)
-    values, _ = eigenvalues(p)
-    period = tau / float(values[0].imag)
+    p = values_of(plant, names)
     found: list[Prediction] = []
     for one, frequency in zip(recordings, find_frequencies(recordings), strict=True):
-        parts, why = RingDowns(plant, names).fit(one, frequency)
+        fitter = PartFitter(plant, names, one, frequency)
+        parts, why = fitter.ring_downs()
         if not parts:
             raise ValueError(f"{one.name}: {why}")
         for part in parts:
-            piece = one.part(one.rows(part.begin, part.end))
-            window = Window.of(piece, float(values[-1].imag) / tau, hub=part.hub == "moves")
-            B, _ = window.columns(*eigenvalues(p))
-            shares = _shares(window, np.delete(B, B.shape[1] - 1, axis=1), period)
-            if not shares:
-                continue
-            worst = min(shares, key=lambda each: each[1])
-            own = RingDowns(plant, names).again(part, one).frequency
-            found.append(Prediction(
-                one.name, part.begin, part.end, float(np.median([share for _, share in shares])),
-                worst[1], part.begin + worst[0], own,
-            ))  # fmt: skip
+            hub = part.hub if part.hub == "moves" else ""
+            model = fitter.model(Part(one.name, part.begin, part.end, hub=hub))
+            model.trend = model.trend[:, :1]  # a slope of two periods leads astray
+            known = replace(part, values=dict(zip(names, p.tolist(), strict=True)))
+            shares = _shares(model, p, 1 / fitter.frequency_of(known))
+            if shares:
+                worst, worst_at = min(shares)
+                share = float(np.median([share for share, _ in shares]))
+                ends = part.begin, part.end
+                found.append(
+                    Prediction(one.name, *ends, share, worst, worst_at, fitter.frequency_of(part))
+                )
     if not found:
-        raise ValueError(
-            f"{recordings[0].name}: no ring-down of three periods of {1 / period:.3g} Hz; record "
-            "longer"
-        )
+        raise ValueError(f"{recordings[0].name}: no ring-down of three periods; record longer")
     return found
 
 
-def _shares(window: Window, B: Array, period: float) -> list[tuple[float, float]]:
-    """Begins of the predicted periods, and how much of the swing there is predicted."""
-    time, y = window.time, window.values
-    lasts, found = float(np.ptp(time)), list[tuple[float, float]]()
-    for begin in np.arange(0, max(lasts - (_KNOWN + 1) * period, 0) + 1e-9, period):
-        start = time[0] + begin
-        known = (time >= start) & (time < start + _KNOWN * period)
-        ahead = (time >= start + _KNOWN * period) & (time < start + (_KNOWN + PERIODS) * period)
-        if np.count_nonzero(ahead) < 4 or np.count_nonzero(known) <= B.shape[1]:
-            continue
-        amplitudes, *_ = np.linalg.lstsq(B[known], y[known], rcond=None)
-        left = y[ahead] - B[ahead] @ amplitudes
-        swing = y[ahead] - y[ahead].mean(axis=0)
-        found.append(
-            (
-                float(begin + _KNOWN * period),
-                1 - float(np.linalg.norm(left) / np.linalg.norm(swing)),
-            )
-        )
+def _shares(model: Model, p: Array, period: float) -> list[tuple[float, float]]:
+    """How much of the swing is predicted, and where the predicted periods begin."""
+    time, y = model.time, model.values
+    last = max(float(np.ptp(time)) - (_KNOWN + 1) * period, 0.0)
+    found: list[tuple[float, float]] = []
+    for start in time[0] + np.arange(0, last + 1e-9, period):
+        begin = start + _KNOWN * period
+        known = (time >= start) & (time < begin)
+        ahead = (time >= begin) & (time < begin + PERIODS * period)
+        if np.count_nonzero(ahead) >= 4 and np.count_nonzero(known) >= 8:
+            left = y[ahead] - model.fitted(p, known)[ahead]
+            swing = y[ahead] - y[ahead].mean(axis=0)
+            share = 1 - float(np.linalg.norm(left) / np.linalg.norm(swing))
+            found.append((share, float(begin)))
     return found

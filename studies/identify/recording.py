@@ -116,6 +116,19 @@ class Recording:
         ]
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
+    def averaged(self, count: float) -> Recording:
+        """Its means over so many rows each; itself where these are fewer than two."""
+        size = int(min(count, len(self.time) / LEAST_ROWS))
+        if size < 2:
+            return self
+        rows = len(self.time) // size * size
+        names = [
+            name for name in ("time", "angle", *self.signals) if getattr(self, name) is not None
+        ]
+        kept = {name: getattr(self, name)[:rows] for name in names}
+        blocks = {name: v.reshape(-1, size, *v.shape[1:]) for name, v in kept.items()}
+        return replace(self, **{name: v.mean(axis=1) for name, v in blocks.items()})
+
 
 def noise_of(values: Array) -> Array:
     """Standard deviation of the noise of every column, by what changes from sample to sample.

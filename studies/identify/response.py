@@ -1,183 +1,175 @@
-"""What a plant's signals would have been, with derivatives by its parameters.
+"""What a plant's modes make of a recording: columns that its signals consist of.
 
-For a given joint motion the modes are affine in their state at the start, so that a signal is a
-column for the joint's motion and one for each entry of that state. All columns, and their exact
-derivatives by the parameters, are followed through the recording by the collocation of the plans.
+With the joint at rest they are exponentials of the plant's eigenvalues. Where the joint moves they
+are followed through the recording by the collocation of the plans: the modes are affine in their
+state at the start, so that a signal is a column for the joint's motion and one for each entry of
+that state. All have exact derivatives by the plant's parameters.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil
 from typing import Any
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import Expression, JointMotion, Plant
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, modal_system, step
+from quietarm.models import JointMotion, Plant
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, modal_system, step
 from quietarm.ocp.uncertainty import with_values
 from quietarm.studies.identify.recording import Recording
 
 Array = NDArray[np.float64]
-_STEP = 0.6
+_STEP = 0.4
 """Of a phase [rad], the most that the fastest mode goes through in a step: its error is then below
 1e-6 of a period."""
-_AT_ONCE = 200
-"""Steps that are compiled together."""
+_AT_ONCE = 512
+"""Marches are compiled for multiples of so many steps."""
 _KNOTS = (12, 24, 48, 96, 192, 384, 768, 1536)
 
 
-@dataclass(frozen=True, eq=False)
-class Joint:
-    """The joint's motion at any time, of a recorded angle: the smooth part of it."""
-
-    spline: Any
-
-    @classmethod
-    def of(cls, recording: Recording) -> Joint:
-        """The quintic spline whose number of knots has the least cross-validated error."""
-        from scipy.interpolate import make_lsq_spline  # not at the top: it takes long to load
-
-        time, angle = recording.time, recording.angle
-        if angle is None or np.ptp(angle) == 0:
-            return cls(None if angle is None else float(angle[0]))
-        best, least = None, np.inf
-        for count in _KNOTS:
-            if count > len(time) / 4:
-                break
-            inner = np.interp(
-                np.linspace(0, len(time) - 1, count)[1:-1], np.arange(len(time)), time
-            )
-            knots = np.concatenate([[time[0]] * 6, inner, [time[-1]] * 6])
-            spline = make_lsq_spline(time, angle, knots, 5)
-            rest = float(np.sum((spline(time) - angle) ** 2))
-            error = rest / (len(time) - len(inner) - 6) ** 2
-            if error < least:
-                best, least = spline, error
-        return cls(best)
-
-    @property
-    def moves(self) -> bool:
-        """Whether it moves at all."""
-        return callable(self.spline)
-
-    def at(self, time: Array) -> Array:
-        """Angle, speed and acceleration, a row each."""
-        if self.moves:
-            return np.array([self.spline(time, order) for order in range(3)])
-        return np.array([np.full(len(time), self.spline or 0.0), 0 * time, 0 * time])
-
-
 class Response:
-    """The columns of a plant's signals over a recording, and their derivatives by parameters.
+    """How a plant's signals answer its joint, by some of its parameters.
 
-    Signals are ``"tip"``, ``"acceleration"``, ``"torque"``.
+    Parameters
+    ----------
+    plant : Plant
+        Its equations.
+    names : sequence of str
+        The parameters.
+    kinds : sequence of str
+        ``"tip"``, ``"acceleration"`` or ``"torque"``, of each signal.
     """
 
-    def __init__(self, plant: Plant, names: Sequence[str], signals: Sequence[str]) -> None:
-        self.names = tuple(names)
-        counts = [1 if kind == "torque" else plant.tips for kind in signals]
-        self.kinds = np.repeat(list(signals), counts)
-        p = ca.SX.sym("p", len(names))
+    def __init__(self, plant: Plant, names: Sequence[str], kinds: Sequence[str]) -> None:
+        self.plant, self.names, self.kinds = plant, list(names), np.array(kinds)
+        modes, size, p = plant.modes, 2 * plant.modes, ca.SX.sym("p", len(names))
         changed = with_values(plant, dict(zip(names, ca.vertsplit(p), strict=True)))
-        size, count = 2 * plant.modes, 1 + 2 * plant.modes
-        h, nodes, at = ca.SX.sym("h"), ca.SX.sym("nodes", 3, len(GAUSS_NODES)), ca.SX.sym("at", 3)
-        X = ca.SX.sym("X", size, count)
-        dX = [ca.SX.sym(f"dX{k}", size, count) for k in range(len(names))]
-        taken = step(changed, [JointMotion(*ca.vertsplit(nodes[:, j])) for j in range(3)], h)
-        constant, columns = taken.transition()
-        moved = ca.horzcat(*(ca.vertcat(*column) for column in columns)) @ X
-        moved[:, 0] += ca.vertcat(*constant)
-        joint = JointMotion(*ca.vertsplit(at))
-        seen = self._seen(changed, signals, joint, X)
+        angle = ca.SX.sym("angle")
+        system = modal_system(changed, JointMotion(angle, 0.0, 0.0))
+        K, D = (ca.vertcat(*(ca.horzcat(*row) for row in M)) for M in (system.K, system.D))
+        A = ca.blockcat([[ca.SX(modes, modes), ca.SX.eye(modes)], [-K, -D]])
+        of_p = [ca.densify(A), ca.densify(ca.jacobian(ca.vec(A), p))]
+        self._at_rest = ca.Function("A", [p, angle], of_p)
+        given, X = ca.SX.sym("given", 4 + 3 * NODES), ca.SX.sym("X", size, 1 + size)
+        joints = [JointMotion(*ca.vertsplit(given[k : k + 3])) for k in range(1, 4 + 3 * NODES, 3)]
+        constant, by_state = step(changed, joints[:NODES], given[0]).transition()
+        after = ca.horzcat(*(ca.vertcat(*column) for column in by_state)) @ X
+        after[:, 0] += ca.vertcat(*constant)
+        seen = self._seen(changed, joints[-1], X)
+        self._step = ca.Function("step", [X, given, p], [after, ca.vec(seen)], {"cse": True})
+        self.march = lru_cache(maxsize=8)(self._march)
 
-        def derivatives(of: ca.SX) -> list[ca.SX]:
-            by_p = [ca.reshape(ca.jtimes(of, p, unit), of.shape) for unit in _units(len(names))]
-            by_X = [ca.reshape(ca.jtimes(of, X, one), of.shape) for one in dX]
-            return [a + b for a, b in zip(by_p, by_X, strict=True)]
+    def _seen(self, plant: Plant, joint: JointMotion, X: ca.SX) -> ca.SX:
+        """What is recorded, a row each, of columns of the state."""
+        W, dW = (ca.vertsplit(half) for half in ca.vertsplit(X[:, 0], plant.modes))
+        ddW = plant.modal_accelerations(joint, W, dW)
+        made = {
+            "tip": iter(plant.tip_displacements(W)),
+            "acceleration": iter(plant.tip_displacements(ddW)),
+            "torque": iter([plant.torque(joint, W, dW, ddW)]),
+        }
+        seen = ca.vertcat(*(next(made[kind]) for kind in self.kinds))
+        return ca.horzcat(seen, ca.jacobian(seen, X[:, 0]) @ X[:, 1:])
 
-        state = ca.horzcat(X, *dX)
-        after = ca.horzcat(moved, *derivatives(moved))
-        given = ca.vertcat(h, ca.vec(nodes), at)
-        output = ca.vec(ca.horzcat(seen, *derivatives(seen)))
-        one = ca.Function("step", [state, given, p], [after, output], {"cse": True})
-        self._steps = one.mapaccum(_AT_ONCE)
-        self._start = np.hstack(
-            [np.zeros((size, 1)), np.eye(size), np.zeros((size, count * len(names)))]
-        )
-        self._fastest = ca.Function("fastest", [at, p], [_fastest(changed, joint)])
-        self._shape = seen.shape
+    def eigenvalues(self, p: Array, angle: float = 0.0) -> tuple[Any, Any]:
+        """Those that swing with the joint at rest, slowest first, and their derivatives by p."""
+        A, by_p = (entry.full() for entry in self._at_rest(p, angle))
+        values, right = np.linalg.eig(A)
+        transposed = by_p.T.reshape(-1, *A.shape)
+        slopes = np.einsum("kl,jil,ik->kj", np.linalg.inv(right), transposed, right)
+        order = [k for k in np.argsort(values.imag) if values[k].imag > 0]
+        return values[order], slopes[order]
 
-    @staticmethod
-    def _seen(plant: Plant, signals: Sequence[str], joint: JointMotion, X: ca.SX) -> ca.SX:
-        """What is recorded, a row a signal; of a column of the state as of the state itself."""
-        modes = plant.modes
-
-        def rows(column: int) -> list[ca.SX]:
-            W, dW = (ca.vertsplit(half) for half in ca.vertsplit(X[:, column], modes))
-            zero = [0.0] * modes
-            ddW = plant.modal_accelerations(joint, W, dW)
-            torque = plant.torque(joint, W, dW, ddW)
-            if column:  # of the state alone
-                held = plant.modal_accelerations(joint, zero, zero)
-                ddW = [a - b for a, b in zip(ddW, held, strict=True)]
-                torque = torque - plant.torque(joint, zero, zero, held)
-            found: list[ca.SX] = []
-            for signal in signals:
-                if signal == "tip":
-                    found += plant.tip_displacements(W)
-                elif signal == "acceleration":
-                    found += plant.tip_displacements(ddW)
-                else:
-                    found.append(torque)
-            return found
-
-        return ca.horzcat(*(ca.vertcat(*rows(column)) for column in range(X.shape[1])))
-
-    def over(self, recording: Recording, joint: Joint, p: Array) -> tuple[Array, Array]:
-        """Columns (rows, signals, 1 + 2 modes), and their derivatives (parameters, as these)."""
-        time = recording.time
-        fastest = float(self._fastest(joint.at(time[:1])[:, 0], p))
-        parts = max(1, ceil(fastest * np.diff(time).max() / _STEP))
-        given = _steps(recording, joint, parts)
-        found = self._marched(given, p)
-        rows = found[:, ::parts].T
-        size = int(np.prod(self._shape))
-        blocks = rows.reshape(len(time), -1, size).reshape(
-            len(time), 1 + len(self.names), self._shape[1], self._shape[0]
-        )
-        blocks = blocks.transpose(1, 0, 3, 2)
-        return blocks[0], blocks[1:]
-
-    def _marched(self, given: Array, p: Array) -> Array:
-        """The outputs of all steps, a column each."""
-        count, state, found = given.shape[1], ca.DM(self._start), list[Array]()
-        padded = np.hstack([given, np.zeros((len(given), -count % _AT_ONCE))])  # steps of no length
-        for first in range(0, count, _AT_ONCE):
-            states, outputs = self._steps(state, padded[:, first : first + _AT_ONCE], p)
-            state = states[:, -self._start.shape[1] :]
-            found.append(outputs.full())
-        return np.hstack(found)[:, :count]
+    def _march(self, count: int, derivatives: bool) -> ca.Function:
+        """Columns of so many steps, and their derivatives by p."""
+        p, given = ca.MX.sym("p", len(self.names)), ca.MX.sym("given", 4 + 3 * NODES, count)
+        size = 2 * self.plant.modes
+        start = np.eye(size, 1 + size, 1)
+        rows = self._step.mapaccum(count)(start, given, ca.repmat(p, 1, count))[1]
+        by_p = [ca.jtimes(rows, p, ca.DM.eye(len(self.names)))] if derivatives else []
+        return ca.Function("march", [given, p], [rows, *by_p])
 
 
-@lru_cache(maxsize=64)
-def _steps(recording: Recording, joint: Joint, parts: int) -> Array:
-    """Length, joint at the nodes and at the begin of every step; one more at the end."""
-    time, steps = recording.time, np.diff(recording.time)
-    begins = (time[:-1, None] + steps[:, None] * np.arange(parts) / parts).ravel()
-    begins, lengths = np.append(begins, time[-1]), np.append(np.repeat(steps / parts, parts), 0.0)
-    nodes = [joint.at(begins + c * lengths) for c in GAUSS_NODES]
-    return np.vstack([lengths, *nodes, joint.at(begins)])
+class FreeDecay:
+    """The columns of a recording whose joint is at rest, the same for every signal."""
+
+    driven = False
+
+    def __init__(self, response: Response, recording: Recording) -> None:
+        self._response, self._time = response, recording.time - recording.time[0]
+        self._angle = 0.0 if recording.angle is None else float(recording.angle.mean())
+
+    def __call__(self, p: Array, derivatives: bool = True) -> tuple[Array, Array]:
+        """Columns (1, rows, columns), and their derivatives (parameters, 1, rows, columns)."""
+        values, slopes = self._response.eigenvalues(p, self._angle)
+        swings = np.exp(self._time[:, None] * values)
+        by_p = slopes.T[:, None] * (self._time[:, None] * swings)
+        return _parts(swings)[None], _parts(by_p)[:, None]
 
 
-def _units(count: int) -> list[ca.DM]:
-    return [ca.DM(np.eye(count)[:, k]) for k in range(count)]
+class Driven:
+    """The columns of a recording whose joint moves: first what its motion does to the signals.
+
+    By the plant's own equations, or where these are unknown but for the modes, by its linear ones:
+    those of a slow joint, that feel its acceleration alone.
+    """
+
+    driven = True
+
+    def __init__(
+        self, response: Response, time: Array, spline: Any, fastest: float, linear: bool
+    ) -> None:
+        self._response, steps = response, np.diff(time)
+        orders = (1.0, 0.0, 1.0) if linear else (1.0, 1.0, 1.0)
+        joint = lambda at: [size * spline(at, k) for k, size in enumerate(orders)]  # noqa: E731
+        counts = np.maximum(np.ceil(fastest * steps / _STEP), 1).astype(int)
+        self._rows = np.concatenate([[0], np.cumsum(counts)])
+        lengths = np.append(np.repeat(steps / counts, counts), 0.0)
+        begins = time[0] + np.concatenate([[0.0], np.cumsum(lengths[:-1])])
+        nodes = [row for c in GAUSS_NODES for row in joint(begins + c * lengths)]
+        given = np.vstack([lengths, *nodes, *joint(begins)])
+        self._given = np.pad(given, ((0, 0), (0, -given.shape[1] % _AT_ONCE)))  # of no length
+        self._lever = np.outer(response.kinds == "acceleration", spline(time, 2))[..., None]
+
+    def __call__(self, p: Array, derivatives: bool = True) -> tuple[Array, Array]:
+        """Columns (signals, rows, columns), and their derivatives (parameters, as these).
+
+        The last is of an accelerometer at some distance from the joint.
+        """
+        march = self._response.march(self._given.shape[1], derivatives)
+        found = march.call([self._given, p])
+        B, dB = self._columns(found[0], self._lever), self._columns(found[-1], 0 * self._lever)
+        return B[0], dB
+
+    def _columns(self, table: ca.DM, last: Array) -> Array:
+        """A table of the march by (parameters, signals, rows, columns)."""
+        signals = len(self._response.kinds)
+        steps = table.full().reshape(-1, signals, table.shape[1])
+        blocks = steps.reshape(*steps.shape[:2], -1, self._given.shape[1])[..., self._rows]
+        found = blocks.transpose(2, 1, 3, 0)
+        return np.concatenate([found, np.broadcast_to(last, (*found.shape[:3], 1))], axis=-1)
 
 
-def _fastest(plant: Plant, joint: JointMotion) -> Expression:
-    """A bound on the frequencies of the modes [rad/s]."""
-    K = modal_system(plant, joint).K
-    return ca.sqrt(ca.mmax(ca.vertcat(*(sum(ca.fabs(entry) for entry in row) for row in K))))
+def smooth(recording: Recording) -> Any:
+    """The quintic spline of an angle whose number of knots has the least cross-validated error."""
+    from scipy.interpolate import make_lsq_spline  # not at the top: it takes long to load
+
+    time, angle = recording.time, recording.angle
+    found: list[tuple[float, int, Any]] = []
+    for count in _KNOTS:
+        if count > max(len(time) / 4, _KNOTS[0]):
+            break
+        at = np.linspace(0, len(time) - 1, count)[1:-1]
+        inner = np.interp(at, np.arange(len(time)), time)
+        knots = np.concatenate([[time[0]] * 6, inner, [time[-1]] * 6])
+        spline = make_lsq_spline(time, angle, knots, 5)
+        rest = float(np.sum((spline(time) - angle) ** 2))
+        found.append((rest / (len(time) - len(inner) - 6) ** 2, count, spline))
+    return min(found)[2]
+
+
+def _parts(values: Any) -> Array:
+    """Real and imaginary parts of columns, side by side."""
+    return np.stack([values.real, values.imag], axis=-1).reshape(*values.shape[:-1], -1)

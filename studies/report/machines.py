@@ -15,7 +15,6 @@ _HUB = {
     "": "",
     "creeps": ", with the hub's motion",
     "moves": ", all of the hub's motion with it",
-    "equations": ", all of the hub's motion with it",
 }
 
 

@@ -81,7 +81,7 @@ class Part:
         Whether a slow drift of the signal is excluded.
     hub : str
         How the joint's recorded motion is met: not at all where it is empty, ``"creeps"`` beside a
-        free decay, ``"moves"`` all of it, ``"equations"`` all of it by the plant's own equations.
+        free decay, ``"moves"`` all of it.
     """
 
     recording: str

@@ -1,0 +1,205 @@
+"""Least squares of a plant's parameters to a part of a recording, robust against single samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.response import Driven, FreeDecay
+
+Array = NDArray[np.float64]
+_HUBER = 2.5
+"""Residuals beyond so many deviations count by their size alone (Huber's)."""
+_ROUNDS = 3
+"""Of deviations, by which the residuals are weighed."""
+_LATE = 0.25
+"""An angle is called late where that explains this share of the power that is left."""
+
+
+class Model:
+    """The signals of a recording as what a plant's modes make of it, and a slow trend.
+
+    Unknown are the plant's parameters and the amplitudes of all columns, for each signal by itself:
+    together x.
+
+    Parameters
+    ----------
+    recording : Recording
+        The part of it, thinned to what the modes need.
+    response : FreeDecay or Driven
+        The modes' columns.
+    cosines : int, optional
+        How many of a slow motion, beside an offset and a slope.
+    scaled : bool, optional
+        Whether the sensors' scale is unknown; else the joint's motion acts as the plant says.
+
+    Attributes
+    ----------
+    kept : array of bool, shape (rows,)
+        The rows that count.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        response: FreeDecay | Driven,
+        cosines: int = 0,
+        scaled: bool = True,
+    ) -> None:
+        self.time, self.values, self.driven = recording.time, recording.values, response.driven
+        self.kept, self.fixed = np.ones(len(self.time), bool), int(response.driven and not scaled)
+        share = (self.time - self.time[0]) / np.ptp(self.time)
+        slow = [np.cos(k * np.pi * share) for k in range(1, cosines + 1)]
+        self.trend = np.stack([np.ones_like(share), share - 0.5, *slow], axis=1)
+        self._response, self._last = response, lru_cache(maxsize=1)(self._columns)
+
+    def _columns(self, p: bytes, derivatives: bool) -> tuple[Array, Array]:
+        """Columns (signals or 1, rows, columns), and their derivatives (parameters, as these)."""
+        B, dB = self._response(np.frombuffer(p), derivatives)
+        trend = np.broadcast_to(self.trend, (len(B), *self.trend.shape))
+        still = np.zeros((*dB.shape[:-1], trend.shape[-1]))
+        return np.concatenate([B, trend], axis=-1), np.concatenate([dB, still], axis=-1)
+
+    def amplitudes(self, B: Array, rows: NDArray[np.bool_]) -> Array:
+        """Those of columns that leave the least of some rows (signals, columns)."""
+        found = np.ones((self.values.shape[1], B.shape[-1]))
+        for k, y in enumerate(self.values.T):
+            known, free = np.split(B[min(k, len(B) - 1), rows], [self.fixed], axis=1)
+            target = y[rows] - known.sum(axis=1)
+            found[k, self.fixed :], *_ = np.linalg.lstsq(free, target, rcond=None)
+        return found
+
+    def fitted(self, p: Array, rows: NDArray[np.bool_] | None = None) -> Array:
+        """The signals that are nearest to some rows by some parameters (rows, signals)."""
+        B, _ = self._columns(p.tobytes(), False)
+        return _products(B, self.amplitudes(B, self.kept if rows is None else rows)).T
+
+    def cost(self, p: Array) -> float:
+        """Share of the signals' power that these parameters leave, the trend not counted."""
+        trend = self.trend @ np.linalg.lstsq(self.trend, self.values, rcond=None)[0]
+        left, whole = self.values - self.fitted(p), self.values - trend
+        return float(((left**2).sum(axis=0) / ((whole**2).sum(axis=0) + 1e-300)).sum())
+
+    def start(self, p: Array) -> Array:
+        """The parameters with their best amplitudes: x."""
+        B, _ = self._last(p.tobytes(), True)
+        return np.concatenate([p, self.amplitudes(B, self.kept)[:, self.fixed :].ravel()])
+
+    def evaluate(self, x: Array, count: int) -> tuple[Array, Array, Array]:
+        """Of x, that begins with so many parameters: columns, their derivatives, amplitudes."""
+        B, dB = self._last(x[:count].tobytes(), True)
+        free = x[count:].reshape(self.values.shape[1], -1)
+        return (
+            B[:, self.kept],
+            dB[:, :, self.kept],
+            np.pad(free, ((0, 0), (self.fixed, 0)), constant_values=1.0),
+        )
+
+    def left(self, x: Array, count: int) -> Array:
+        """What x leaves of the rows that count (signals, rows)."""
+        B, _, amplitudes = self.evaluate(x, count)
+        return self.values[self.kept].T - _products(B, amplitudes)
+
+    def jacobian(self, x: Array, count: int) -> Array:
+        """Derivatives of what x makes of the signals (signals, rows, x)."""
+        B, dB, amplitudes = self.evaluate(x, count)
+        by_p = np.moveaxis(_products(dB, amplitudes), 0, -1)
+        of_signal = np.eye(len(amplitudes))[:, None, :, None] * B[:, :, None, self.fixed :]
+        return np.concatenate([by_p, of_signal.reshape(*by_p.shape[:2], -1)], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A part of a recording met by least squares.
+
+    Attributes
+    ----------
+    p, deviations : array
+        The parameters; theirs by the residuals' power near the swing's frequency.
+    model : Model
+        What was fitted.
+    swinging, residual : array, shape (rows, signals)
+        What swings of the nearest signals, without the trend; and what is left.
+    delay : float
+        By which the angle seems to be late [s]; 0 where it does not.
+    """
+
+    p: Array
+    deviations: Array
+    model: Model
+    swinging: Array
+    residual: Array
+    delay: float
+
+    @property
+    def misfit(self) -> float:
+        """What is left, as a share of the swing; of several signals the largest."""
+        size = np.sqrt((self.swinging**2).mean(axis=0))
+        return float((self.residual.std(axis=0) / np.maximum(size, 1e-300)).max())
+
+
+def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float) -> Fit:
+    """Least squares of parameters and amplitudes of a swing at a frequency [Hz]."""
+    from scipy.optimize import least_squares  # not at the top: it takes long to load
+
+    count, x, solve = len(start), model.start(start), least_squares
+    free = np.full(len(x) - count, np.inf)
+    bounds = np.append(lower, -free), np.append(upper, free)
+    least = 1e-9 * model.values.std(axis=0)[:, None] + 1e-300
+    deviation = np.maximum(model.left(x, count).std(axis=1, keepdims=True), least)
+    for loss, most in (("linear", 40), *[("huber", 20)] * (_ROUNDS - 1)):
+        x = solve(
+            lambda x: (-model.left(x, count) / deviation).ravel(),  # noqa: B023
+            x,
+            lambda x: (model.jacobian(x, count) / deviation[..., None]).reshape(-1, len(x)),  # noqa: B023
+            bounds=bounds, x_scale="jac", loss=loss, f_scale=_HUBER, xtol=1e-12, ftol=1e-9,
+            gtol=1e-14, max_nfev=most,
+        ).x  # fmt: skip
+        residual, before = model.left(x, count), deviation
+        spread = residual.std(axis=1, keepdims=True)
+        robust = 1.4826 * np.median(np.abs(residual), axis=1, keepdims=True)
+        deviation = np.clip(robust, np.maximum(0.1 * spread, least), spread + least)
+        if loss == "huber" and np.allclose(before, deviation, rtol=0.02):
+            break
+    time, weighed = model.time[model.kept], residual / deviation
+    J = (model.jacobian(x, count) / deviation[..., None]).reshape(-1, len(x))
+    power = _power_near(time, weighed, frequency, len(x))
+    covariance: Any = np.linalg.pinv(J.T @ J, hermitian=True) * power
+    B, _, amplitudes = model.evaluate(x, count)
+    own = B.shape[-1] - model.trend.shape[1]
+    swinging, delay = _products(B[..., :own], amplitudes[:, :own]), 0.0
+    if model.driven:
+        later = np.gradient(_products(B[..., :1], amplitudes[:, :1]), time, axis=1) / deviation
+        delay = _delay(weighed.ravel(), later.ravel(), J)
+    deviations = np.sqrt(np.diag(covariance))[:count]
+    return Fit(x[:count], deviations, model, swinging.T, residual.T, delay)
+
+
+def _products(B: Array, amplitudes: Array) -> Array:
+    """The signals (..., signals, rows) of columns by their amplitudes (signals, columns)."""
+    return (B @ amplitudes[:, :, None])[..., 0]
+
+
+def _power_near(time: Array, left: Array, frequency: float, parameters: int) -> float:
+    """Mean power of residuals, or of those within an octave of a frequency where that is more."""
+    rows = len(time)
+    white = float((left**2).sum()) / max(left.size - parameters, 1)
+    at = np.fft.rfftfreq(rows, float(np.median(np.diff(time))))
+    power = (np.abs(np.fft.rfft(left, axis=1)) ** 2).mean(axis=0) / rows
+    near = (at > frequency / 2) & (at < 2 * frequency)
+    bins = np.count_nonzero(near)
+    return max(white, float(power[near].sum() / (bins - 2))) if bins >= 4 else white
+
+
+def _delay(left: Array, later: Array, J: Array) -> float:
+    """By how much the angle is late: another parameter, where it explains much of what is left."""
+    share, *_ = np.linalg.lstsq(J, later, rcond=None)
+    own = later - J @ share
+    along, size = float(own @ left), float(own @ own)
+    if along**2 <= _LATE * size * float(left @ left) or size <= 1e-12 * float(later @ later):
+        return 0.0
+    return along / size
