@@ -52,24 +52,20 @@ def estimate(
     among = _between([means], [of_means])
     mean, of_mean = _mean(means, of_means + among)
 
-    def half(*variances: tuple[float, float]) -> float:
-        """Half of an interval, of variances and their degrees of freedom."""
-        total = sum(variance for variance, _ in variances)
-        freedom = total**2 / sum(v**2 / n for v, n in variances if v > 0)
-        return float(t.ppf((1 + _LEVEL) / 2, freedom)) * total**0.5
-
     count, files = len(values), len(groups)
-    of_files, of_parts = (among, max(files - 1, 1)), (within, max(count - files, 1))
-    by_files, by_parts = among / files, within / count
-    rest = (max(of_mean - by_files - by_parts, of_mean / 1e6), _OWN_FREEDOM * count)
-    of_next = half(
-        (of_files[0] + by_files, of_files[1]), (of_parts[0] + by_parts, of_parts[1]), rest
-    )
-    to_mean = half((by_files, of_files[1]), (by_parts, of_parts[1]), rest)
-    low, high = mean - to_mean, mean + to_mean
-    if count == 1:
-        return Estimate(name, mean, low, high)
-    return Estimate(name, mean, low, high, mean - of_next, mean + of_next)
+    between = np.array([among, within, 0.0])
+    of_parts = np.array([among / files, within / count, 0.0])
+    of_parts[2] = max(of_mean - of_parts.sum(), of_mean / 1e6)  # their own
+    freedom = np.array([max(files - 1, 1), max(count - files, 1), _OWN_FREEDOM * count])
+
+    def ends(variances: Array) -> tuple[float, float]:
+        total = variances.sum()
+        level = t.ppf((1 + _LEVEL) / 2, total**2 / (variances**2 / freedom).sum())
+        half = float(level * total**0.5)
+        return mean - half, mean + half
+
+    next_swing = ends(of_parts + between) if count > 1 else ()
+    return Estimate(name, mean, *ends(of_parts), *next_swing)
 
 
 def _mean(values: Array, variances: Array) -> tuple[float, float]:

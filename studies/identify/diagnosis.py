@@ -46,40 +46,35 @@ def cause_of(
         The recording's own, as a share of the swing.
     """
     at, size = spectrum_of(time, left)
-    power = size**2 / 2
-    whole = float((swinging**2).mean(axis=0).max()) + 1e-300
+    power, whole = size**2 / 2, float((swinging**2).mean(axis=0).max()) + 1e-300
     misfit = float((left**2).mean(axis=0).max() / whole) ** 0.5
-    if len(power) < 8:
-        return _unexplained(misfit, noise)
-    lines = np.flatnonzero(power[1:] > _STANDS_OUT * _beside(power)[1:]) + 1
-    excess = np.zeros(len(power))
-    for k in lines:
-        near = slice(max(k - 2, 1), k + 3)
-        excess[near] = power[near]
+    stands_out = power > _STANDS_OUT * _beside(power)
+    lines = np.convolve(stands_out[1:], np.ones(5), "same") > 0
+    excess = np.append(0.0, power[1:] * lines)
     share = float(excess.sum() / whole) ** 0.5
     if share < _MATTERS:
-        return _unexplained(misfit, noise)
-    bands = {
-        "slow": at < 0.6 * frequency,
-        "near": (at >= 0.6 * frequency) & (at < 1.5 * frequency),
-        "fast": at >= 1.5 * frequency,
-    }
-    amounts = {name: float(excess[band].sum()) for name, band in bands.items()}
-    most = max(amounts, key=lambda name: amounts[name])
-    peak = float(at[bands[most]][int(excess[bands[most]].argmax())])
+        if misfit < max(_MUCH, 4 * noise):
+            return "", ""
+        return "misfit", (
+            f"{misfit:.0%} of the swing is left, and its noise is {noise:.0%}: it is no free decay "
+            "of one mode; look at the picture, and name the part that is by --part"
+        )
+    band = np.digitize(at, [0.6 * frequency, 1.5 * frequency])
+    most = int(np.bincount(band, excess).argmax())
+    peak = float(at[(excess * (band == most)).argmax()])
+    ratio = peak / frequency
     left_words = f"{share:.1%} of the swing is left beside the noise"
-    if most == "slow":
+    if most == 0:
         return "drift", (
             f"{left_words}, below the swing at {peak:.3g} Hz: the sensor drifts, the base sways, "
             "or the hub moves; fix them, or name the joint's angle by --angle"
         )
-    if most == "near":
+    if most == 1:
         return "amplitude", (
             f"{left_words}, at the swing's own frequency: frequency or damping change with the "
             f"amplitude, a second mode is near ({peak:.3g} Hz), or the hub gives way; name its "
             "angle by --angle, or push as hard as your moves do"
         )
-    ratio = peak / frequency
     if abs(ratio - round(ratio)) < 0.04 and round(ratio) in (2, 3, 5):
         return "harmonic", (
             f"{left_words}, at {round(ratio)} times the swing's frequency ({peak:.4g} Hz): the "
@@ -88,16 +83,6 @@ def cause_of(
     return "mode", (
         f"{left_words}, at {peak:.4g} Hz: a second mode; plan with it (--set mode_count=2, where "
         "the plant has it), or keep to a band below it"
-    )
-
-
-def _unexplained(misfit: float, noise: float) -> tuple[str, str]:
-    """Where no line stands out, but much more is left than the noise from sample to sample."""
-    if misfit < max(_MUCH, 4 * noise):
-        return "", ""
-    return "misfit", (
-        f"{misfit:.0%} of the swing is left, and its noise is {noise:.0%}: it is no free decay of "
-        "one mode; look at the picture, and name the part that is by --part"
     )
 
 
@@ -112,18 +97,16 @@ def _beside(power: Array) -> Array:
     return np.concatenate([[local[0]], np.maximum(local, 0.2 * high)]) + 1e-30 * power.max()
 
 
-def limits_of(values: Array) -> tuple[Array, Array]:
+def _limits_of(values: Array) -> Array:
     """Least and largest value of every signal that is there many times, else none (infinity)."""
-    ends = []
-    for extreme, none in ((values.min(axis=0), -np.inf), (values.max(axis=0), np.inf)):
-        there = np.abs(values - extreme) <= 1e-9 * np.ptp(values, axis=0)
-        ends.append(np.where(there.sum(axis=0) >= _AT_LIMIT, extreme, none))
-    return ends[0], ends[1]
+    extremes = np.stack([values.min(axis=0), values.max(axis=0)])
+    there = np.abs(values - extremes[:, None]) <= 1e-9 * np.ptp(values, axis=0)
+    return np.where(there.sum(axis=1) >= _AT_LIMIT, extremes, [[-np.inf], [np.inf]])
 
 
 def saturated(values: Array, fitted: Array | None = None) -> NDArray[np.bool_]:
     """Samples at a signal's limits; by a fit, those where it comes near them by the noise."""
-    low, high = limits_of(values)
+    low, high = _limits_of(values)
     near = 0.0 if fitted is None else 2 * noise_of(values)
     at = values if fitted is None else fitted
     cut: Any = (at <= low + near) | (at >= high - near)

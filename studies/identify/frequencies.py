@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import tau
 
 import numpy as np
@@ -35,18 +35,17 @@ def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
             f"{recordings[0].name}: no swing stands out of the noise; push harder, or record "
             "longer and with more samples"
         )
-    pooled: dict[float, float] = {}
-    for table in tables:
-        total = sum(table.values()) + 1e-300
-        for frequency, loud in table.items():
-            key = next((k for k in pooled if abs(frequency / k - 1) < _SAME), frequency)
-            pooled[key] = pooled.get(key, 0.0) + loud / total
-    common = max(pooled, key=lambda key: pooled[key])
+    shares = [
+        {f: loud / (sum(table.values()) or 1) for f, loud in table.items()} for table in tables
+    ]
+    common = max(
+        (f for table in tables for f in table),
+        key=lambda f: sum(max(_near(share, f).values(), default=0.0) for share in shares),
+    )
     found: list[float] = []
-    for one, table in zip(recordings, tables, strict=True):
-        loudest = max(table.values(), default=0.0)
-        near = {f: loud for f, loud in table.items() if abs(f / common - 1) < _SAME}
-        among = near if max(near.values(), default=0.0) > _LOUD * loudest else table
+    for one, share in zip(recordings, shares, strict=True):
+        near, loudest = _near(share, common), max(share.values(), default=0.0)
+        among = near if max(near.values(), default=0.0) > _LOUD * loudest else share
         best = max(among, key=lambda f: among[f]) if loudest else 0.0
         if best and not _SLOWEST <= best <= _FASTEST:
             raise ValueError(
@@ -57,26 +56,27 @@ def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
     return found
 
 
+def _near(table: Mapping[float, float], frequency: float) -> dict[float, float]:
+    """The candidates near a frequency."""
+    return {one: loud for one, loud in table.items() if abs(one / frequency - 1) < _SAME}
+
+
 def doubt_units(recordings: Sequence[Recording], frequencies: Sequence[float]) -> list[str]:
     """What units may be wrong."""
     found: list[str] = []
     for one, frequency in zip(recordings, frequencies, strict=True):
         turns = 0.0 if one.angle is None else float(np.ptp(one.angle))
-        if one.step >= _COARSE or 0 < frequency < _DOUBTFUL:
-            found.append(
-                f"{one.name}: {frequency:.3g} Hz by samples {one.step:.3g} s apart; is its time in "
-                "milliseconds? say so by --units time:ms"
-            )
-        if frequency > _FASTEST / 2:
-            found.append(
-                f"{one.name}: {frequency:.4g} Hz is fast for an arm; is its time in seconds? say "
-                "so by --units time:s"
-            )
-        if turns > _TURNS:
-            found.append(
-                f"{one.name}: its joint turns by {turns:.3g} rad, more than two turns; is it in "
-                "degrees? say so by --units angle:deg"
-            )
+        slow = f"{frequency:.3g} Hz by samples {one.step:.3g} s apart; is its time in milliseconds?"
+        fast = f"{frequency:.4g} Hz is fast for an arm; is its time in seconds?"
+        turned = f"its joint turns by {turns:.3g} rad, more than two turns; is it in degrees?"
+        doubts = [
+            (one.step >= _COARSE or 0 < frequency < _DOUBTFUL, slow, "time:ms"),
+            (frequency > _FASTEST / 2, fast, "time:s"),
+            (turns > _TURNS, turned, "angle:deg"),
+        ]
+        found += [
+            f"{one.name}: {text} say so by --units {unit}" for is_so, text, unit in doubts if is_so
+        ]
     return found
 
 

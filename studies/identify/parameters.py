@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
-from math import tau
+from dataclasses import fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,34 +33,11 @@ def values_of(plant: Plant, names: Sequence[str]) -> Array:
 
 
 def bounds_of(plant: Plant, names: Sequence[str], start: Array) -> tuple[Array, Array]:
-    """How far parameters may go from a start.
-
-    Dampings a little below 0, as an estimate may; all else below 0 where the plant takes it.
-    """
+    """How far parameters may go from a start: dampings a little below 0, as an estimate may."""
     lower, upper = np.full(len(names), -np.inf), np.full(len(names), np.inf)
     for k, name in enumerate(names):
         if is_frequency(plant, name):
             lower[k], upper[k] = 0.3 * start[k], 3 * start[k]
-        elif name.startswith(_DAMPING):
+        elif is_modal(plant, name):
             lower[k], upper[k] = -0.3, _MOST_DAMPING
-        elif not _may_be_negative(plant, name):
-            lower[k] = -0.3 * max(abs(start[k]), 1e-2)  # so that 0 can be in an interval
     return lower, upper
-
-
-def _may_be_negative(plant: Plant, name: str) -> bool:
-    try:
-        replace(plant, **{name: -max(abs(getattr(plant, name)), 1.0)})
-    except ValueError:
-        return False
-    return True
-
-
-def started_at(plant: Plant, names: Sequence[str], frequency: float) -> Plant:
-    """The plant with a swing's frequency [Hz], where it has but one to be set."""
-    of_modes = [name for name in names if is_frequency(plant, name)]
-    return (
-        replace(plant, **{of_modes[0]: tau * frequency})
-        if len(of_modes) == 1 and frequency
-        else plant
-    )

@@ -214,14 +214,17 @@ class PartFitter:
         whole = self.whole()
         if whole.misfit < max(_MET, 2 * whole.noise) and whole.cause != "delay":
             return [whole]
-        apart = [abs(self.frequency_of(part) / self.frequency_of(whole) - 1) for part in parts]
+        warning = (
+            "the hub swings with the tip, so that the frequency is not that of a held one: hold "
+            "it, by a brake or a stiffer controller"
+        )
+        held = self.frequency_of(whole)
         return [
-            part if share < _HUB or part.warning else replace(part, cause="hub", warning=(
-                f"the hub swings with the tip, and the frequency is off by about {share:.0%}: hold "
-                "it, by a brake or a stiffer controller"
-            ))
-            for part, share in zip(parts, apart, strict=True)
-        ]  # fmt: skip
+            replace(part, cause="hub", warning=warning)
+            if abs(self.frequency_of(part) / held - 1) > _HUB and not (part.warning or part.hub)
+            else part
+            for part in parts
+        ]
 
     def _hub_swings(self, part: Part) -> bool:
         """Whether the hub swings as the tip does in a part, by more than an encoder's noise."""

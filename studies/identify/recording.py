@@ -53,31 +53,26 @@ class Recording:
     name: str = "the recording"
 
     def __post_init__(self) -> None:
-        time = np.asarray(self.time, float)
-        rows = len(time)
-        given = {name: getattr(self, name) for name in ("angle", "tip", "acceleration", "torque")}
-        given = {name: np.asarray(v, float) for name, v in given.items() if v is not None}
-        if not given.keys() - {"angle"}:
+        given = {name: np.asarray(values, float) for name, values in self._arrays.items()}
+        if not given.keys() - {"time", "angle"}:
             raise ValueError(f"{self.name} has no tip, acceleration or torque; give one")
+        rows = len(given["time"])
         for name, values in given.items():
             if len(values) != rows:
                 raise ValueError(f"{self.name} has {rows} times and {len(values)} of {name}")
-        whole = np.isfinite(time)
-        for values in given.values():
-            whole &= np.isfinite(values.reshape(rows, -1)).all(axis=1)
+        finite = [np.isfinite(values.reshape(rows, -1)).all(axis=1) for values in given.values()]
+        whole = np.all(finite, axis=0)
         kept = np.count_nonzero(whole)
         if not LEAST_ROWS <= kept <= _MOST_ROWS:
             raise ValueError(f"{self.name} has {kept} rows; give {LEAST_ROWS} to {_MOST_ROWS}")
-        time = time[whole]
-        late = int(np.argmin(np.diff(time)))
-        if time[late + 1] <= time[late]:
+        for name, values in given.items():
+            object.__setattr__(self, name, values[whole])
+        late = int(np.argmin(np.diff(self.time)))
+        if self.time[late + 1] <= self.time[late]:
             raise ValueError(
                 f"{self.name}: the time does not increase from row {late + 1} to the next; sort "
                 "the rows, or mend it"
             )
-        object.__setattr__(self, "time", time)
-        for name, values in given.items():
-            object.__setattr__(self, name, values[whole])
         if self.angle is not None and np.abs(self.angle).max() > MOST_ANGLE:
             raise ValueError(
                 f"{self.name}: an angle of {np.abs(self.angle).max():g} rad; is it in degrees? say "
@@ -85,14 +80,16 @@ class Recording:
             )
 
     @property
+    def _arrays(self) -> dict[str, Array]:
+        """What is given, by name."""
+        names = ("time", "angle", "tip", "acceleration", "torque")
+        return {name: v for name in names if (v := getattr(self, name)) is not None}
+
+    @property
     def signals(self) -> dict[str, Array]:
         """What is compared with the plant, a column each, by name."""
-        found = {name: getattr(self, name) for name in ("tip", "acceleration", "torque")}
-        return {
-            name: values.reshape(len(self.time), -1)
-            for name, values in found.items()
-            if values is not None
-        }
+        given = {k: v for k, v in self._arrays.items() if k not in ("time", "angle")}
+        return {name: values.reshape(len(values), -1) for name, values in given.items()}
 
     @cached_property
     def values(self) -> Array:
@@ -111,22 +108,14 @@ class Recording:
 
     def part(self, rows: slice | NDArray[np.bool_]) -> Recording:
         """Some of its rows."""
-        names = [
-            name for name in ("time", "angle", *self.signals) if getattr(self, name) is not None
-        ]
-        return replace(self, **{name: getattr(self, name)[rows] for name in names})
+        return replace(self, **{name: values[rows] for name, values in self._arrays.items()})
 
     def averaged(self, count: float) -> Recording:
         """Its means over so many rows each; itself where these are fewer than two."""
-        size = int(min(count, len(self.time) / LEAST_ROWS))
-        if size < 2:
-            return self
+        size = max(1, int(min(count, len(self.time) / LEAST_ROWS)))
         rows = len(self.time) // size * size
-        names = [
-            name for name in ("time", "angle", *self.signals) if getattr(self, name) is not None
-        ]
-        kept = {name: getattr(self, name)[:rows] for name in names}
-        blocks = {name: v.reshape(-1, size, *v.shape[1:]) for name, v in kept.items()}
+        given = self._arrays.items()
+        blocks = {name: v[:rows].reshape(-1, size, *v.shape[1:]) for name, v in given}
         return replace(self, **{name: v.mean(axis=1) for name, v in blocks.items()})
 
 

@@ -105,7 +105,7 @@ class FreeDecay:
         """Columns (1, rows, columns), and their derivatives (parameters, 1, rows, columns)."""
         values, slopes = self._response.eigenvalues(p, self._angle)
         swings = np.exp(self._time[:, None] * values)
-        by_p = slopes.T[:, None] * (self._time[:, None] * swings)
+        by_p = slopes.T[: None if derivatives else 0, None] * (self._time[:, None] * swings)
         return _parts(swings)[None], _parts(by_p)[:, None]
 
 
@@ -140,16 +140,18 @@ class Driven:
         """
         march = self._response.march(self._given.shape[1], derivatives)
         found = march.call([self._given, p])
-        B, dB = self._columns(found[0], self._lever), self._columns(found[-1], 0 * self._lever)
-        return B[0], dB
+        B, *dB = (self._columns(one, k == 0) for k, one in enumerate(found))
+        return B[0], dB[0] if derivatives else B[:0]
 
-    def _columns(self, table: ca.DM, last: Array) -> Array:
-        """A table of the march by (parameters, signals, rows, columns)."""
+    def _columns(self, table: ca.DM, lever: bool) -> Array:
+        """A table of the march by (parameters, signals, rows, columns), with the lever's."""
         signals = len(self._response.kinds)
         steps = table.full().reshape(-1, signals, table.shape[1])
         blocks = steps.reshape(*steps.shape[:2], -1, self._given.shape[1])[..., self._rows]
         found = blocks.transpose(2, 1, 3, 0)
-        return np.concatenate([found, np.broadcast_to(last, (*found.shape[:3], 1))], axis=-1)
+        return np.concatenate(
+            [found, np.broadcast_to(lever * self._lever, (*found.shape[:3], 1))], axis=-1
+        )
 
 
 def smooth(recording: Recording) -> Any:
@@ -172,4 +174,6 @@ def smooth(recording: Recording) -> Any:
 
 def _parts(values: Any) -> Array:
     """Real and imaginary parts of columns, side by side."""
-    return np.stack([values.real, values.imag], axis=-1).reshape(*values.shape[:-1], -1)
+    return np.stack([values.real, values.imag], axis=-1).reshape(
+        *values.shape[:-1], 2 * values.shape[-1]
+    )
