@@ -26,7 +26,7 @@ _MET = 0.05
 """Share of a whole recording that its joint's motion may leave, to be better than ring-downs."""
 _HUB = 0.015
 """Of a frequency, that a hub which swings with the tip may shift it."""
-_FACTORS = np.geomspace(0.5, 2, 21)
+_FACTORS = np.geomspace(0.5, 2, 15)
 """Of a frequency, from the best of which whole recordings are fitted."""
 _MORE = 2.0
 """Times the noise that is left, from which on a delay of the angle matters."""
@@ -37,7 +37,7 @@ _FAR = 4.0
 _MUCH_DAMPING = 0.12
 """More than a held beam has; a controller that gives way damps like that."""
 _DAMPINGS = (0.002, 0.01, 0.03, 0.08, 0.2, 0.4)
-_STARTS = 3
+_STARTS = 2
 """Of whole recordings."""
 
 

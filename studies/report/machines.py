@@ -52,8 +52,8 @@ def prediction_rows(plant: Plant, predictions: Sequence[Prediction]) -> list[Row
     return rows
 
 
-def machine_notes(found: Identified) -> list[str]:
-    """What is to be known before the intervals are believed."""
+def machine_notes(found: Identified, held: bool) -> list[str]:
+    """What is to be known before the intervals are believed; of a joint that is taken as held."""
     given = _as_given(found)
     notes = [
         "Left: root mean square of what the fit leaves, as a share of the swing's; and the noise's."
@@ -62,6 +62,11 @@ def machine_notes(found: Identified) -> list[str]:
         notes.append(
             "Torque and energy depend on what is as given: set what you know by --set, as "
             f"{given[0]}={getattr(found.plant, given[0]):.4g}."
+        )
+    if held:
+        notes.append(
+            "The joint is taken to be held: name its angle's column by --angle, where a controller "
+            "holds it. One that gives way shifts the frequency."
         )
     if len(found.parts) == 1:
         notes.append(

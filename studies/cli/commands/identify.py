@@ -104,5 +104,5 @@ def identify(
     finish(
         files_of(output, {".json": found.save, PICTURE: draw}),
         machine_rows(found),
-        *machine_notes(found),
+        *machine_notes(found, not columns["angle"]),
     )
