@@ -146,11 +146,13 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
     """Least squares of parameters and amplitudes of a swing at a frequency [Hz]."""
     from scipy.optimize import least_squares  # not at the top: it takes long to load
 
-    count, x, solve = len(start), model.start(start), least_squares
+    solve: Any = least_squares
+    count, x = len(start), model.start(start)
+    residual = model.left(x, count)
     free = np.full(len(x) - count, np.inf)
     bounds = np.append(lower, -free), np.append(upper, free)
     least = 1e-9 * model.values.std(axis=0)[:, None] + 1e-300
-    deviation = np.maximum(model.left(x, count).std(axis=1, keepdims=True), least)
+    deviation = np.maximum(residual.std(axis=1, keepdims=True), least)
     for loss, most in (("linear", 40), *[("huber", 20)] * (_ROUNDS - 1)):
         x = solve(
             lambda x: (-model.left(x, count) / deviation).ravel(),  # noqa: B023

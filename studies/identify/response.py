@@ -76,6 +76,7 @@ class Response:
     def eigenvalues(self, p: Array, angle: float = 0.0) -> tuple[Any, Any]:
         """Those that swing with the joint at rest, slowest first, and their derivatives by p."""
         A, by_p = (entry.full() for entry in self._at_rest(p, angle))
+        values: Any
         values, right = np.linalg.eig(A)
         transposed = by_p.T.reshape(-1, *A.shape)
         slopes = np.einsum("kl,jil,ik->kj", np.linalg.inv(right), transposed, right)
