@@ -20,7 +20,7 @@ BAD_INPUT, NOT_SOLVED = 2, 1
 
 COMMANDS = {
     "plan": "Find the move of least energy that arrives at rest.",
-    "evaluate": "Compute the figures of coefficients, a path, or a table of results.",
+    "evaluate": "Evaluate coefficients, a path, or a table of results.",
     "front": "Find the trade-off of residual and energy by the gradient.",
     "search": "Find the trade-off with a metaheuristic.",
     "compare": "Compare fronts, or plans with shapers and under parameter errors.",

@@ -134,7 +134,7 @@ def parse_pair(text: str, what: str, example: str) -> tuple[str, str]:
 
 
 def parse_error(text: str) -> tuple[str, float]:
-    """Read how far a parameter may be wrong, ``frequency=10%``, or `MEASURED`."""
+    """Read the range of a parameter error, ``frequency=10%``, or `MEASURED`."""
     if text == MEASURED:
         return MEASURED, 0.0
     name, share = parse_pair(text, "an error", "frequency=10%")

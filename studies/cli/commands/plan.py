@@ -132,7 +132,7 @@ def plan_files(output: Sequence[Path], plan: Plan) -> list[File]:
 def _plan_freely(
     move: TypedMove, smooth: bool, starts: int, seed: int, output: Sequence[Path]
 ) -> None:
-    """The least energy over all joint motions, beside the plan of a polynomial."""
+    """The best motion without a parametrisation, beside the plan of a polynomial."""
     task, beside = move.task(), None
     if any(ending_of(path) == ".csv" for path in output):
         raise ValueError("a free motion is written as .json or as a picture, not as .csv")

@@ -106,7 +106,7 @@ def plan(task: qa.PointToPoint, terms: int = 6, **options: Any) -> Answer:
 
 
 def robust(task: qa.PointToPoint, **options: Any) -> Answer:
-    """A robust plan's energy, and what it leaves at worst."""
+    """A robust plan's energy, and its worst case."""
     found = qa.plan_move(task, **options)
     assert found.worst is not None
     return {"energy": found.energy, "worst": found.worst.residual}
@@ -135,7 +135,7 @@ def weighted(task: qa.PointToPoint, bound: float) -> Answer:
 
 
 def floor(task: qa.PointToPoint, **options: Any) -> Answer:
-    """The least energy over all joint motions, and the residual of its motion."""
+    """The energy of the best free motion, and its residual."""
     found = qa.energy_floor(task, **options)
     return {"energy": found.energy, "residual": found.residual}
 
