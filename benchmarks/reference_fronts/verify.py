@@ -6,7 +6,7 @@ import argparse
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
 from typing import ClassVar
@@ -15,6 +15,7 @@ import numpy as np
 from make import LIMITED_STEPS, exact_front
 from quietarm.metaheuristics import PROBLEMS, NamedProblem
 from quietarm.metaheuristics.objective.population import PopulationObjective
+from quietarm.metaheuristics.problems.catalogue import FRONTS
 from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.certify import judge
@@ -186,11 +187,21 @@ def _priced(problem: Problem, found: Solution, energy: float) -> float:
     return 1 - (checked.energy + priced) / energy
 
 
+def write_how_tried(front: Front, tried: int, gained: float, path: Path) -> None:
+    """Put into a front's file from how many random starts it was tried, and what the best gained.
+
+    As a share of the energy; a point that CVODES confirms and that is better counts.
+    """
+    settings = {**front.record.settings, "tried_starts": tried, "best_improvement": gained}
+    replace(front, record=replace(front.record, settings=settings)).save(path)
+
+
 def main() -> None:
     """Verify the reference fronts that are named, or all; with --make, find them anew first."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("names", nargs="*", default=list(PROBLEMS))
     parser.add_argument("--make", type=Path, help="folder for fronts that are found anew")
+    parser.add_argument("--record", action="store_true", help="write the outcome into the files")
     given = parser.parse_args()
     for name in given.names:
         problem = PROBLEMS[name]
@@ -199,7 +210,10 @@ def main() -> None:
                 found = exact_front(task, problem.profile, problem.bound, known.points)
                 given.make.mkdir(parents=True, exist_ok=True)
                 found.save(given.make / f"{part}.json")
-        for one in certified(problem):
+        for one, front in zip(certified(problem), problem.fronts(), strict=True):
+            if given.record:
+                (path,) = FRONTS.rglob(f"{one.front}.json")
+                write_how_tried(front, one.tried, one.gained, path)
             words = "holds" if one.holds else "does not hold"
             print(f"{one.front}: {words}; gained {one.gained:.1e}, {one.confirmed} confirmed")
 
