@@ -39,17 +39,8 @@ HEIRS = {
     "import": "evaluate --coefficients results.csv", "polish": "front --polish front.json",
     "study": "bench", "contest": "bench", "robustness": "compare", "versus": "compare --baselines",
     "animate": "export --output move.gif", "plants": "list plants", "problems": "list problems",
-    "--csv": "--output NAME.csv", "--figure": "--output NAME.png", "--latex": "--output NAME.tex",
-    "--robust": "--error", "--sample-rate": "quietarm export --rate",
-    "plan --method": "quietarm search", "plan --polish": "quietarm search and then front --polish",
-    "front --runs": "quietarm search --runs", "front --population": "quietarm search",
-    "front --generations": "quietarm search", "front --setting": "quietarm search",
-    "export --format": "--output with the ending of the format",
-    "sweep --refine": "--limit-margin, or a finer grid",
-    "--checkpoint": "quietarm search --from front.json",
-    "--resume": "quietarm search --from front.json",
 }  # fmt: skip
-"""What took the place of commands and options that are gone, for one release."""
+"""What took the place of commands that are gone, for one release."""
 
 
 class LazyGroup(click.Group):
@@ -143,8 +134,6 @@ def _run(arguments: Sequence[str] | None) -> int:
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         return BAD_INPUT
-    except click.NoSuchOption as error:
-        return _complain(_with_heir(error), BAD_INPUT)
     except click.ClickException as error:
         return _complain(error.format_message(), BAD_INPUT)
     except (FileFormatError, ValueError) as error:
@@ -162,13 +151,6 @@ def _run(arguments: Sequence[str] | None) -> int:
         reason = (error.strerror or str(error)).lower()
         place = f"{error.filename}: " if error.filename else "standard output: "
         return _complain(f"{place}{reason}; choose another place", BAD_INPUT)
-
-
-def _with_heir(error: click.NoSuchOption) -> str:
-    """The message about an option that is not known, with its heir where it is gone."""
-    command = error.ctx.info_name if error.ctx else ""
-    heir = HEIRS.get(f"{command} {error.option_name}", HEIRS.get(error.option_name))
-    return f"{error.option_name} is gone; give {heir}" if heir else error.format_message()
 
 
 def _complain(message: str, status: int) -> int:

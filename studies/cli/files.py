@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import click
 from quietarm.ocp import Front, QuietarmError
 from quietarm.ocp.files import check_writable, unwritable, write_whole
 from quietarm.ocp.interrupts import note_interrupts
-from quietarm.studies.cli.options import busy
+from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
 from quietarm.studies.report.pictures import SUFFIXES
 from quietarm.studies.report.saving import STDOUT, File, drawing
@@ -49,7 +47,7 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> Callab
 
     names = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
     listed = "; ".join(f"{names.get(kind, kind)} for {words}" for kind, words in kinds.items())
-    return click.option(
+    return option(
         "--output", type=Parsed("file", check), multiple=True, required=required,
         help=f"File to write, by its ending: {listed}. May be repeated.",
     )  # fmt: skip
@@ -92,18 +90,6 @@ def report_files(output: Sequence[Path], report: Report) -> list[File]:
     return found
 
 
-def refuse_same_file(values: Iterable[object]) -> None:
-    """Refuse a line that names one file twice, so that nothing that is read is written over."""
-    every = [one for value in values for one in (value if isinstance(value, tuple) else (value,))]
-    known = set[str]()
-    for path in every:
-        if isinstance(path, Path) and path != STDOUT:
-            place = os.path.realpath(path)  # of a link, too
-            if place in known:
-                raise ValueError(f"{path} is given twice; give it once, or another name")
-            known.add(place)
-
-
 def finish(
     files: Sequence[File],
     *shown: Report | Sequence[tuple[str, str]] | str,
@@ -130,8 +116,10 @@ def finish(
         for part in filter(None, shown):
             if isinstance(part, str):
                 print_lines(console, part)
+            elif isinstance(part, Sequence):
+                show_facts(console, part)
             else:
-                (show_facts if isinstance(part, Sequence) else show)(console, part)
+                show(console, part)
         for name in written:
             print_lines(console, f"wrote {name}")
     except KeyboardInterrupt:

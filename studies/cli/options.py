@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import AbstractContextManager
 from functools import partial
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -14,9 +16,10 @@ from quietarm.models import Plant, load_plant_file
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.cli.quantities import literal, once, parse_share_of_work
-from quietarm.studies.cli.types import LENGTH, SETTING, WHOLE, Named, Parsed
+from quietarm.studies.cli.types import LENGTH, SETTING, Named, Parsed
 from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL
 from quietarm.studies.report.progress import count, working
+from quietarm.studies.report.saving import STDOUT
 from rich.console import Console
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -46,6 +49,18 @@ COMMON_HELP = (
 )
 
 
+def _refuse_same_file(values: Iterable[object]) -> None:
+    """Refuse a line that names one file twice, so that nothing that is read is written over."""
+    every = [one for value in values for one in (value if isinstance(value, tuple) else (value,))]
+    known = set[str]()
+    for path in every:
+        if isinstance(path, Path) and path != STDOUT:
+            place = os.path.realpath(path)  # of a link, too
+            if place in known:
+                raise ValueError(f"{path} is given twice; give it once, or another name")
+            known.add(place)
+
+
 class Command(click.Command):
     """A command with the options that all have."""
 
@@ -55,9 +70,7 @@ class Command(click.Command):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run it, unless one file is named twice."""
-        from quietarm.studies.cli.files import refuse_same_file
-
-        refuse_same_file(ctx.params.values())
+        _refuse_same_file(ctx.params.values())
         return super().invoke(ctx)
 
     def get_help_option(self, ctx: click.Context) -> click.Option | None:
@@ -97,6 +110,10 @@ def counting(total: int, what: str) -> AbstractContextManager[Callable[[int, int
     return count(total, what, Console(stderr=True), quiet=quiet())
 
 
+option = partial(click.option, show_default=True)
+"""The decorator of every option, whose help ends with its default."""
+
+
 def options(*several: Callable[[F], F]) -> Callable[[F], F]:
     """Several options as one decorator."""
 
@@ -127,65 +144,63 @@ def refuse_typed(names: Collection[str], why: str) -> None:
             raise ValueError(f"{name} {why}")
 
 
-_OF_SHAPERS = {
-    name: f"{name} is an input shaper: it has one motion for a move, and therefore no front; give "
-    f"one of {', '.join(FAMILIES)}, or quietarm plan"
-    for name in SHAPERS
-}
 _CYCLOIDS = (
     "How the joint moves: a cycloid of a polynomial, of Gaussians, of a neural network or of a "
     "spline"
+)
+_OF_SHAPERS = (
+    "{0} is an input shaper: it has one motion for a move, and therefore no front; give one of "
+    f"{', '.join(FAMILIES)}, or quietarm plan"
 )
 
 
 def profile_options(*others: str, words: str = "") -> Callable[[F], F]:
     """--profile and --terms; `others` are profiles without coefficients."""
-    names, none = [*FAMILIES, *others], {} if others else _OF_SHAPERS
+    none = {} if others else {name: _OF_SHAPERS.format(name) for name in SHAPERS}
     sizes = ", ".join(f"{family().terms} for {name}" for name, family in FAMILIES.items())
+    named = Named("profile", [*FAMILIES, *others], none)
     return options(
-        click.option(
-            "--profile", type=Named("profile", names, none), default=POLYNOMIAL, show_default=True,
-            help=f"{_CYCLOIDS}{words}.",
-        ),
-        click.option(
-            "--terms", type=WHOLE,
-            help=f"Terms of the polynomial, Gaussians, hidden nodes or control points. [default: "
-            f"{sizes}]",
-        ),
+        option("--profile", type=named, default=POLYNOMIAL, help=f"{_CYCLOIDS}{words}."),
+        option("--terms", type=int, help="Terms of the polynomial, Gaussians, hidden nodes or "
+               f"control points. [default: {sizes}]"),
     )  # fmt: skip
 
 
-bound_option = click.option(
+bound_option = option(
     "--bound", type=float,
     help="Largest size of a coefficient. [default: none; a search of polynomials needs one]",
 )  # fmt: skip
-residual_limit_option = click.option(
+residual_limit_option = option(
     "--residual-limit", type=LENGTH,
     help="Largest tip displacement after arrival. [default: at rest; with --error 5 % of how far "
     "the plain cycloid bends the tip on its way]",
 )  # fmt: skip
-seed_option = click.option(
-    "--seed", type=WHOLE, default=0, show_default=True, help="Seed of the random numbers."
-)
-starts_option = click.option(
-    "--starts", type=WHOLE, default=4, show_default=True, help="Starts of the solver."
-)
-solver_option = click.option(
-    "--solver", type=Named("solver", SOLVERS), default=SOLVERS[0], show_default=True,
+seed_option = option("--seed", default=0, help="Seed of the random numbers; the first of several.")
+starts_option = option("--starts", default=4, help="Starts of the solver.")
+solver_option = option(
+    "--solver", type=Named("solver", SOLVERS), default=SOLVERS[0],
     help="Sequential quadratic programs (quietarm's own, fast), or IPOPT.",
 )  # fmt: skip
-sensitivities_option = click.option(
+sensitivities_option = option(
     "--sensitivities", is_flag=True,
     help="List by how much residual and energy change with each parameter of the plant.",
 )  # fmt: skip
-
-
-def settings_option(example: str) -> Callable[[F], F]:
-    """The option for the settings of methods."""
-    return click.option(
-        "--setting", type=SETTING, multiple=True, metavar="NAME=VALUE",
-        help=f"Set {example}; may be repeated. quietarm list methods has the settings.",
-    )  # fmt: skip
+setting_option = option(
+    "--setting", type=SETTING, multiple=True, metavar="NAME=VALUE",
+    help="Set another setting of a method, as crossover=0.7, in a bench nsga2.crossover=0.7; may "
+    "be repeated. quietarm list METHOD has them.",
+)  # fmt: skip
+workers_option = option(
+    "--workers", type=int, default=1, help="Processes of this machine that share the work."
+)
+scheduler_option = option(
+    "--scheduler", metavar="ADDRESS",
+    help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.",
+)  # fmt: skip
+part_option = option(
+    "--part", type=Parsed("i/n", parse_share_of_work), default="1/1",
+    help="Do every n-th piece of the work alone, as 2/8 in a queue's array job.",
+)  # fmt: skip
 
 
 def settings_given(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | bool | str]:
@@ -207,31 +222,3 @@ def settings_by_method(
             )
         found.setdefault(method, {})[own] = value
     return found
-
-
-workers_option = click.option(
-    "--workers", type=WHOLE, default=1, show_default=True,
-    help="Processes of this machine that share the work.",
-)  # fmt: skip
-workers_options = options(
-    workers_option,
-    click.option(
-        "--scheduler", metavar="ADDRESS",
-        help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.",
-    ),
-)  # fmt: skip
-part_option = click.option(
-    "--part", type=Parsed("i/n", parse_share_of_work), default="1/1",
-    help="Do every n-th piece of the work alone, as 2/8 in a queue's array job.",
-)  # fmt: skip
-
-
-def warn_of_workers(workers: int, pieces: int) -> None:
-    """Warn where more workers start than there are cores; no more start than pieces of work."""
-    # a plan by the gradient needs no workers
-    from joblib import cpu_count
-
-    cores, workers = cpu_count(), min(workers, pieces)
-    if workers > cores:
-        words = f"{workers} workers will share {cores} core{'s' * (cores > 1)}"
-        Console(stderr=True).print(words, highlight=False)

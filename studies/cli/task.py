@@ -12,7 +12,7 @@ from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.limits import QUANTITIES
-from quietarm.studies.cli.options import options, plant_file, refuse_typed
+from quietarm.studies.cli.options import option, options, plant_file, refuse_typed
 from quietarm.studies.cli.plants import (
     check_machine,
     chosen_plant,
@@ -22,11 +22,12 @@ from quietarm.studies.cli.plants import (
 )
 from quietarm.studies.cli.quantities import (
     parse_energy,
+    parse_error,
     parse_quantity,
     parse_state,
     parse_torque_speed,
 )
-from quietarm.studies.cli.types import ERROR, SETTING, TIME, Parsed, parse_of_joint
+from quietarm.studies.cli.types import SETTING, TIME, Parsed, parse_of_joint
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid, axis_values
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -41,42 +42,39 @@ def _times(text: str) -> tuple[float, ...] | str:
     return FASTEST if text == FASTEST else axis_values(text, TIME.parse)
 
 
-set_option = click.option(
+set_option = option(
     "--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
     help="Set a parameter of the plant, as omega=3.2Hz or length=600mm; may be repeated.",
 )  # fmt: skip
-error_option = click.option(
-    "--error", "errors", type=ERROR, multiple=True, metavar="NAME=SHARE",
-    help="By how much the frequency, the damping or a parameter of the plant may be wrong, as "
-    "frequency=8%; the residual is then that of the worst case. `measured` has the intervals of an "
-    "identified machine. May be repeated.",
+error_option = option(
+    "--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
+    help="By how much frequency, damping or a parameter may be wrong, as frequency=8%; the "
+    "residual is then that of the worst case. `measured`: as it was identified. May be repeated.",
 )  # fmt: skip
 _OPTIONS = options(
     click.argument("plant", type=Parsed("plant", parse_plant), required=False, metavar="[PLANT]"),
     set_option,
-    click.option("--start", default="0", show_default=True, metavar="ANGLE",
-                 help="Joint angle at the start."),
-    click.option("--target", metavar="ANGLE",
+    option("--start", default="0", metavar="ANGLE", help="Joint angle at the start."),
+    option("--target", metavar="ANGLE",
                  help="Joint angle at the end; of a linear axis a length, as 300mm."),
-    click.option("--duration", type=Parsed("time", _times),
+    option("--duration", type=Parsed("time", _times),
                  help="Travelling time; quietarm plan also takes `fastest`, the shortest within "
                  "the limits."),
     *(
-        click.option(f"--{one.name}-limit", metavar=f"[{one.unit}]",
+        option(f"--{one.name}-limit", metavar=f"[{one.unit}]",
                      help=f"Largest {one.label} on the way; by direction as LEAST:LARGEST.")
         for one in QUANTITIES.values()
     ),
-    click.option("--torque-speed", type=Parsed("torque@speed", parse_torque_speed),
+    option("--torque-speed", type=Parsed("torque@speed", parse_torque_speed),
                  help="What the drive gives, torques at speeds: 1.5Nm@0,0.8Nm@190rpm."),
-    click.option("--residual-window", type=TIME, default="1", show_default=True,
+    option("--residual-window", type=TIME, default="1",
                  help="Time after arrival in which the residual is measured."),
-    click.option("--initial", type=Parsed("W:W'", parse_state),
+    option("--initial", type=Parsed("W:W'", parse_state),
                  help="Vibration at the start, modal amplitudes W [m] and rates W' [m/s]: "
                  "5mm:-0.3, or of two modes 5mm,0:0,0.1."),
-    click.option("--final", type=Parsed("W:W'", parse_state),
+    option("--final", type=Parsed("W:W'", parse_state),
                  help="Vibration wanted on arrival, likewise; none by default."),
-    click.option("--energy", type=Parsed("energy", parse_energy), default="absolute",
-                 show_default=True,
+    option("--energy", type=Parsed("energy", parse_energy), default="absolute",
                  help="What counts as energy: absolute or positive power, copper loss by the motor "
                  "constant [N m/W^0.5] as copper:0.12, or a sum as 0.5*absolute+copper:0.12."),
     error_option,

@@ -11,7 +11,7 @@ import click
 from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp.checks import spelling, unknown
 from quietarm.ocp.limits import quantities_of
-from quietarm.studies.cli.quantities import is_number, parse_error, parse_pair, parse_usual
+from quietarm.studies.cli.quantities import is_number, parse_pair, parse_usual
 from quietarm.studies.sweep.grid import axis_values
 
 
@@ -75,6 +75,4 @@ LENGTH, TIME, SHARE = (
 SETTING = Parsed(
     "name=value", partial(parse_pair, what="a parameter or setting", example="omega=9")
 )
-ERROR = Parsed("name=share", parse_error)
-WHOLE = click.INT
 INPUT = click.Path(path_type=Path)

@@ -8,7 +8,6 @@ from pathlib import Path
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
 MOVE = "single-link --target 30deg --duration 0.8"
 TWO_TERMS = "--coefficients=0.003347,-0.1697"  # the paper's Table 1
-EVERY_FILE = "--output plan.json --output move.csv --output move.png"
 COARSELY = [
     sys.executable,
     "-c",

@@ -8,42 +8,38 @@ import click
 from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.options import (
     command,
+    option,
     part_option,
     quiet,
+    scheduler_option,
+    seed_option,
+    setting_option,
     settings_by_method,
-    settings_option,
     typed_line,
-    warn_of_workers,
-    workers_options,
+    workers_option,
 )
-from quietarm.studies.cli.types import INPUT, WHOLE, Parsed
+from quietarm.studies.cli.types import INPUT, Parsed
 from rich.console import Console
 
 
 @command()
 @click.argument("problems", nargs=-1, required=True, metavar="PROBLEM...")
-@click.option(
-    "--methods", default="nsga2,vepso,epsilon", show_default=True, metavar="NAME,NAME,...",
-    help="Searches, as they are or polished by the gradient (nsga2+polish); epsilon, weighted and "
-    "multistart are the gradient alone, by SQP or by IPOPT (epsilon:ipopt).",
+@option(
+    "--methods", default="nsga2,vepso,epsilon", metavar="NAME,NAME,...",
+    help="Searches, polished by the gradient as nsga2+polish; epsilon, weighted and multistart are "
+    "the gradient alone, by SQP or by IPOPT (epsilon:ipopt).",
 )  # fmt: skip
-@click.option("--runs", type=WHOLE, default=15, show_default=True, help="Seeds of each method.")
-@click.option(
-    "--evaluations", type=WHOLE, default=10_000, show_default=True,
-    help="Candidates of each run of a search.",
-)  # fmt: skip
-@click.option("--seed", type=WHOLE, default=0, show_default=True, help="First seed.")
-@settings_option("a setting of a method, as nsga2.crossover=0.7 or epsilon.points=20")
-@click.option(
-    "--import", "imported", multiple=True, type=INPUT,
-    help="A run of another library that a recorded function wrote; may be repeated.",
-)  # fmt: skip
-@click.option(
-    "--output", type=Parsed("folder", check_folder), required=True,
-    help="Folder for runs and report; runs that are there are not done again.",
-)  # fmt: skip
+@option("--runs", default=15, help="Seeds of each method.")
+@option("--evaluations", default=10_000, help="Candidates of each run of a search.")
+@seed_option
+@setting_option
+@option("--import", "imported", multiple=True, type=INPUT,
+        help="A run of another library, by a recorded function; may be repeated.")  # fmt: skip
+@option("--output", type=Parsed("folder", check_folder), required=True,
+        help="Folder for runs and report; runs that are there are kept.")  # fmt: skip
 @part_option
-@workers_options
+@workers_option
+@scheduler_option
 def bench(
     problems: tuple[str, ...],
     methods: str,
@@ -93,7 +89,6 @@ def bench(
     given = [Front.load(path) for path in imported]
     if not quiet():
         print_lines(errors, *left_out, say_power(runs, len(names)))
-        warn_of_workers(workers, len(jobs))
     write_references(chosen, output)
     trouble: QuietarmError | None = None
     with progress(len(jobs), errors, quiet=quiet()) as begin:

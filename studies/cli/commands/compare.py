@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import click
 from quietarm.studies.cli.files import FOLDER, finish, output_option, report_files
-from quietarm.studies.cli.options import busy, command, refuse_typed
+from quietarm.studies.cli.options import busy, command, option, refuse_typed
 from quietarm.studies.cli.quantities import once
 from quietarm.studies.cli.task import error_option
-from quietarm.studies.cli.types import INPUT, WHOLE, Parsed
+from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.report import Report
 from rich.console import Console
 
@@ -36,20 +36,13 @@ def _names(text: str) -> tuple[str, ...]:
 
 @command()
 @click.argument("files", nargs=-1, type=INPUT, metavar="FILE...")
-@click.option(
-    "--baselines", type=Parsed("names", _names), default=(),
-    help="Plans: add these for the same move, as zvd,ruckig,zvd-ruckig; or all.",
-)  # fmt: skip
+@option("--baselines", type=Parsed("names", _names), default=(),
+        help="Plans: add these for the same move, as zvd,ruckig; or all.")  # fmt: skip
 @error_option
-@click.option(
-    "--samples", type=WHOLE, default=2000, show_default=True,
-    help="Plans: random plants for the percentiles.",
-)  # fmt: skip
-@click.option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one.")
-@click.option(
-    "--free-motion/--no-free-motion", "free", default=True, show_default=True,
-    help="Fronts: find the least energy over all joint motions as well; some seconds.",
-)  # fmt: skip
+@option("--samples", default=2000, help="Plans: random plants for the percentiles.")
+@option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one.")
+@option("--free-motion/--no-free-motion", "free", default=True,
+        help="Fronts: find the least energy over all motions as well.")  # fmt: skip
 @output_option({FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"})
 def compare(
     files: tuple[Path, ...],

@@ -17,13 +17,14 @@ from quietarm.studies.cli.options import (
     bound_option,
     busy,
     command,
+    option,
     profile_options,
     refuse_typed,
     sensitivities_option,
 )
 from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.task import TypedMove, task_options
-from quietarm.studies.cli.types import INPUT, WHOLE, Parsed
+from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.moves import path_rows
@@ -40,18 +41,15 @@ def _coefficients(text: str) -> list[float] | Path:
 @command()
 @task_options
 @profile_options(*SHAPERS, words="; or the plain cycloid through an input shaper")
-@click.option(
+@option(
     "--coefficients", type=Parsed("numbers", _coefficients), metavar="NUMBERS|FILE",
-    help="Those of the profile with commas between, as --coefficients=-0.0019,-0.14; or a file "
-    "with a row a motion (.csv, .txt, .npy, .npz, .mat), which gives a front.",
+    help="Those of the profile, as --coefficients=-0.0019,-0.14; or a file with a row a motion "
+    "(.csv, .txt, .npy, .npz, .mat), which gives a front.",
 )  # fmt: skip
-@click.option(
-    "--path", type=INPUT,
-    help="A CSV file with the joint's path in columns such as time_s and angle_deg, in place of "
-    "start, target and duration.",
-)  # fmt: skip
+@option("--path", type=INPUT, help="A CSV file with columns such as time_s and angle_deg, in place "
+        "of start, target and duration.")  # fmt: skip
 @bound_option
-@click.option("--evaluations", type=WHOLE, help="Candidates that it took to find a file's rows.")
+@option("--evaluations", type=int, help="Candidates that it took to find a file's rows.")
 @sensitivities_option
 @output_option({
     ".json": "the plan or front", ".csv": "the path at 1 kHz or the front", PICTURE: "a picture",

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 from quietarm.ocp.checks import install
-from quietarm.studies.cli.options import command, plant_file
+from quietarm.studies.cli.options import command, option, plant_file
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
 from quietarm.studies.cli.task import set_option
 
@@ -17,7 +17,7 @@ _USUAL = "single-link"
 @command()
 @click.argument("what", required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]")
 @set_option
-@click.option("--no-browser", is_flag=True, help="Print the page's address alone.")
+@option("--no-browser", is_flag=True, help="Print the page's address alone.")
 def explore(what: str | None, parameters: tuple[tuple[str, str], ...], no_browser: bool) -> None:
     """Show a page on which a move is changed by hand, and its figures and motion at once.
 

@@ -8,7 +8,7 @@ from typing import Any
 import click
 from quietarm.ocp.files import check_writable
 from quietarm.studies.cli.files import finish
-from quietarm.studies.cli.options import command, counting, typed
+from quietarm.studies.cli.options import command, counting, option, refuse_typed
 from quietarm.studies.cli.types import INPUT, SHARE, Parsed
 from quietarm.studies.export.formats import (
     COLUMNS,
@@ -26,28 +26,17 @@ from quietarm.studies.reading.saved import load_plans
 
 @command()
 @click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
-@click.option("--output", type=Parsed("file", check_writable), required=True,
-              help="The file, whose ending is the format; move.c has move.h beside it."
-              )  # fmt: skip
-@click.option("--columns", default=COLUMNS, show_default=True,
-              help="Of csv and mat, with units: time:ms,angle:deg,speed,acceleration,jerk,tip:mm,"
-              "torque,power.")  # fmt: skip
-@click.option("--rate", type=float,
-              help=f"Rows, points or frames in a second [Hz]. [default: {RATE:g}, {FRAMES:g} of a "
-              "film]")  # fmt: skip
-@click.option("--joint", default=JOINT, show_default=True, help="The joint's name, for ROS.")
-@click.option("--speed", type=SHARE, default="100%", show_default=True,
-              help="Of a film's clock; 25% is slow motion.")  # fmt: skip
-@click.option("--deflection-scale", type=float,
-              help="Draw deflections so many times larger than they are. [default: the largest "
-              "becomes up to a fifth of the structure]")  # fmt: skip
-@click.option(
-    "--width",
-    type=click.IntRange(200, 2000),
-    default=800,
-    show_default=True,
-    help="Of a film, in pixels.",
-)
+@option("--output", type=Parsed("file", check_writable), required=True,
+        help="The file, whose ending is the format; move.c has move.h beside it.")  # fmt: skip
+@option("--columns", default=COLUMNS, help="Of csv and mat, with units: time:ms,angle:deg,speed,"
+        "acceleration,jerk,tip:mm,torque,power.")  # fmt: skip
+@option("--rate", type=float, help="Rows, points or frames in a second [Hz]. [default: "
+        f"{RATE:g}, {FRAMES:g} of a film]")  # fmt: skip
+@option("--joint", default=JOINT, help="The joint's name, for ROS.")
+@option("--speed", type=SHARE, default="100%", help="Of a film's clock; 25% is slow motion.")
+@option("--deflection-scale", type=float, help="Draw deflections so many times larger. [default: "
+        "the largest becomes up to a fifth of the structure]")  # fmt: skip
+@option("--width", type=click.IntRange(200, 2000), default=800, help="Of a film, in pixels.")
 def export(plans: tuple[Path, ...], output: Path, **settings: Any) -> None:
     """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB) or as a film (gif, mp4, html).
 
@@ -69,11 +58,10 @@ def export(plans: tuple[Path, ...], output: Path, **settings: Any) -> None:
     """  # noqa: D301  # \b is click's: do not rewrap
     name = format_of(output)
     known = FORMATS[name]
-    for option in settings:
-        if typed(option) and option not in known.takes:
-            takers = [one for one, each in FORMATS.items() if option in each.takes]
-            words = option.replace("_", "-")
-            raise ValueError(f"--{words} is for {', '.join(takers)}, not for {name}; leave it out")
+    for setting in settings:
+        if setting not in known.takes:
+            takers = ", ".join(one for one, each in FORMATS.items() if setting in each.takes)
+            refuse_typed([setting], f"is for {takers}, not for {name}; leave it out")
     settings = {one: settings[one] for one in known.takes if settings[one] is not None}
     if not known.is_film and len(plans) > 1:
         raise ValueError(f"{name} is of one plan, and {len(plans)} are given; give one")

@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import click
 from quietarm.ocp import SolverFailedError, cross_check, polish_front
 from quietarm.studies import figures
 from quietarm.studies.cli.files import PICTURE, finish, front_files, output_option
@@ -16,6 +15,7 @@ from quietarm.studies.cli.options import (
     busy,
     command,
     counting,
+    option,
     profile_options,
     refuse_typed,
     seed_option,
@@ -24,7 +24,7 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.quantities import parse_weights
 from quietarm.studies.cli.task import NAMES, TypedMove, task_options
-from quietarm.studies.cli.types import INPUT, WHOLE, Named, Parsed
+from quietarm.studies.cli.types import INPUT, Named, Parsed
 from quietarm.studies.reading.saved import load_front
 from quietarm.studies.registry.methods import EPSILON, METHODS, WEIGHTED, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
@@ -44,35 +44,26 @@ _OF_CURVES = (
 
 @command()
 @task_options
-@click.option(
-    "--method", type=Named("method", _GRADIENT, _SEARCHES), default=EPSILON.name, show_default=True,
-    help="epsilon: least energy at one residual limit after another; weighted: the least weighted "
-    "sum for one pair of weights after another.",
+@option(
+    "--method", type=Named("method", _GRADIENT, _SEARCHES), default=EPSILON.name,
+    help="Least energy at one residual limit after another (epsilon), or the least weighted sum "
+    "for one pair of weights after another (weighted).",
 )  # fmt: skip
 @profile_options()
 @bound_option
-@click.option(
-    "--points", type=WHOLE, default=50, show_default=True,
-    help="Points of the front; epsilon has three more, at 0.1, 1 and 5 mm.",
-)  # fmt: skip
-@click.option(
+@option("--points", default=50, help="Points of the front; epsilon has 0.1, 1 and 5 mm besides.")
+@option(
     "--weights", type=Parsed("weights", parse_weights), multiple=True, metavar="R:E",
-    help="weighted: weights of residual and energy, both scaled to the ends of the front, in place "
-    "of --points; may be repeated, as --weights 1:1 --weights 1:3.",
+    help="weighted: weights of residual and energy, scaled to the ends of the front, in place of "
+    "--points; may be repeated, as --weights 1:1 --weights 1:3.",
 )  # fmt: skip
 @starts_option
 @seed_option
 @solver_option
-@click.option(
-    "--check", is_flag=True,
-    help="Solve seven points, both ends among them, by the other solver as well, from the plain "
-    "cycloid, and say by how much the two differ.",
-)  # fmt: skip
-@click.option(
-    "--polish", type=INPUT, metavar="FILE",
-    help="Improve the points of this front, by any method: from each to a motion of less energy "
-    "and no larger residual.",
-)  # fmt: skip
+@option("--check", is_flag=True, help="Solve seven points by the other solver as well, from the "
+        "plain cycloid, and say by how much the two differ.")  # fmt: skip
+@option("--polish", type=INPUT, metavar="FILE", help="Improve the points of this front, by any "
+        "method: from each to less energy and no larger residual.")  # fmt: skip
 @output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture"})
 def front(
     move: TypedMove,

@@ -11,7 +11,7 @@ from quietarm.models import Plant
 from quietarm.studies import figures
 from quietarm.studies import identify as identification
 from quietarm.studies.cli.files import PICTURE, files_of, finish, output_option
-from quietarm.studies.cli.options import busy, command, plant_file
+from quietarm.studies.cli.options import busy, command, option, plant_file
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
 from quietarm.studies.cli.quantities import parse_interval, parse_scale, parse_units
 from quietarm.studies.cli.task import set_option
@@ -30,33 +30,30 @@ def _plant_at_the_end(name: str) -> type[Plant] | identification.Identified:
 @command()
 @click.argument("files", type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT")
 @set_option
-@click.option("--time", help="Column of the time.  [default: the one that is called so]")
-@click.option("--angle", help="Column of the joint's angle; without it the joint was held.")
-@click.option("--tip", multiple=True, help="Column of the tip's displacement; one for each tip.")
-@click.option("--acceleration", multiple=True,
-              help="Column of an accelerometer at the tip, across; one for each tip.")  # fmt: skip
-@click.option("--torque", help="Column of the joint's torque.")
-@click.option("--units", type=Parsed("units", parse_units), default={},
-              help="Of columns whose names do not have them, as time:ms,angle:deg,tip:mm,"
-              "acceleration:g. [default: SI]")  # fmt: skip
-@click.option("--scale", "scales", type=Parsed("scale", parse_scale), multiple=True,
-              help="What a count is in SI units, as angle=2pi/4096; may be repeated.")  # fmt: skip
-@click.option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
-              help="Where a ring-down begins and ends [s], as 3.2:7.3; may be repeated. "
-              "[default: they are found]")  # fmt: skip
-@click.option("--free", type=Parsed("names", lambda text: [one.strip() for one in text.split(",")]),
-              help="The parameters that are sought, as omega,zeta. [default: frequencies and "
-              "dampings, and with a torque what shows in it alone]")  # fmt: skip
-@click.option("--check", type=Parsed("machine", parse_plant),
-              help="A machine that was identified: how much of the recordings it predicts. PLANT "
-              "is left out.")  # fmt: skip
+@option("--time", help="Column of the time.  [default: the one that is called so]")
+@option("--angle", help="Column of the joint's angle; without it the joint was held.")
+@option("--tip", multiple=True, help="Column of the tip's displacement; one for each tip.")
+@option("--acceleration", multiple=True, help="Column of an accelerometer at the tip, likewise.")
+@option("--torque", help="Column of the joint's torque.")
+@option("--units", type=Parsed("units", parse_units), help="Of columns whose names "
+        "have none, as time:ms,angle:deg,tip:mm,acceleration:g. [default: SI]")  # fmt: skip
+@option("--scale", "scales", type=Parsed("scale", parse_scale), multiple=True,
+        help="What a count is in SI units, as angle=2pi/4096; may be repeated.")  # fmt: skip
+@option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
+        help="Begin and end of a ring-down [s], as 3.2:7.3; may be repeated. [default: they are "
+        "found]")  # fmt: skip
+@option("--free", type=Parsed("names", lambda text: [one.strip() for one in text.split(",")]),
+        help="The parameters that are sought, as omega,zeta. [default: frequencies and dampings, "
+        "and with a torque what shows in it alone]")  # fmt: skip
+@option("--check", type=Parsed("machine", parse_plant), help="An identified machine: how much of "
+        "the recordings it predicts. PLANT is left out.")  # fmt: skip
 @output_option({".json": "the machine, which serves as a PLANT", PICTURE: "a picture of the fit"})
 @click.pass_context
 def identify(
     context: click.Context,
     files: tuple[Path, ...],
     parameters: tuple[tuple[str, str], ...],
-    units: Mapping[str, str],
+    units: Mapping[str, str] | None,
     scales: tuple[tuple[str, float], ...],
     parts: tuple[tuple[float, float], ...],
     free: list[str] | None,
@@ -89,7 +86,7 @@ def identify(
     known = chosen_plant(kind, plant_file(), parameters)
     short = len({path.name for path in paths}) == len(paths)
     read = [
-        read_recording(path, columns, units, path.name if short else str(path), dict(scales))
+        read_recording(path, columns, units or {}, path.name if short else str(path), dict(scales))
         for path in paths
     ]
     if check:
@@ -101,8 +98,5 @@ def identify(
     with busy("fitting"):
         found = identification.identify(read, known, free, parts)
     draw = partial(figures.identification_figure, found, read)
-    finish(
-        files_of(output, {".json": found.save, PICTURE: draw}),
-        machine_rows(found),
-        *machine_notes(found, not columns["angle"]),
-    )
+    written = files_of(output, {".json": found.save, PICTURE: draw})
+    finish(written, machine_rows(found), *machine_notes(found, not columns["angle"]))

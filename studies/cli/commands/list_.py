@@ -46,7 +46,10 @@ def list_(names: Sequence[str], output: Sequence[Path]) -> None:
     for name in names:
         if name not in known:
             raise ValueError(unknown("name", name, known))
-    shown = [part for name in names or KINDS for part in _rows(name, plants)]
+    shown = list[str | list[Row]]()
+    for name in names or KINDS:
+        title, rows = _table(name, plants)
+        shown += [f"{title}:", [(f"  {one}", words) for one, words in rows]]
     problems = [PROBLEMS[name] for name in names if name in PROBLEMS]
     if not names or "problems" in names:
         problems = list(PROBLEMS.values())
@@ -63,49 +66,40 @@ def list_(names: Sequence[str], output: Sequence[Path]) -> None:
     finish([], *shown, *wrote)
 
 
-def _rows(name: str, plants: Mapping[str, type[Plant]]) -> list[list[Row] | str]:
+def _table(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, list[Row]]:
     """A title, then names with what they are."""
     if name == "plants":
-        rows = [(one, _first_line(kind)) for one, kind in plants.items()]
-        return [*_titled("plants, with `quietarm list NAME` for the parameters", rows)]
+        rows = [(one, (kind.__doc__ or "").partition("\n")[0]) for one, kind in plants.items()]
+        return "plants, with `quietarm list NAME` for the parameters", rows
     if name == "problems":
         rows = [(one, _problem(problem)) for one, problem in PROBLEMS.items()]
-        return [*_titled("problems, each with a reference front", rows)]
+        return "problems, each with a reference front", rows
     if name == "methods":
         rows = [(one, method.label) for one, method in METHODS.items()]
-        return [*_titled("methods, with `quietarm list NAME` for the settings", rows)]
+        return "methods, with `quietarm list NAME` for the settings", rows
     if name in plants:
         rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
-        return [*_titled(f"{name}: --set NAME=VALUE, in SI or as 2Hz, 600mm, 200g", rows)]
+        return f"{name}: --set NAME=VALUE, in SI or as 2Hz, 600mm, 200g", rows
     if name in PROBLEMS:
-        return [[(name, _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]]
+        return name, [("problem", _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]
     if name not in PRESETS:
-        return [[(name, f"{METHODS[name].label}, by quietarm front")]]
+        return name, [("by quietarm front", METHODS[name].label)]
     preset = PRESETS[name]
     settings = [
         (one.name, f"{'-' if one.default is None else one.default}: {one.meaning}")
         for one in preset.settings
     ]
     size = ("population, generations", f"{preset.population}, {preset.generations}")
-    return [*_titled(f"{name}: {preset.label}, {preset.source}", [size, *settings])]
-
-
-def _titled(title: str, rows: list[Row]) -> list[list[Row] | str]:
-    return [f"{title}:", [(f"  {name}", words) for name, words in rows]]
-
-
-def _first_line(kind: type) -> str:
-    return (kind.__doc__ or "").partition("\n")[0]
+    return f"{name}: {preset.label}, {preset.source}", [size, *settings]
 
 
 def _parameter(entry: Field[Any]) -> str:
     """A parameter's value, meaning and source."""
-    of = entry.metadata
-    value = "no default" if entry.default is MISSING else f"{entry.default:.5g}"
-    unit = "" if of.get("unit", "-") == "-" else f" {of['unit']}"
-    meaning = f": {of['meaning']}" if of.get("meaning") else ""
-    source = f"  ({of['source']})" if of.get("source") else ""
-    return f"{value}{unit}{meaning}{source}"
+    words = "no default" if entry.default is MISSING else f"{entry.default:.5g}"
+    for key, form in {"unit": " {}", "meaning": ": {}", "source": "  ({})"}.items():
+        if entry.metadata.get(key, "-") not in ("", "-"):
+            words += form.format(entry.metadata[key])
+    return words
 
 
 def _card(problem: NamedProblem) -> list[Row]:

@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import click
 from quietarm.ocp import (
     Plan,
     SolverFailedError,
@@ -23,6 +22,7 @@ from quietarm.studies.cli.options import (
     bound_option,
     busy,
     command,
+    option,
     profile_options,
     refuse_typed,
     residual_limit_option,
@@ -58,10 +58,8 @@ _OF_SOLVERS = ("starts", "seed")
 @starts_option
 @seed_option
 @solver_option
-@click.option(
-    "--from", "dataset", type=INPUT,
-    help="Take the move from this dataset of quietarm sweep, between its cells, without solving.",
-)  # fmt: skip
+@option("--from", "dataset", type=INPUT, help="Take the move from this dataset of quietarm sweep, "
+        "between its cells, without solving.")  # fmt: skip
 @sensitivities_option
 @output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"})
 def plan(

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import click
 from quietarm.studies.cli.files import FOLDER, ending_of, finish, output_option, report_files
-from quietarm.studies.cli.options import command, quiet
-from quietarm.studies.cli.types import WHOLE
+from quietarm.studies.cli.options import command, option, quiet
 from rich.console import Console
 
 
 @command()
-@click.option("--full", is_flag=True, help="Judge every claim as well, with several seeds.")
-@click.option("--seeds", type=WHOLE, help="Seeds of VEPSO and NSGA-II. [default: 1; --full: 9]")
-@click.option("--workers", type=WHOLE, help="Processes that share the work. [default: one a core]")
+@option("--full", is_flag=True, help="Judge every claim as well, with several seeds.")
+@option("--seeds", type=int, help="Seeds of VEPSO and NSGA-II. [default: 1; --full: 9]")
+@option("--workers", type=int, help="Processes that share the work. [default: one a core]")
 @output_option({FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"})
 def reproduce(full: bool, seeds: int | None, workers: int | None, output: Sequence[Path]) -> None:
     """Recompute the paper's Tables 2, 3, 5 and 6 and its figures; --full also judges its claims.

@@ -16,16 +16,16 @@ from quietarm.studies.cli.files import PICTURE, ending_of, finish, front_files, 
 from quietarm.studies.cli.options import (
     bound_option,
     command,
+    option,
     profile_options,
     quiet,
     seed_option,
+    setting_option,
     settings_given,
-    settings_option,
-    warn_of_workers,
     workers_option,
 )
 from quietarm.studies.cli.task import TypedMove, task_options
-from quietarm.studies.cli.types import INPUT, WHOLE, Named
+from quietarm.studies.cli.types import INPUT, Named
 from quietarm.studies.reading.saved import load_front
 from quietarm.studies.registry.methods import NSGA2, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
@@ -43,23 +43,16 @@ _GRADIENT = {
 
 @command()
 @task_options
-@click.option(
-    "--method", type=Named("metaheuristic", _SEARCHES, _GRADIENT), default=NSGA2.name,
-    show_default=True, help="The metaheuristic; quietarm list methods has them.",
-)  # fmt: skip
+@option("--method", type=Named("metaheuristic", _SEARCHES, _GRADIENT), default=NSGA2.name,
+        help="The metaheuristic; quietarm list methods has them.")  # fmt: skip
 @profile_options()
 @bound_option
-@click.option("--population", type=WHOLE, help="Individuals, or particles in a swarm.")
-@click.option("--generations", type=WHOLE, help="Generations.")
-@settings_option("another setting of the method, as crossover=0.7")
+@option("--population", type=int, help="Individuals, or particles in a swarm.")
+@option("--generations", type=int, help="Generations.")
+@setting_option
 @seed_option
-@click.option(
-    "--runs", type=WHOLE, default=1, show_default=True,
-    help="Seeds, from --seed on; each has a file: front.json becomes front-seed0.json, ...",
-)  # fmt: skip
-@click.option(
-    "--from", "given", type=INPUT, help="A front whose points are in the first population."
-)
+@option("--runs", default=1, help="Seeds, from --seed on; each has a file, as front-seed0.json.")
+@option("--from", "given", type=INPUT, help="A front to begin with, in the first population.")
 @workers_option
 @output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"})
 def search(
@@ -100,7 +93,6 @@ def search(
         )
     seed, workers = settings.pop("seed"), whole("workers", settings.pop("workers"), 1)
     seeds = range(whole("seed", seed, 0), seed + whole("runs", runs, 1, 10_000))
-    warn_of_workers(workers, runs)
     if given is not None:
         settings["start"] = load_front(given)
     fronts, trouble = list[Front](), None

@@ -14,11 +14,12 @@ from quietarm.studies.cli.options import (
     bound_option,
     command,
     counting,
+    option,
     part_option,
     profile_options,
     residual_limit_option,
-    warn_of_workers,
-    workers_options,
+    scheduler_option,
+    workers_option,
 )
 from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import SHARE
@@ -37,14 +38,14 @@ _MOST_POINTS = 1000
 @profile_options()
 @bound_option
 @residual_limit_option
-@click.option("--limit-margin", "margin", type=SHARE, default="0%", show_default=True,
-              help="Share of each limit that plans leave unused, so that moves between the cells "
-              "keep it.")  # fmt: skip
-@click.option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
-              help="Find a front of so many points for every move as well.")  # fmt: skip
+@option("--limit-margin", "margin", type=SHARE, default="0%", help="Share of each limit that plans "
+        "leave unused, so that moves between the cells keep it.")  # fmt: skip
+@option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
+        help="Find a front of so many points for every move as well.")  # fmt: skip
 @part_option
-@click.option("--yes", is_flag=True, help="Do more than a million cells.")
-@workers_options
+@option("--yes", is_flag=True, help="Do more than a million cells.")
+@workers_option
+@scheduler_option
 @output_option(
     {DATASET: "the moves; the same line goes on where one was stopped", PICTURE: "a picture"},
     required=True,
@@ -97,16 +98,9 @@ def sweep(
     motions = profile_of(profile, grid.task, terms)
     if chooses_terms(profile, terms):
         motions = choose_profile(grid.task)
-    definition = Definition(
-        grid,
-        motions,
-        SolveSettings(residual_limit=residual_limit or 0.0, starts=1, **settings),
-        front or 0,
-        margin,
-    )
-    store = Store.of(datasets[0], definition)
+    solve = SolveSettings(residual_limit=residual_limit or 0.0, starts=1, **settings)
+    store = Store.of(datasets[0], Definition(grid, motions, solve, front or 0, margin))
     missing, trouble = len(store.missing(part)), None
-    warn_of_workers(workers, missing)
     try:
         with counting(missing, "chunks") as report:
             run_sweep(store, part, workers=workers, scheduler=scheduler, report=report)
@@ -122,9 +116,5 @@ def sweep(
         return fronts_figure(store) if front else grid_figure(store)
 
     pictures = [path for path in output if path not in datasets]
-    finish(
-        files_of(pictures, {PICTURE: picture}),
-        sweep_rows(store),
-        cells_along(store),
-        trouble=trouble,
-    )
+    files = files_of(pictures, {PICTURE: picture})
+    finish(files, sweep_rows(store), cells_along(store), trouble=trouble)

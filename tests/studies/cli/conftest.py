@@ -1,4 +1,4 @@
-"""What the tests of the command line share: a folder of their own, and refusals."""
+"""What the tests of the command line share: a folder of their own and refusals."""
 
 import pytest
 

@@ -2,6 +2,7 @@
 
 import math
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front, evaluate_coefficients
 
 TABLE = Path(__file__).with_name("messages.txt").read_text().splitlines()
+FILES = Path(__file__).with_name("refused")
 LINES = [line.split(" => ") for line in TABLE if not line.startswith("#")]
 
 
@@ -23,6 +25,7 @@ def answers(task, plan):
 
 @pytest.mark.parametrize(("line", "words"), LINES)
 def test_it_is_refused_in_one_line_with_the_remedy(refused, answers, line, words):
+    shutil.copytree(FILES, ".", dirs_exist_ok=True)
     for name, answer in answers.items():
         answer.save(f"{name}.json")
     said = refused(line.replace("MOVE", MOVE))

@@ -9,7 +9,6 @@ from quietarm.studies.cli.quantities import (
     parse_coefficients,
     parse_energy,
     parse_quantity,
-    parse_weights,
 )
 
 import quietarm as qa
@@ -81,14 +80,6 @@ def test_coefficients_round_trip(values):
     assert parse_coefficients(",".join(map(repr, values))) == values
 
 
-def test_weights_are_a_pair():
-    assert parse_weights("1:3") == (1.0, 3.0)
-    assert parse_weights(" 0.5 : 2e1") == (0.5, 20.0)
-    for text in ("", "1", "1:2:3", "1:", "a:b", "1/3"):
-        with pytest.raises(ValueError, match="is no pair of weights; give those of residual"):
-            parse_weights(text)
-
-
 ENERGIES = {
     "absolute": qa.AbsolutePower(),
     "positive": qa.PositivePower(),
@@ -103,17 +94,3 @@ def test_an_energy_is_typed_as_it_is_called(text):
     assert parse_energy(text).label == text
     assert parse_energy(text.replace("*", " * ").replace("+", " + ")) == ENERGIES[text]
     assert parse_energy(text.replace("0.12", "0.0012e+2")) == ENERGIES[text]
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("cooper:1", r"unknown energy 'cooper'; did you mean 'copper'\? \(known: absolute"),
-        ("copper", "'copper' has 0 numbers of 1; give copper:motor_constant"),
-        ("copper:x", "motor_constant is 'x'; give a number"),
-        ("-1*absolute", "weight is -1; give a positive number"),
-    ],
-)
-def test_what_is_no_energy_is_refused_with_a_remedy(text, message):
-    with pytest.raises(ValueError, match=message):
-        parse_energy(text)

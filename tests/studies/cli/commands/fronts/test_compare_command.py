@@ -56,35 +56,15 @@ def test_plans_are_compared_with_baselines_under_errors(call, tmp_path, monkeypa
     assert "+-8 % of frequency" in " ".join(out.split())
 
 
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("compare", "nothing is given to compare; give plans, fronts, or a folder of fronts"),
-        ("compare good.json plan.json", "compare fronts or plans, not both"),
-        ("compare good.json good.json", "good.json"),
-        ("compare good.json --baselines zvd", "--baselines is for plans; leave it out"),
-        ("compare plan.json --reference good.json", "--reference is for fronts; leave it out"),
-        ("compare plan.json --baselines zdv", "unknown baseline 'zdv'; did you mean"),
-        ("compare empty", "empty holds no fronts; give a folder of a bench, or files"),
-        ("compare good.json table.json", "table.json is not a front"),
-    ],
-)
-def test_what_cannot_be_compared_is_refused_in_a_line(call, files, plan, line, words):
-    plan.save("plan.json")
-    (files / "empty").mkdir()
-    (files / "table.json").write_text("t_s,theta_rad\n0,0\n")
-    code, out, err = call(line)
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert words in err
+def test_a_folder_without_fronts_is_refused(refused, folder):
+    (folder / "empty").mkdir()
+    assert "empty holds no fronts; give a folder of a bench, or files" in refused("compare empty")
 
 
 @pytest.mark.parametrize("figure", ["residual", "peak_torque"])
-def test_a_plan_is_a_claim(call, tmp_path, monkeypatch, cycloid, figure):
-    monkeypatch.chdir(tmp_path)
+def test_a_plan_is_a_claim(refused, folder, cycloid, figure):
     cycloid.save("plan.json")
-    document = json.loads((tmp_path / "plan.json").read_text())
+    document = json.loads((folder / "plan.json").read_text())
     document["motion"][figure] *= 1.01
-    (tmp_path / "plan.json").write_text(json.dumps(document))
-    code, out, err = call("compare plan.json")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert f"plan.json states {figure.replace('_', ' ')}" in err
+    (folder / "plan.json").write_text(json.dumps(document))
+    assert f"plan.json states {figure.replace('_', ' ')}" in refused("compare plan.json")
