@@ -178,11 +178,6 @@ class Candidate(Ranged):
         times : array_like, shape (samples,)
             Increasing times from 0 on [s]; those after the duration show the residual vibration.
 
-        Returns
-        -------
-        Trajectory
-            The samples.
-
         Raises
         ------
         ValueError

@@ -10,16 +10,9 @@ from dataclasses import dataclass, replace
 
 @dataclass
 class Cost:
-    """Work of this process.
+    """Work of this process: motions simulated, and processor seconds of CVODES.
 
-    Attributes
-    ----------
-    candidates : int
-        Motions simulated for their values alone.
-    gradients, hessians : int
-        Motions simulated with first, and with second derivatives.
-    checks : float
-        Processor seconds of the independent integrator.
+    `candidates` are simulated for their values alone, the others with first or second derivatives.
     """
 
     candidates: int = 0

@@ -75,15 +75,6 @@ def note_interrupts() -> AbstractContextManager[list[int]]:
     return _block(holds=True)
 
 
-def hear_interrupts() -> AbstractContextManager[list[int]]:
-    """List the interrupts during the block, those too that work inside keeps to itself.
-
-    They act as without it. Work that keeps what it found returns an answer all the same; the list
-    then tells that the user wants to stop.
-    """
-    return _block(holds=False)
-
-
 _TURN = RLock()
 
 

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import fields
 from math import isclose
 
-from quietarm.models import Plant
 from quietarm.models.joint_motion import joint_unit
-from quietarm.ocp.energy import Energy
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.task import PointToPoint
-from quietarm.ocp.uncertainty import Uncertainty
 
 _SAME, _NONE = 1e-9, 1e-15
 """Relative and absolute difference below which numbers are one: 30deg and pi/6."""
+_APART = "plant", "initial", "final", "energy", "uncertainty"
+"""Fields that are told in another way."""
 _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual window": "s"} | {
     f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()
 }
@@ -27,7 +26,7 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
     """
     if one.plant.name != other.plant.name:
         return f"plant is {one.plant.name}, not {other.plant.name}"
-    mine, theirs = dict(_entries(one)), dict(_entries(other))
+    mine, theirs = dict(_entries(_stated(one))), dict(_entries(_stated(other)))
     joint = one.plant.joint
     return ", ".join(
         f"{name} is {_words(name, mine.get(name), joint)}, "
@@ -37,31 +36,29 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
     )
 
 
+def _stated(task: PointToPoint) -> dict[str, object]:
+    """All that a task has, by words; states are numbers, given or not."""
+    plain = (entry.name for entry in fields(task) if entry.name not in _APART)
+    return {
+        "plant parameter": task.plant.parameters,
+        **{name.replace("_", " "): getattr(task, name) for name in plain},
+        "initial state": task.initial_state,
+        "final state": task.final_state,
+        "energy": task.energy.label,
+        "error of": task.ranges,
+        "scenario": task.scenarios[1:],
+    }
+
+
 def _entries(value: object, name: str = "") -> Iterator[tuple[str, object]]:
-    """Names and values of all that a task has."""
+    """Names and values of numbers and words in mappings and sequences."""
     match value:
-        case PointToPoint():
-            states = {name: getattr(value, f"{name}_state") for name in ("initial", "final")}
-            for entry in fields(value):
-                own = states.get(entry.name, getattr(value, entry.name))
-                named = f"{entry.name} state" if entry.name in states else entry.name
-                yield from _entries(own, named.replace("_", " "))
-        case Plant():
-            yield from _entries(value.parameters, "plant parameter")
-        case Energy():
-            yield name, value.label
-        case Uncertainty():
-            yield from _entries(value.ranges, "error of")
-            yield from _entries(value.samples, "scenario")
         case Mapping():
             for key, entry in value.items():
-                yield from _entries(entry, f"{name} {key}")
+                yield from _entries(entry, f"{name} {key}".strip())
         case list() | tuple():
             for place, entry in enumerate(value, start=1):
                 yield from _entries(entry, f"{name} {place}")
-        case _ if is_dataclass(value):
-            for entry in fields(value):
-                yield from _entries(getattr(value, entry.name), f"{name} {entry.name}")
         case _:
             yield name, value
 

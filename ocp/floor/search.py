@@ -16,7 +16,7 @@ from quietarm.ocp.floor.answer import Floor, Level
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import SAME
-from quietarm.ocp.planning.certify import refuse_exceeded, tighten
+from quietarm.ocp.planning.certify import excess_error, tighten
 from quietarm.ocp.planning.feasibility import least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -203,5 +203,6 @@ def _certify(program: FloorProgram, found: FreeSolution) -> tuple[FreeSolution, 
             break
         found, motion = again, Candidate.of_free_motion(task, again.free)
     remedy = "the grid is too coarse for this motion; give a smaller tolerance"
-    refuse_exceeded(motion, limits, remedy)
+    if error := excess_error(motion, limits, remedy):
+        raise error
     return found, motion.motion

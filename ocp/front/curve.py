@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.limits import Limit
@@ -32,6 +31,10 @@ def no_report(done: int, total: int) -> None:
     """Report nothing."""
 
 
+Asked = Mapping[str, float]
+"""A residual limit [m], or weights, by name."""
+
+
 class Certificate(NamedTuple):
     """A point by the independent integrator, or why there is none; and the iterations it took."""
 
@@ -41,15 +44,7 @@ class Certificate(NamedTuple):
 
 @dataclass(frozen=True)
 class Curve:
-    """A task whose residual is limited or weighted.
-
-    Attributes
-    ----------
-    transcription : Transcription
-        The task along its profile in a number of steps.
-    settings : SolveSettings
-        Bound, starts, seed, solver.
-    """
+    """A task along its profile, whose residual is limited or weighted."""
 
     transcription: Transcription
     settings: SolveSettings
@@ -93,7 +88,7 @@ class Curve:
 
     def certify(
         self,
-        found: Sequence[tuple[Solution, Mapping[str, float]]],
+        found: Sequence[tuple[Solution, Asked]],
         most_residual: float = np.inf,
         *,
         free: bool = False,
@@ -101,16 +96,18 @@ class Curve:
         """Give solutions, each with what was asked for, the figures of another integrator.
 
         Their residuals are their limits, unless it is the cheapest of all, whose residual is free.
+        What was not solved is a failed point.
         """
-        solutions = [solution for solution, _ in found]
-        problems = [self.problem(np.inf if free else one.residual) for one in solutions]
+        solved = [solution for solution, _ in found if solution.status.solved]
+        problems = [self.problem(np.inf if free else one.residual) for one in solved]
         tolerances, limits = OF_A_PLAN if free else self.tolerances, self.limits(most_residual)
-        outcomes = certify(problems, solutions, self.solver, tolerances, limits)
+        outcomes = iter(certify(problems, solved, self.solver, tolerances, limits))
+        ended = [next(outcomes) if one.status.solved else one.status.text for one, _ in found]
         return [
-            Certificate(FailedPoint(asked, str(outcome)), solution.iterations)
-            if isinstance(outcome, SolverFailedError)
-            else self.point_of(outcome)
-            for (solution, asked), outcome in zip(found, outcomes, strict=True)
+            self.point_of(outcome)
+            if isinstance(outcome, Certified)
+            else Certificate(FailedPoint(asked, str(outcome)), solution.iterations)
+            for (solution, asked), outcome in zip(found, ended, strict=True)
         ]
 
     def point_of(self, found: Certified) -> Certificate:

@@ -23,17 +23,7 @@ _SAMPLING = 1e-4
 
 @dataclass(frozen=True)
 class Ends:
-    """The ends of a front.
-
-    Attributes
-    ----------
-    curve : Curve
-        On the steps that the end of least residual needs.
-    still, cheapest : Solution
-        The ends.
-    certificates : tuple of Certificate
-        Of both.
-    """
+    """The ends of a front, on a curve of the steps that the end of least residual needs."""
 
     curve: Curve
     still: Solution
@@ -61,14 +51,7 @@ def find_ends(curve: Curve) -> Ends:
 
     The number of steps is raised until CVODES agrees at the end of least residual. If no motion
     arrives at rest, this end is the motion of least residual; for an uncertain task it is where a
-    smaller residual would cost too much energy.
-
-    Raises
-    ------
-    InfeasibleTaskError
-        When no motion of the profile keeps the task's limits.
-    SolverFailedError
-        When an end could not be found for another reason.
+    smaller residual would cost too much energy. Errors are those of `solve_from_starts`.
     """
     if curve.task.uncertainty is not None:
         return _of_scenarios(curve)

@@ -10,10 +10,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.checks import positive
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report, no_report
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
-from quietarm.ocp.front.points import FailedPoint
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -100,16 +99,10 @@ def epsilon_front(
     report(2 + len(limits) // 3, total)
     best = _solve_between(ends, list(scouts.values()), limits)
     report(total, total)
-    asked = [(one, {RESIDUAL_LIMIT: limit}) for limit, one in best.items()]
-    solved = [(one, limit) for one, limit in asked if one.status.solved]
-    failed = [
-        Certificate(FailedPoint(limit, one.status.text), one.iterations)
-        for one, limit in asked
-        if not one.status.solved
-    ]
+    between = [(one, {RESIDUAL_LIMIT: limit}) for limit, one in best.items()]
     return ends.curve.to_front(
         "epsilon",
-        [*ends.certificates, *failed, *ends.curve.certify(solved)],
+        [*ends.certificates, *ends.curve.certify(between)],
         points,
         time.perf_counter() - began,
         iterations=sum(one.iterations for one in scouts.values()),

@@ -113,17 +113,9 @@ class Mark:
 
 
 def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
-    """The non-dominated points, in order of residual.
+    """The non-dominated points, in order of residual, so that energies fall.
 
-    Parameters
-    ----------
-    points : iterable of FrontPoint
-        Any points; those that are not finite are dropped, of equal ones the first is kept.
-
-    Returns
-    -------
-    tuple of FrontPoint
-        Sorted by residual; energies fall.
+    Points that are not finite are dropped; of equal ones the first is kept.
     """
     finite = [p for p in points if np.isfinite(p.residual) and np.isfinite(p.energy)]
     kept: list[FrontPoint] = []

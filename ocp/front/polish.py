@@ -15,14 +15,9 @@ from quietarm.ocp.solvers.problem import Solution
 
 @dataclass(frozen=True)
 class Gain:
-    """What the gradient gained at one point of a front.
+    """Energies [J] of one point before and after, the same where nothing better was found.
 
-    Attributes
-    ----------
-    residual : float
-        Residual of the point, the limit of the improved one [m].
-    before, after : float
-        Energy [J]; the same where nothing better was found.
+    Its residual [m] is the limit of the improved point.
     """
 
     residual: float
@@ -101,9 +96,7 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
 
 def _improve(curve: Curve, point: FrontPoint, solution: Solution) -> list[Certificate]:
     """The point or a better one; after the former the reason, if there is one."""
-    asked, kept = {RESIDUAL_LIMIT: point.residual}, Certificate(point, 0)
-    if not solution.status.solved:
-        return [kept, Certificate(FailedPoint(asked, solution.status.text), solution.iterations)]
+    kept, asked = Certificate(point, 0), {RESIDUAL_LIMIT: point.residual}
     (found,) = curve.certify([(solution, asked)], point.residual)
     if isinstance(found.point, FailedPoint):
         return [kept, found]

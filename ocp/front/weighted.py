@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.checks import not_negative
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report, no_report
+from quietarm.ocp.front.curve import Asked, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
-from quietarm.ocp.front.points import FailedPoint
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import best_of_starts, objective_of
@@ -28,6 +26,7 @@ _FLAT = 1e-5
 """A minimum closer to the chord than this share of its length counts as one of the chord's ends."""
 _DIAGONAL = 2**0.5
 Array = NDArray[np.float64]
+Minimum = tuple[Solution, Asked]
 
 
 @one_at_a_time
@@ -71,29 +70,25 @@ def weighted_front(
     Raises
     ------
     ValueError
-        When an argument is out of range, or a weight negative, or both of a pair zero.
-    InfeasibleTaskError, SolverFailedError
-        When no motion of this profile keeps the limits, or an end is not found for another reason.
+        When a weight is negative, or both of a pair are zero; else as `epsilon_front`.
     """
     profile = CycloidPolynomial() if profile is None else profile
     points = number_of_points(points)
     chosen = None if weights is None else _pairs(weights)
     settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)
     began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, settings))
-    if ends.are_one:
-        sums = _Sums()
-    elif chosen is None:
-        sums = _along_chords(ends, points, report)
-    else:
-        sums = _at_weights(ends, chosen, report)
-    solved = [(one, {RESIDUAL_LIMIT: one.residual}) for one in sums.found]
+    found, gaps = list[Minimum](), list[tuple[float, float]]()
+    if chosen is None and not ends.are_one:
+        found, gaps = _along_chords(ends, points, report)
+    elif chosen is not None and not ends.are_one:
+        found = _at_weights(ends, chosen, report)
     stated = ", ".join(f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen or ())
     return ends.curve.to_front(
         "weighted",
-        [*ends.certificates, *ends.curve.certify(solved), *sums.failures],
+        [*ends.certificates, *ends.curve.certify(found)],
         points,
         time.perf_counter() - began,
-        gaps=sorted(sums.gaps),
+        gaps=sorted(gaps),
         also={"weights": stated} if stated else {},
     )
 
@@ -111,66 +106,55 @@ def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     return pairs
 
 
-@dataclass
-class _Sums:
-    """Minima of weighted sums, what failed, and ranges of the residual that no weight reaches."""
-
-    found: list[Solution] = field(default_factory=list)
-    failures: list[Certificate] = field(default_factory=list)
-    gaps: list[tuple[float, float]] = field(default_factory=list)
-
-    def add(self, found: Solution, of_residual: float, of_energy: float) -> None:
-        """Add a minimum, or why there is none."""
-        if found.status.solved:
-            self.found.append(found)
-            return
-        asked = {"residual_weight": of_residual, "energy_weight": of_energy}
-        self.failures.append(Certificate(FailedPoint(asked, found.status.text), found.iterations))
-
-
-def _minimise(
-    ends: Ends, of_residual: float, of_energy: float, starts: Sequence[Array]
-) -> Solution:
+def _minimise(ends: Ends, of_residual: float, of_energy: float, starts: Sequence[Array]) -> Minimum:
     """The best minimum of one weighted sum, weights of the scaled objectives."""
     weights = {RESIDUAL: of_residual / ends.width, ENERGY: of_energy / ends.height}
     problem, solver = ends.curve.problem(minimise=weights), ends.curve.solver
     # far starts lead past a dearer minimum, near ones keep to the minimum beside them
     found = [best_of_starts([problem], [starts], solver, warm=warm)[0] for warm in (False, True)]
-    return min(found, key=lambda one: objective_of(one, problem.scalarization))
+    best = min(found, key=lambda one: objective_of(one, problem.scalarization))
+    return best, {"residual_weight": of_residual, "energy_weight": of_energy}
 
 
-def _along_chords(ends: Ends, points: int, report: Report) -> _Sums:
-    """Weights from the chords between neighbours, the longest first."""
-    sums, chords = _Sums(), [(ends.still, ends.cheapest)]
-    while chords and 2 + len(sums.found) < points:
+def _along_chords(
+    ends: Ends, points: int, report: Report
+) -> tuple[list[Minimum], list[tuple[float, float]]]:
+    """Minima by the chords between neighbours, the longest first; and what no weight reaches."""
+    minima, gaps, chords = list[Minimum](), [], [(ends.still, ends.cheapest)]
+    done = 2
+    while chords and done < points:
         lengths = [np.hypot(*_sides(ends, *chord)) for chord in chords]
         still, cheap = chords.pop(int(np.argmax(lengths)))
         wide, high = _sides(ends, still, cheap)
-        found = _minimise(ends, high, wide, [cheap.coefficients, still.coefficients])
+        minimum = _minimise(ends, high, wide, [cheap.coefficients, still.coefficients])
+        found = minimum[0]
         if not found.status.solved:
-            sums.add(found, high, wide)
+            minima.append(minimum)
             continue
         to_right, down = _sides(ends, still, found)
         length = np.hypot(wide, high)
         if (wide * down - high * to_right) / length > _FLAT * length and 0 < to_right < wide:
-            sums.add(found, high, wide)
+            minima.append(minimum)
             chords += [(still, found), (found, cheap)]
+            done += 1
         elif length > 2 * _DIAGONAL / (points - 1):
-            sums.gaps.append((still.residual, cheap.residual))
-        report(2 + len(sums.found), points)
-    return sums
+            gaps.append((still.residual, cheap.residual))
+        report(done, points)
+    return minima, gaps
 
 
-def _at_weights(ends: Ends, weights: Sequence[tuple[float, float]], report: Report) -> _Sums:
-    """Given weights, sorted from most weight on the energy to most on the residual."""
-    sums, beside = _Sums(), ends.cheapest.coefficients
+def _at_weights(
+    ends: Ends, weights: Sequence[tuple[float, float]], report: Report
+) -> list[Minimum]:
+    """Minima of given weights, from most weight on the energy to most on the residual."""
+    minima, beside = list[Minimum](), ends.cheapest.coefficients
     for i, pair in enumerate(sorted(weights, key=lambda pair: pair[0] / sum(pair)), start=1):
         if min(pair) > 0:  # with one weight 0 it is an end of the front
-            found = _minimise(ends, *pair, [beside, ends.still.coefficients])
-            sums.add(found, *pair)
+            minima.append(_minimise(ends, *pair, [beside, ends.still.coefficients]))
+            found = minima[-1][0]
             beside = found.coefficients if found.status.solved else beside
         report(i, len(weights))
-    return sums
+    return minima
 
 
 def _sides(ends: Ends, still: Solution, cheap: Solution) -> tuple[float, float]:

@@ -45,15 +45,7 @@ many times the solver's steps."""
 
 @dataclass(frozen=True)
 class Tolerances:
-    """When a solution counts as certified.
-
-    Attributes
-    ----------
-    energy : float
-        Share by which the energies of solver and integrator may differ.
-    most_steps : int
-        The solver's steps are doubled up to this many.
-    """
+    """Share by which the energies of solver and integrator may differ; most steps of the solver."""
 
     energy: float = 1e-5
     most_steps: int = MOST_SOLVER_STEPS
@@ -113,25 +105,9 @@ def certify(
 
     The solver's few steps miss the state on arrival by a little; limits hold at its nodes only, and
     the residual limit at its samples. The differences that the independent integrator finds are
-    given to the solver, which goes on from where it stopped.
-
-    Parameters
-    ----------
-    problems : sequence of Problem
-        What was solved, of one plant and profile.
-    solutions : sequence of Solution
-        Their solutions.
-    solver : Solver
-        What solves them again.
-    tolerances : Tolerances
-        When both count as equal.
-    limits : sequence of Limit, optional
-        What has to hold by CVODES; each problem's own limits by default.
-
-    Returns
-    -------
-    list of Certified or SolverFailedError
-        The error stands for a motion that exceeds a limit all the same.
+    given to the solver, which goes on from where it stopped. The problems are of one plant and
+    profile; what has to hold by CVODES are their own limits by default. An error stands for a
+    motion that exceeds a limit all the same.
     """
     pairs = zip(problems, solutions, strict=True)
     rows = [_Row(*pair, tolerances, limits) for pair in pairs]
@@ -228,11 +204,7 @@ class _Row:
             "the solver's steps are too coarse for this motion; bound the coefficients or use "
             "fewer terms"
         )
-        try:
-            refuse_exceeded(self.figures, self.limits, remedy, self.still)
-        except SolverFailedError as error:
-            return error
-        return self.tried[-1]
+        return excess_error(self.figures, self.limits, remedy, self.still) or self.tried[-1]
 
 
 def _settle(rows: Sequence[_Row], solver: Solver, judge_all: Judge) -> list[Outcome]:
@@ -379,14 +351,15 @@ def tighten(limits: Sequence[Limit], motion: Ranged, kept: Sequence[Limit]) -> t
     )
 
 
-def refuse_exceeded(
+def excess_error(
     motion: Ranged, limits: Sequence[Limit], remedy: str, still: float = 0.0
-) -> None:
-    """Refuse a verified motion that exceeds a limit although limits were tightened."""
+) -> SolverFailedError | None:
+    """What to say of a verified motion that exceeds a limit although limits were tightened."""
     for limit in limits:
         peak = limit.peak_of(motion)
         if not limit.keeps(peak, OVERRUN, still):
-            raise SolverFailedError(
+            return SolverFailedError(
                 f"the verified {limit.name} is {limit.describe(peak)}, above its limit of "
                 f"{limit.bounds}: {remedy}"
             )
+    return None
