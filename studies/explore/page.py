@@ -32,7 +32,7 @@ from quietarm.studies.explore.move import FILES, Dial, Explored
 from quietarm.studies.explore.plots import GREY, PANELS, Plots
 from quietarm.studies.figures.looks import RED
 from quietarm.studies.registry.profiles import FAMILIES
-from quietarm.studies.report.moves import HARD_REMEDY, plan_rows
+from quietarm.studies.report.moves import plan_rows
 from quietarm.studies.report.words import moved
 
 Change = Callable[[Explored], Explored]
@@ -218,12 +218,12 @@ class Page:
 
 def _facts(explored: Explored) -> str:
     """The figures of `quietarm plan`, in the words of the page."""
-    facts = dict(plan_rows(explored.plan))
+    facts = dict(plan_rows(explored.plan, "enter what the drive can do under Limits"))
     facts["computed in"] = facts.pop("time")
     if explored.of_front:
         facts["status"] = "a point of the front"
     lines = (f"<div><b>{escape(name)}</b> {escape(value)}</div>" for name, value in facts.items())
-    return "".join(lines).replace(HARD_REMEDY, "enter what the drive can do under Limits")
+    return "".join(lines)
 
 
 def _button(label: str, pressed: Callable[[], Any]) -> Button:

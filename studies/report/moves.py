@@ -31,14 +31,14 @@ _SEEN, _ROUNDING = 1e-6, 1e-12
 """A joint turns back where it does so by more [rad]; smaller angles are rounding errors."""
 
 
-def plan_rows(plan: Plan) -> list[Row]:
-    """A plan's coefficients, figures and verification."""
+def plan_rows(plan: Plan, remedy: str = HARD_REMEDY) -> list[Row]:
+    """A plan's coefficients, figures and verification; and a remedy where it is too hard."""
     back = plan.turns_back
     return [
         *_move_rows(plan.task, plan.motion, plan.residual_limit or 0.0),
         _choice(plan),
         *_terms_rows(plan),
-        *_figure_rows(plan.task, plan.motion),
+        *_figure_rows(plan.task, plan.motion, remedy),
         *([("turns back", f"by {_way(back, plan.task)} on the way")] if back > _SEEN else []),
         *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
         ("status", plan.status.text),
@@ -167,7 +167,7 @@ def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) 
     ]
 
 
-def _figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
+def _figure_rows(task: PointToPoint, motion: Motion, remedy: str = HARD_REMEDY) -> list[Row]:
     """A motion's energy, residual, peaks and overshoot."""
     residual = millimetres(motion.residual)
     if motion.residual < REST:  # nobody sees a difference
@@ -177,7 +177,7 @@ def _figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     return [
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         ("residual (F1)", f"{residual} at the {_tip(task)} within {task.residual_window:g} s"),
-        *((_peak_name(name, task), _peak(name, task, motion)) for name in known),
+        *((_peak_name(name, task), _peak(name, task, motion, remedy)) for name in known),
         ("overshoot", _way(motion.overshoot, task) if motion.overshoot > _ROUNDING else "none"),
     ]
 
@@ -192,7 +192,7 @@ def _way(size: float, task: PointToPoint) -> str:
     return f"{size:.3g} {joint_unit('rad', task.plant.joint)}"
 
 
-def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
+def _peak(name: str, task: PointToPoint, motion: Motion, remedy: str) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
     peak, unit = motion.peak(name), joint_unit(QUANTITIES[name].unit, task.plant.joint)
     if name == "deflection":
@@ -207,7 +207,7 @@ def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
     cycloid = 2 * math.pi * abs(task.span) / task.duration**2  # of eq (1) with U = t / TE
     near = any(one.peak_of(motion) > _FAR * one.size for one in task.limits)
     if name == "acceleration" and not near and peak > _HARD * cycloid:
-        words += f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {HARD_REMEDY})"
+        words += f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {remedy})"
     return words
 
 
