@@ -48,7 +48,7 @@ set_option = option(
 )  # fmt: skip
 error_option = option(
     "--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
-    help="By how much frequency, damping or a parameter may be wrong, as frequency=8%; the "
+    help="Range of the error of frequency, damping or a parameter, as frequency=8%; the "
     "residual is then that of the worst case. `measured`: as it was identified. May be repeated.",
 )  # fmt: skip
 _OPTIONS = options(
@@ -62,11 +62,11 @@ _OPTIONS = options(
                  "the limits."),
     *(
         option(f"--{one.name}-limit", metavar=f"[{one.unit}]",
-                     help=f"Largest {one.label} on the way; by direction as LEAST:LARGEST.")
+                     help=f"Largest {one.label} during the move; by direction as LEAST:LARGEST.")
         for one in QUANTITIES.values()
     ),
     option("--torque-speed", type=Parsed("torque@speed", parse_torque_speed),
-                 help="What the drive gives, torques at speeds: 1.5Nm@0,0.8Nm@190rpm."),
+                 help="Torque limit by speed, as points: 1.5Nm@0,0.8Nm@190rpm."),
     option("--residual-window", type=TIME, default="1",
                  help="Time after arrival in which the residual is measured."),
     option("--initial", type=Parsed("W:W'", parse_state),

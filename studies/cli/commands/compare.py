@@ -42,7 +42,7 @@ def _names(text: str) -> tuple[str, ...]:
 @option("--samples", default=2000, help="Plans: random plants for the percentiles.")
 @option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one.")
 @option("--free-motion/--no-free-motion", "free", default=True,
-        help="Fronts: find the least energy over all motions as well.")  # fmt: skip
+        help="Fronts: find the best free motion as well.")  # fmt: skip
 @output_option({FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"})
 def compare(
     files: tuple[Path, ...],
