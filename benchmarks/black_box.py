@@ -1,0 +1,252 @@
+"""Two problems that the gradient cannot take as they are: a black box, and an integer.
+
+    python benchmarks/black_box.py [--seeds 9]
+
+- The electric energy of a motor known from a map: efficiencies of a table's cells, friction with a
+  sign, braking that is fed back above a speed. A function of arrays without derivatives, and with
+  jumps. The gradient minimises the mechanical energy, eq (11), and its motions are evaluated on the
+  black box; or SLSQP takes differences of it.
+- The number of terms, 1 to 10, beside the coefficients: each term costs half a per cent of the
+  plain cycloid's energy, as if it had to be tuned. The gradient takes one number after another.
+
+Each search has 5,000 candidates; what is compiled first is not counted. Missing hypervolume is
+against the best of all runs together.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import partial
+from typing import Any
+
+import casadi as ca
+import moocore
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from pymoo.core.problem import Problem
+from pymoo.optimize import minimize
+from quietarm.metaheuristics import PRESETS
+from quietarm.metaheuristics.quality import CORNER, within
+from quietarm.ocp.front.points import LEVELS
+from results_page import BUDGET, SEEDS, differences
+from scipy.stats import mannwhitneyu
+
+import quietarm as qa
+
+Array = NDArray[np.float64]
+MOVES = ("single-link-90deg-1s", "arm-on-flexible-link-90deg-0.8s")
+STEPS, POPULATION = 60, 100
+POINTS, MOST_TERMS, PRICE = 100, 10, 0.005
+TORQUES, SPEEDS = (0.02, 0.05, 0.1, 0.2), (0.5, 1.0, 2.0, 3.5)
+"""Edges of the map's cells [N m, rad/s]."""
+EFFICIENCY = np.array([
+    (0.20, 0.30, 0.40, 0.45, 0.40), (0.35, 0.50, 0.60, 0.65, 0.60),
+    (0.40, 0.60, 0.75, 0.80, 0.75), (0.35, 0.60, 0.80, 0.85, 0.80),
+    (0.25, 0.50, 0.70, 0.80, 0.85),
+])  # fmt: skip
+"""Rows by torque, columns by speed."""
+COULOMB, STICTION, STRIBECK, FED_BACK = 0.01, 0.02, 0.3, 1.5
+"""Friction [N m] in motion and at its beginning, the speed between [rad/s]; and the speed above
+which braking feeds power back."""
+
+
+def electric_power(torque: Array, speed: Array) -> Array:
+    """What the motor takes [W]."""
+    friction = COULOMB + (STICTION - COULOMB) * np.exp(-((speed / STRIBECK) ** 2))
+    torque = torque + np.sign(speed) * friction
+    cell = np.digitize(np.abs(torque), TORQUES), np.digitize(np.abs(speed), SPEEDS)
+    power, efficiency = torque * speed, EFFICIENCY[cell]
+    braking = np.where(np.abs(speed) > FED_BACK, power * efficiency, 0.0)
+    return np.where(power > 0, power / efficiency, braking)
+
+
+class SpentError(Exception):
+    """Every candidate is spent."""
+
+
+class Function:
+    """Residual [m] and cost [J] of many candidates; keeps what none of them dominates."""
+
+    def __init__(self, problem: qa.NamedProblem) -> None:
+        self.move = problem.function()
+        self.lower, self.upper = self.move.lower, self.move.upper
+        self.points, self.left = np.empty((0, 2)), np.inf
+
+    def __call__(self, candidates: Array) -> tuple[Array, Array]:
+        """Objectives and no violations, rows by rows, up to what is left."""
+        rows = np.asarray(candidates, dtype=float)
+        afforded = rows[: int(min(len(rows), self.left))]
+        self.left -= len(afforded)
+        found = self.objectives(afforded) if len(afforded) else np.empty((0, 2))
+        points = np.vstack([self.points, found])
+        self.points = points[moocore.is_nondominated(points)]
+        if len(afforded) < len(rows):
+            raise SpentError
+        return found, np.empty((len(rows), 0))
+
+
+class BlackBox(Function):
+    """The electric energy."""
+
+    def __init__(self, problem: qa.NamedProblem) -> None:
+        super().__init__(problem)
+        a = ca.SX.sym("a", problem.profile.size)
+        motion = qa.symbolic_rollout(
+            problem.task.plant, problem.profile, a, problem.task.move, STEPS
+        )
+        speeds = [joint.speed for joint in motion.joints]
+        nodes = [ca.vertcat(*map(ca.vec, each)) for each in (motion.torque, speeds, motion.weights)]
+        self._simulate = ca.Function("simulate", [a], nodes)
+
+    def objectives(self, rows: Array) -> Array:
+        """Of rows: residual [m] and cost [J]."""
+        torque, speed, weights = (part.full() for part in self._simulate(rows.T))
+        energy = (weights * electric_power(torque, speed)).sum(axis=0)
+        return np.column_stack([self.move(rows)[0][:, 0], energy])
+
+
+class Terms(Function):
+    """The number of terms first, the coefficients of ten after it."""
+
+    def __init__(self, problem: qa.NamedProblem) -> None:
+        super().__init__(terms_of(problem, MOST_TERMS))
+        self.price = PRICE * self.move(np.zeros((1, MOST_TERMS)))[0][0, 1]
+        self.lower, self.upper = np.append(0.5, self.lower), np.append(10.49, self.upper)
+
+    def objectives(self, rows: Array) -> Array:
+        """Of rows: residual [m] and cost [J]."""
+        count = np.round(rows[:, :1])
+        found = self.move(np.where(np.arange(MOST_TERMS) < count, rows[:, 1:], 0.0))[0]
+        return found + count * [0.0, self.price]
+
+
+def terms_of(problem: qa.NamedProblem, terms: int) -> qa.NamedProblem:
+    """The move with another number of terms."""
+    profile = qa.CycloidPolynomial(terms)
+    return qa.NamedProblem(f"{problem.name}-{terms}", problem.task, profile, problem.bound)
+
+
+def searched(name: str, function: Function, seed: int, budget: int, first: Any = None) -> None:
+    """Search by a method of pymoo with its preset's settings."""
+    problem = Problem(
+        n_var=len(function.lower), n_obj=2, xl=function.lower, xu=function.upper,
+    )  # fmt: skip
+    problem._evaluate = lambda x, out, *_, **__: out.update(F=function(x)[0])
+    algorithm = PRESETS[name].build(POPULATION)
+    if first is not None:
+        algorithm.initialization.sampling = first
+    minimize(problem, algorithm, ("n_eval", budget), seed=seed)
+
+
+def gradient_rows(problem: qa.NamedProblem, points: int, seed: int) -> Array:
+    """Coefficients of a front of the mechanical energy."""
+    asked: Any = {"bound": problem.bound, "points": points, "at": LEVELS, "seed": seed}
+    return qa.epsilon_front(problem.task, problem.profile, **asked).coefficients
+
+
+def by_gradient(problem: qa.NamedProblem, function: Function, seed: int, budget: int) -> None:
+    """The mechanical energy's front, evaluated."""
+    function(gradient_rows(problem, POINTS, seed))
+
+
+def begun_there(problem: qa.NamedProblem, function: Function, seed: int, budget: int) -> None:
+    """A search whose first population is that front."""
+    rows = gradient_rows(problem, POPULATION - len(LEVELS), seed)
+    searched("gde3", function, seed, budget, rows)
+
+
+def one_by_one(problem: qa.NamedProblem, function: Function, seed: int, budget: int) -> None:
+    """A front by the gradient for each number of terms."""
+    for terms in range(1, MOST_TERMS + 1):
+        rows = gradient_rows(terms_of(problem, terms), POINTS // 5, seed)
+        padded = np.pad(rows, ((0, 0), (0, MOST_TERMS - terms)))
+        function(np.column_stack([np.full(len(rows), terms), padded]))
+
+
+Way = Callable[[Function, int, int], None]
+
+
+def ways_of(problem: qa.NamedProblem, kind: type[Function]) -> dict[str, Way]:
+    """What is compared, by name."""
+    ways: dict[str, Way] = {
+        PRESETS[name].label: partial(searched, name) for name in ("nsga2", "gde3", "cmopso")
+    }
+    if kind is Terms:
+        return ways | {"gradient, a front for each number": partial(one_by_one, problem)}
+    return ways | {
+        "gradient, mechanical energy": partial(by_gradient, problem),
+        "GDE3 from the gradient's front": partial(begun_there, problem),
+        "SLSQP with differences": partial(differences, step=1e-3),
+    }
+
+
+def run(problem: qa.NamedProblem, kind: type[Function], way: Way, seed: int, budget: int) -> Any:
+    """Points that a way finds, and its processor seconds."""
+    function, began = kind(problem), time.process_time()
+    function.left = budget
+    with suppress(SpentError):
+        way(function, seed, budget)
+    return function.points, time.process_time() - began
+
+
+def runs_of(name: str, kind: type[Function], seeds: int) -> dict[str, list[Any]]:
+    """Points and seconds of every way on one move, by its name and seed."""
+    problem = qa.problem_of(name)
+    ways = ways_of(problem, kind)
+    for way in ways.values():  # what is compiled and loaded first
+        run(problem, kind, way, 99, 3 * POPULATION)
+    return {
+        label: [run(problem, kind, way, seed, BUDGET) for seed in range(seeds)]
+        for label, way in ways.items()
+    }
+
+
+def compare(found: dict[str, list[Any]]) -> pd.DataFrame:
+    """Medians over seeds; p is against the gradient, by Mann and Whitney."""
+    best = np.vstack([points for runs in found.values() for points, _ in runs])
+    best = best[moocore.is_nondominated(best)]
+    ideal, extent = best.min(axis=0), np.ptp(best, axis=0)
+    whole = _hypervolume((best - ideal) / extent)
+    missing = {
+        label: [100 - 100 * _hypervolume((points - ideal) / extent) / whole for points, _ in runs]
+        for label, runs in found.items()
+    }
+    (base,) = (label for label in found if label.startswith("gradient"))
+    rows = [
+        {
+            "": label,
+            "missing [%]": np.median(missing[label]),
+            "least to most": f"{min(missing[label]):.2g} to {max(missing[label]):.2g}",
+            "cost at 1 mm [J]": np.median([within(points, [1e-3])[0] for points, _ in runs]),
+            "seconds": np.median([seconds for _, seconds in runs]),
+            "p": np.nan if label == base else mannwhitneyu(missing[label], missing[base]).pvalue,
+        }
+        for label, runs in found.items()
+    ]
+    return pd.DataFrame(rows).sort_values("missing [%]")
+
+
+def _hypervolume(points: Sequence[Any] | Array) -> float:
+    return float(moocore.hypervolume(points, ref=[CORNER] * 2))
+
+
+def main() -> None:
+    """Print a table for each problem on each move."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=SEEDS)
+    given = parser.parse_args()
+    for kind, words in ((BlackBox, "electric energy"), (Terms, "number of terms")):
+        for name in MOVES:
+            print(f"\n{words}, {name}\n", flush=True)
+            print(
+                compare(runs_of(name, kind, given.seeds)).to_markdown(index=False, floatfmt=".3g")
+            )
+    print(f"\n{time.process_time():.0f} s")
+
+
+if __name__ == "__main__":
+    main()
