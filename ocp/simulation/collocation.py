@@ -102,21 +102,12 @@ class Step:
 
     def driven_by(self, forcing: Sequence[Expression]) -> Step:
         """The step with another excitation of each node and mode, in the order of `response`."""
-        constant = [
-            sum(gain * force for gain, force in zip(row, forcing, strict=True) if not is_zero(gain))
-            for row in self.forced
-        ]
-        rows = zip(constant, self.response, strict=True)
-        return replace(self, response=[[force, *row[1:]] for force, row in rows])
+        rows = zip(self.forced, self.response, strict=True)
+        return replace(self, response=[[dot(gains, forcing), *row[1:]] for gains, row in rows])
 
     def accelerations(self, W: Modes, dW: Modes) -> list[list[Expression]]:
         """W'' at the nodes for the state before the step: a list over nodes of lists over modes."""
-        state = [*W, *dW]
-        return self._by_node(
-            row[0]
-            + sum(gain * x for gain, x in zip(row[1:], state, strict=True) if not is_zero(gain))
-            for row in self.response
-        )
+        return self._by_node(row[0] + dot(row[1:], [*W, *dW]) for row in self.response)
 
     def _by_node(self, rows: Iterable[Expression]) -> list[list[Expression]]:
         flat = list(rows)
@@ -124,37 +115,36 @@ class Step:
 
     def end(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> tuple[Modes, Modes]:
         """State after the step, from the state before it and W'' at its nodes."""
-        h, modes = self.h, range(self.modes)
+        times, by_mode = [self.h, self.h * self.h], list(zip(*ddW, strict=True))
+        ends = [(dot(_ONCE[NODES], own), dot(_TWICE[NODES], own)) for own in by_mode]
         return (
-            [
-                W[i] + _times(h, dW[i]) + _times(h * h, _combine(_TWICE[NODES], ddW, i))
-                for i in modes
-            ],
-            [dW[i] + _times(h, _combine(GAUSS_WEIGHTS, ddW, i)) for i in modes],
+            [w + dot(times, (v, twice)) for w, v, (_, twice) in zip(W, dW, ends, strict=True)],
+            [v + dot(times, (once, 0.0)) for v, (once, _) in zip(dW, ends, strict=True)],
         )
 
     def transition(self) -> tuple[list[Expression], list[list[Expression]]]:
         """(constant, columns): the state after is constant + columns times the state before."""
+        return self.column(0), [self.column(1 + row) for row in range(2 * self.modes)]
 
-        def after(column: int) -> list[Expression]:
-            state = [float(column == 1 + row) for row in range(2 * self.modes)]
-            ddW = self._by_node(row[column] for row in self.response)
-            W, dW = self.end(state[: self.modes], state[self.modes :], ddW)
-            return [*W, *dW]
-
-        return after(0), [after(1 + row) for row in range(2 * self.modes)]
+    def column(self, number: int) -> list[Expression]:
+        """One column of that map, the constant first."""
+        state = [float(number == 1 + row) for row in range(2 * self.modes)]
+        ddW = self._by_node(row[number] for row in self.response)
+        W, dW = self.end(state[: self.modes], state[self.modes :], ddW)
+        return [*W, *dW]
 
     def nodes(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> list[NodeState]:
         """The modes at the nodes, from the state before the step and W'' at its nodes."""
-        h, modes = self.h, range(self.modes)
+        h, square, by_mode = self.h, self.h * self.h, list(zip(*ddW, strict=True))
         return [
             NodeState(
-                W=[W[i] + c * h * dW[i] + h * h * _combine(_TWICE[j], ddW, i) for i in modes],
-                dW=[dW[i] + h * _combine(_ONCE[j], ddW, i) for i in modes],
-                ddW=list(ddW[j]),
+                [w + c * h * v + square * dot(_TWICE[j], own)
+                 for w, v, own in zip(W, dW, by_mode, strict=True)],
+                [v + h * dot(_ONCE[j], own) for v, own in zip(dW, by_mode, strict=True)],
+                list(ddW[j]),
             )
             for j, c in enumerate(GAUSS_NODES)
-        ]
+        ]  # fmt: skip
 
 
 def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
@@ -204,17 +194,16 @@ def _negative(d: Expression, time: Expression, k: Expression) -> Expression:
     return 0.0 if is_zero(k) and is_zero(d) else -d - time * k
 
 
-def _times(factor: Expression, entry: Expression) -> Expression:
-    return entry if is_zero(entry) else factor * entry
-
-
 def is_zero(entry: Expression) -> bool:
     """Whether an entry is nothing whatever the symbols are: modes that do not act on each other."""
     return isinstance(entry, float) and entry == 0.0
 
 
-def _combine(weights: Sequence[float], ddW: Sequence[Modes], mode: int) -> Expression:
-    return sum(weight * at_node[mode] for weight, at_node in zip(weights, ddW, strict=True))
+def dot(factors: Sequence[Expression], entries: Sequence[Expression]) -> Expression:
+    """The sum of products, without those that are nothing."""
+    pairs = zip(factors, entries, strict=True)
+    terms = [a * b for a, b in pairs if not (is_zero(a) or is_zero(b))]
+    return sum(terms[1:], terms[0]) if terms else 0.0
 
 
 def eliminate(

@@ -25,7 +25,7 @@ from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.solvers.derivatives import Kind, compile_derivatives, compile_values
-from quietarm.ocp.solvers.node import Path
+from quietarm.ocp.solvers.node import path_of
 
 Array = NDArray[np.float64]
 _OF_VALUES, _OF_DERIVATIVES = (1, 8, 100), (1, 4, 8)
@@ -118,7 +118,7 @@ class _Compiled:
         """The outputs, a row each, a block for each thread at a time."""
         most, rows = self._sizes[-1], max(len(inputs[0]), 1)
         blocks = [[one[i : i + most] for one in inputs] for i in range(0, rows, most)]
-        self._prepare(len(blocks[0][0]))
+        self.prepare(len(blocks[0][0]))
         if threads > 1 and len(blocks) > 1:
             with ThreadPoolExecutor(threads) as pool:
                 parts = list(pool.map(self._evaluate, blocks))
@@ -126,9 +126,9 @@ class _Compiled:
             parts = [self._evaluate(block) for block in blocks]
         return [np.concatenate(part) for part in zip(*parts, strict=True)]
 
-    def _prepare(self, rows: int) -> int:
+    def prepare(self, rows: int) -> int:
         """The size of block for so many rows, built; single ones use another for a while."""
-        size = next(one for one in self._sizes if one >= rows)
+        size = next((one for one in self._sizes if one >= rows), self._sizes[-1])
         larger = [one for one in self._functions if one > size]
         if size == 1 and size not in self._functions and larger and self._singles < _PADDED:
             self._singles += 1
@@ -138,13 +138,9 @@ class _Compiled:
             self._idle[size] = []
         return size
 
-    def prepare(self, rows: int) -> None:
-        """Build the function that so many rows take, for fewer rows as well."""
-        self._prepare(min(rows, self._sizes[-1]))
-
     def _evaluate(self, block: Sequence[Array]) -> tuple[Array, ...]:
         rows = len(block[0])
-        size = self._prepare(rows)
+        size = self.prepare(rows)
         try:
             function = self._idle[size].pop()
         except IndexError:  # all are in use by other threads, or none is made yet
@@ -185,10 +181,9 @@ class Batch:
 
         The powers of T of a polynomial are nearly the same function from about ten terms on.
         Coefficients are these axes times the unknowns of a program; the identity where the
-        coefficients enter nonlinearly. Speeds, since with positions a step along an axis that
-        wriggles often would bend the constraints far more than along one that does not: plants of
-        8 modes took ten times the iterations. With a box on the coefficients directions that
-        hardly matter are stretched less: else the box is so thin along them that rounding loses it.
+        coefficients enter nonlinearly. With positions in place of speeds plants of 8 modes took ten
+        times the iterations. With a box on the coefficients directions that hardly matter are
+        stretched less: else the box is so thin along them that rounding loses it.
         """
         columns = self._speeds
         if columns is None:
@@ -203,7 +198,7 @@ class Batch:
     def _speeds(self) -> Array | None:
         """The path's speed at the nodes by each coefficient; None if it is not linear in them."""
         size, grid = self.kind.profile.size, Grid(self.kind.steps)
-        path = Path(self.kind.profile, grid, jerk=False)
+        path = path_of(self.kind.profile, grid, False, 1)
         if not path.linear:
             return None
         table, weights = path.jacobian([0.0] * size, []), np.sqrt(np.tile(grid.lengths, NODES))
@@ -231,18 +226,9 @@ class Batch:
     ) -> Derivatives:
         """Evaluate candidates with first derivatives, and second ones of a weighted sum.
 
-        Parameters
-        ----------
-        coefficients : ndarray, shape (rows, profile.size)
-            Candidates.
-        move : ndarray, shape (rows, 3 + 2 * modes)
-            The `row` of each candidate's task.
-        errors : ndarray, shape (rows, ranges)
-            Relative errors of each candidate's plant.
-        width : ndarray, shape (rows,), optional
-            The power [W] over which |power| is rounded off; none by default.
-        multipliers : Multipliers, optional
-            Of the sum whose Hessian is asked for; zeros by default.
+        A row has coefficients (profile.size,), the `row` of its task (3 + 2 * modes,), relative
+        errors of its plant, and the power [W] over which |power| is rounded off; the multipliers
+        are those of the sum whose Hessian is asked for.
         """
         rows, states = len(coefficients), 2 * self.kind.plant.modes
         COST.gradients += rows

@@ -20,7 +20,7 @@ from quietarm.ocp.simulation.collocation import NODES, Step, collocate, modal_sy
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import march, modes_at_nodes, symbolic_rollout
 from quietarm.ocp.solvers.energy import EnergyDerivatives, differentiate_energy
-from quietarm.ocp.solvers.node import Node, Path, Table, product, transpose
+from quietarm.ocp.solvers.node import Node, Table, path_of, product, transpose
 from quietarm.ocp.uncertainty import perturb_plant
 
 _STEPS_OF_CSE, _ROWS_OF_CSE = 48, 4
@@ -97,7 +97,7 @@ class _Differentiated:
         plant, profile, steps, quantities, names, self.definition, _ = kind
         self.size, self.modes, self.shape = profile.size, plant.modes, (rows, steps)
         grid, nodes = Grid(steps), NODES * steps
-        self.path = Path(profile, grid, ask_for_jerk(quantities), rows)
+        self.path = path_of(profile, grid, ask_for_jerk(quantities), rows)
         self.node = Node(plant, self.path, quantities, names, self.definition, (rows, nodes))
         limited = (self.node.count - self.node.own) * nodes
         counts = [self.size, 3 + 2 * plant.modes, len(names), 1, 1, 2 * plant.modes, limited]
@@ -165,7 +165,7 @@ class _Differentiated:
 
     def march_along(self, along: Step) -> tuple[list[ca.MX], list[ca.MX], ca.MX]:
         """States before every step, from rest, with a column for each step of each coefficient."""
-        constant = [_swap(x, self.size) for x in along.transition()[0]]
+        constant = [_swap(x, self.size) for x in along.column(0)]
         W, dW, arrival = march(constant, self.columns, self.shape, width=self.size)
         steps = self.shape[1]
         W, dW = ([_swap(x, steps) for x in half] for half in (W, dW))
@@ -194,8 +194,7 @@ class _Differentiated:
             ca.horzsplit(self.inputs[5], 1),
         )
         of_after = [_reverse(x) for x in (*W, *dW)]
-        constant, _ = driven.transition()
-        after = sum(ca.dot(w, x) for w, x in zip(of_after, constant, strict=True))
+        after = sum(ca.dot(w, x) for w, x in zip(of_after, driven.column(0), strict=True))
         found = ca.horzsplit(ca.gradient(here + after, forcing), steps)
         return [ca.horzcat(*found[i::m]) for i in range(m)]
 

@@ -29,6 +29,7 @@ from quietarm.ocp.solvers.quadratic import Model, Multipliers, Steps, convexify,
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+Flags = NDArray[np.bool_]
 
 WIDTHS = (0.5, 0.15, 0.05, 0.015, 0.005, 0.0)
 """Widths over which the objective is rounded off, stage by stage."""
@@ -110,7 +111,7 @@ def minimise(
     prints a line for each.
     """
     with note_interrupts() as came:  # a step is whole, then Ctrl-C ends the work
-        run = _Run(evaluate, x.copy(), lower, upper, equalities, linear, groups, widths, reach)
+        run = _Run(evaluate, x, lower, upper, equalities, linear, groups, widths, reach)
         if log:
             print(_LOG_HEAD)
         for number in range(most):
@@ -140,7 +141,7 @@ class _Run:
         widths: tuple[float, ...],
         reach: float,
     ) -> None:
-        self.evaluate, self.x, self.lower, self.upper = evaluate, x, lower, upper
+        self.evaluate, self.x, self.lower, self.upper = evaluate, x.copy(), lower, upper
         self.linear, self.groups, self.widths = linear, groups, np.array(widths)
         rows, k = lower.shape
         self.going, self.stage = np.arange(rows), np.zeros(rows, dtype=int)
@@ -191,7 +192,7 @@ class _Run:
         small = (np.abs(promised) <= _OPTIMAL * np.abs(model.objective)) & ~bound & step.met
         self._end(small & ~sharper & (self.violation[rows] <= _MET) & (width == 0))
 
-    def _sharper(self, step: Steps, promised: Array) -> NDArray[np.bool_]:
+    def _sharper(self, step: Steps, promised: Array) -> Flags:
         """Which rows go on to the next stage with this step."""
         rows = self.going
         width = self.width(rows)
@@ -203,7 +204,7 @@ class _Run:
 
     def _accepted(
         self, which: Index, step: Steps, d: Array, promised: Array, trial: Model
-    ) -> NDArray[np.bool_]:
+    ) -> Flags:
         """Whether the rows at these places of the model accept their steps d."""
         rows, model = self.going[which], self.model.take(which)
         before, after = self.violation[rows], self._violation(rows, trial)
@@ -227,12 +228,7 @@ class _Run:
         return good & np.isfinite(trial.objective) & np.isfinite(after)
 
     def _correct(
-        self,
-        hessian: Array,
-        step: Steps,
-        promised: Array,
-        trial: Model,
-        good: NDArray[np.bool_],
+        self, hessian: Array, step: Steps, promised: Array, trial: Model, good: Flags
     ) -> None:
         """Second-order corrections of the steps that are not good."""
         missed = self._violation(self.going, trial) > _MET
@@ -255,13 +251,7 @@ class _Run:
         trial.put(again[better], second.take(better))
 
     def _resize(
-        self,
-        good: NDArray[np.bool_],
-        for_f: NDArray[np.bool_],
-        bound: NDArray[np.bool_],
-        size: Array,
-        promised: Array,
-        gained: Array,
+        self, good: Flags, for_f: Flags, bound: Flags, size: Array, promised: Array, gained: Array
     ) -> None:
         """Trust regions that shrink to where a parabola through f has its least, or grow."""
         share = np.where(for_f, gained / np.where(promised == 0, 1.0, promised), -1.0)
@@ -273,9 +263,7 @@ class _Run:
         kept = np.where(growing, _GROW * radius, np.where(poor, 0.5 * radius, radius))
         self.radius[self.going] = np.where(good, kept, np.minimum(shrunk, radius))
 
-    def _move(
-        self, good: NDArray[np.bool_], for_f: NDArray[np.bool_], step: Steps, trial: Model
-    ) -> None:
+    def _move(self, good: Flags, for_f: Flags, step: Steps, trial: Model) -> None:
         rows = self.going
         self.multipliers.put(rows, step.multipliers)
         moved = rows[good]
@@ -286,7 +274,7 @@ class _Run:
         nearer = rows[good & ~for_f]
         self.funnel[nearer] = 0.45 * self.funnel[nearer] + 0.5 * self.violation[nearer]
 
-    def _end(self, solved: NDArray[np.bool_]) -> None:
+    def _end(self, solved: Flags) -> None:
         """Drop the rows that are solved, stuck, creeping, or left because others agree."""
         rows = self.going
         for row in rows[solved]:
@@ -308,25 +296,22 @@ class _Run:
     def _leave(self, anew: bool) -> None:
         """Leave rows that have met another of their group, or whose others agree."""
         assert self.groups is not None
-        going = np.array([row for row in self.going if self.ends[row] is None], dtype=int)
-        for group in np.unique(self.groups[going]):
-            rows = going[self.groups[going] == group]
-            rows = rows[np.argsort(self.f[rows], kind="stable")]
-            for row in rows[1:]:
-                first = rows[0]
+        for group in np.unique(self.groups[self.going]):
+            own = np.flatnonzero(self.groups == group)
+            going = [row for row in own if self.ends[row] is None]
+            going.sort(key=self.f.__getitem__)
+            for row in going[1:]:
+                first = going[0]
                 same = self.stage[row] == self.stage[first] > 0
                 near = np.abs(self.x[row] - self.x[first]).max() <= _MEETING
                 if same and near and self.f[row] <= self.f[first] * (1 + _MEETING):
                     self.ends[row] = End.AGREED
                     self.count[first] += self.count[row]
-            if not anew:
-                continue
-            own = np.flatnonzero(self.groups == group)
-            done = np.array([row for row in own if self.ends[row] is End.SOLVED], dtype=int)
+            done = [row for row in own if self.ends[row] is End.SOLVED]
             least = self.f[done].min(initial=np.inf)
-            agree = self.count[done[self.f[done] <= least * (1 + _ALIKE)]].sum()
-            if agree >= max(2, len(own) / 2):
-                for row in rows:
+            agree = self.count[done][self.f[done] <= least * (1 + _ALIKE)].sum()
+            if anew and agree >= max(2, len(own) / 2):
+                for row in going:
                     self.ends[row] = self.ends[row] or End.AGREED
 
     def _steps(self, rows: Index, model: Model) -> Steps:

@@ -33,8 +33,7 @@ from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.objective import integrated
 from quietarm.ocp.simulation.rollout import SymbolicRollout, symbolic_rollout
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
-from quietarm.ocp.solvers.problem import Problem, Solution, price_of_rest
-from quietarm.ocp.solvers.transcription import ENERGY
+from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
 from quietarm.ocp.uncertainty import perturb_plant
 
 Array = NDArray[np.float64]
@@ -223,10 +222,9 @@ class _Numbers:
         self.scale = np.where(swing > 0, swing, 1.0)
         self.scales = {name: peak or 1.0 for name, peak in peaks.items()}
         self.scales[RESIDUAL] = self.residual(arrival) or 1.0
-        of_energy = asked.minimise.get(ENERGY, 0.0) * self.energy
-        of_peak = asked.minimise[asked.peak] * self.scales[asked.peak] if asked.peak else 0.0
-        largest = max(of_energy, of_peak)
-        self.weights = [of_energy / largest / self.energy, of_peak / largest]
+        peak_scale = self.scales[asked.peak] if asked.peak else 0.0
+        of_energy, of_peak = asked.weights(self.energy, peak_scale)
+        self.weights = [of_energy / self.energy, of_peak]
 
     def figures(self, coefficients: Array) -> tuple[float, Array, dict[str, float]]:
         """Energy, state on arrival by scenario, and peaks of the limited quantities."""
@@ -293,15 +291,9 @@ class _Numbers:
 
     def _shadow_prices(self, multipliers: Array) -> dict[str, float]:
         """What the least energy falls by if a limit is widened [J by its unit]."""
-        counts, of_energy, prices = self.program.counts, self.weights[0], dict[str, float]()
-        if of_energy == 0:
-            return prices
-        stops = np.cumsum(list(counts.values()))[:-1]
-        own = dict(zip(counts, np.split(multipliers, stops), strict=True))
-        for limit in self.asked.limits:
-            if limit.name in own:
-                price = limit.price(own[limit.name]) / of_energy
-                prices[limit.name] = price / self.scales[limit.name]
-        if self.asked.at_rest:
-            prices[RESIDUAL] = price_of_rest(own["arrival"] / self.scale, self.tips[0]) / of_energy
-        return prices
+        counts = self.program.counts
+        parts = np.split(multipliers, np.cumsum(list(counts.values()))[:-1])
+        own = dict(zip(counts, parts, strict=True))
+        bounded = {name: own[name] / self.scales[name] for name in own.keys() & self.scales.keys()}
+        of_arrival = own["arrival"] / self.scale if self.asked.at_rest else own["arrival"]
+        return shadow_prices(self.asked, self.weights[0], bounded, of_arrival, self.tips[0])

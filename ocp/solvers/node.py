@@ -9,6 +9,7 @@ whatever the symbols.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import casadi as ca
@@ -96,7 +97,7 @@ class Path:
         Number of values.
     """
 
-    def __init__(self, profile: JointProfile, grid: Grid, jerk: bool, rows: int = 1) -> None:
+    def __init__(self, profile: JointProfile, grid: Grid, jerk: bool, rows: int) -> None:
         times, _ = grid.columns(rows)
         self._profile, self._jerk, self._times = profile, jerk, ca.horzcat(*times)
         shape = self._times.shape
@@ -144,6 +145,10 @@ class Path:
         there, rates = y[self._own : 2 * self._own], y[2 * self._own :]
         (jerk,) = product(jacobian([self.motion(there, move).acceleration], there), rates, 1)
         return joint._replace(jerk=jerk / move[2])
+
+
+path_of = lru_cache(maxsize=8)(Path)
+"""A path that is kept for the next who asks for it."""
 
 
 class Node:

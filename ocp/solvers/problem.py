@@ -41,6 +41,13 @@ class Scalarization(NamedTuple):
         """The residual or quantity whose peak is minimised."""
         return next((name for name in self.minimise if name != ENERGY), None)
 
+    def weights(self, energy_scale: float, peak_scale: float) -> tuple[float, float]:
+        """Weights of the scaled energy and of the scaled peak, the larger of them 1."""
+        of_energy = self.minimise.get(ENERGY, 0.0) * energy_scale
+        of_peak = self.minimise[self.peak] * peak_scale if self.peak else 0.0
+        largest = max(of_energy, of_peak)
+        return of_energy / largest, of_peak / largest
+
     @property
     def residual_limit(self) -> float:
         """Largest residual [m]; infinite where it is not limited."""
@@ -111,6 +118,30 @@ class Solution:
     def slope(self) -> float:
         """Change of the least energy with the residual limit [J/m], at most 0."""
         return -self.shadow_prices.get(RESIDUAL, 0.0)
+
+
+def shadow_prices(
+    asked: Scalarization,
+    of_energy: float,
+    bounded: Mapping[str, NDArray[np.float64]],
+    of_arrival: NDArray[np.float64],
+    tips: NDArray[np.float64],
+) -> dict[str, float]:
+    """What the least energy falls by if a limit is widened [J by its unit], from multipliers.
+
+    Those of what is bounded, by name, and of the arrival are of SI units, and of an objective with
+    the factor `of_energy` of the energy [1/J]. The tips are rows as of `price_of_rest`.
+    """
+    if of_energy == 0:
+        return {}
+    prices = {
+        limit.name: limit.price(bounded[limit.name]) / of_energy
+        for limit in asked.limits
+        if limit.name in bounded and limit.name != asked.peak
+    }
+    if asked.at_rest:
+        prices[RESIDUAL] = price_of_rest(of_arrival, tips) / of_energy
+    return prices
 
 
 def price_of_rest(multipliers: NDArray[np.float64], rows: NDArray[np.float64]) -> float:

@@ -18,7 +18,6 @@ from quietarm.ocp.solvers.batch import Multipliers as MotionMultipliers
 from quietarm.ocp.solvers.constraints import Box, Constraint, Peak, QuantityLimit, ResidualLimit
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.quadratic import Model, Multipliers
-from quietarm.ocp.solvers.transcription import ENERGY
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -31,10 +30,8 @@ class Programs:
     ----------
     lower, upper : ndarray, shape (problems, bounded)
         Bounds of what is bounded.
-    linear : int
-        How many of these, the last, are linear in the unknowns.
-    unknowns, equalities : int
-        How many of each a problem has.
+    linear, unknowns, equalities : int
+        How many of these, the last, are linear in the unknowns; how many of each a problem has.
     constraints : dict of str to Constraint
         What is bounded: the residual and each limited quantity by name, and the box.
     weights : ndarray, shape (problems, 2)
@@ -58,19 +55,11 @@ class Programs:
             np.broadcast_to(offset - each.wanted, (self._scenarios, one.wanted.size))
             for offset, each in zip(offsets, self._transcriptions, strict=True)
         ])  # fmt: skip
-        self.weights = np.array([self._weights(problem) for problem in problems])
+        self.weights = np.array([
+            asked.weights(each.energy_scale, each.scale_of(self._peak) if self._peak else 0.0)
+            for each, asked in problems
+        ])  # fmt: skip
         self._constrain(asked.bounds_residual)
-
-    def _weights(self, problem: Problem) -> tuple[float, float]:
-        transcription, minimise, peak = (
-            problem.transcription,
-            problem.scalarization.minimise,
-            self._peak,
-        )
-        of_energy = minimise.get(ENERGY, 0.0) * transcription.energy_scale
-        of_peak = minimise[peak] * transcription.scale_of(peak) if peak else 0.0
-        largest = max(of_energy, of_peak)
-        return of_energy / largest, of_peak / largest
 
     def _constrain(self, bounds_residual: bool) -> None:
         """Everything that is bounded, the box last."""

@@ -12,11 +12,13 @@ from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, End, Ended, minimise
-from quietarm.ocp.solvers.problem import Problem, Solution, price_of_rest
+from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
 from quietarm.ocp.solvers.programs import Programs
 from quietarm.ocp.solvers.transcription import evaluate
 
 Array = NDArray[np.float64]
+Prices = dict[str, float]
+_NOTHING = np.zeros(0)
 _NONE = 1e-8
 """A scaled state on arrival that is no larger counts as rest."""
 _REACH, _WARM_REACH = 0.25, 0.02
@@ -131,21 +133,15 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     return found
 
 
-def _shadow_prices(
-    programs: Programs, ended: Ended, problems: Sequence[Problem]
-) -> list[dict[str, float]]:
+def _shadow_prices(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> list[Prices]:
     """What each least energy falls by if a limit is widened [J by its unit]."""
-    bounded = programs.split(ended.multipliers.bounded)
-    prices = list[dict[str, float]]()
-    for i, (transcription, asked) in enumerate(problems):
-        of_energy, own = programs.weights[i, 0] / transcription.energy_scale, dict[str, float]()
-        if of_energy:
-            for limit in asked.limits:
-                if limit.name in bounded.keys() - {asked.peak}:
-                    price = limit.price(bounded[limit.name][i]) / of_energy
-                    own[limit.name] = price / transcription.scale_of(limit.name)
-            if asked.at_rest:
-                of_arrival = ended.multipliers.equality[i] / transcription.arrival_scale
-                own[RESIDUAL] = price_of_rest(of_arrival, transcription.tip_rows[0]) / of_energy
-        prices.append(own)
+    every, prices = programs.split(ended.multipliers.bounded), list[Prices]()
+    for i, (each, asked) in enumerate(problems):
+        bounded = {one.name: every[one.name][i] / each.scale_of(one.name)
+                   for one in asked.limits if one.name in every}  # fmt: skip
+        of_energy = programs.weights[i, 0] / each.energy_scale
+        of_arrival = (
+            ended.multipliers.equality[i] / each.arrival_scale if asked.at_rest else _NOTHING
+        )
+        prices.append(shadow_prices(asked, of_energy, bounded, of_arrival, each.tip_rows[0]))
     return prices

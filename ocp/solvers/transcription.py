@@ -34,12 +34,6 @@ class Transcription:
 
     Attributes
     ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    steps : int
-        Number of steps.
     batch : Batch
         Evaluates candidates in any scenario.
     errors : ndarray, shape (scenarios, ranges)
