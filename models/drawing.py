@@ -39,14 +39,9 @@ class Body:
 def rigid_link(
     length: float, angle: float, displacement: float = 0.0, base: Sequence[float] = (0.0, 0.0)
 ) -> Array:
-    """Ends of a straight link, shape (2, 2), whose tip may be displaced across it.
+    """Ends of a straight link, shape (2, 2), from a base and in a direction [m, rad].
 
-    Parameters
-    ----------
-    length, angle, displacement : float
-        From base to tip [m]; direction [rad]; of the tip, to the left of the direction [m].
-    base : sequence of float
-        Where it begins [m].
+    Its tip may be displaced to the left of the direction [m].
     """
     return _placed(np.array([[0.0, 0.0], [length, displacement]]), angle, base)
 

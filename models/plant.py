@@ -27,14 +27,9 @@ TIP = "displacement of the tip per modal amplitude"
 
 
 def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
-    """Declare a parameter of a plant, a field of its frozen dataclass.
+    """Declare a parameter of a plant, a field of its frozen dataclass; the default in SI units.
 
-    Parameters
-    ----------
-    default : float
-        Value in SI units.
-    unit, source, meaning : str
-        SI unit, ``"-"`` where there is none; equation, table or reason; what it is, in words.
+    The unit is ``"-"`` where there is none, the source an equation, a table or a reason.
     """
     return field(default=default, metadata={"unit": unit, "source": source, "meaning": meaning})
 
@@ -88,12 +83,7 @@ class Plant(ABC):
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """Second time derivatives of the modal amplitudes [m/s^2], `modes` of them.
 
-        Parameters
-        ----------
-        joint : JointMotion
-            The joint's motion [rad, rad/s, rad/s^2].
-        W, dW : sequence of Expression
-            Modal amplitudes [m] and their rates [m/s].
+        By the joint's motion [rad, rad/s, rad/s^2], the amplitudes W [m] and their rates [m/s].
         """
 
     @abstractmethod
@@ -107,12 +97,7 @@ class Plant(ABC):
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The structure seen from above, by default a straight link of 1 m for each tip.
 
-        Parameters
-        ----------
-        angle : float
-            Joint angle [rad].
-        tips : sequence of float
-            Tip displacements [m], those of `tip_displacements` times the scale of the picture.
+        The joint's angle is in rad; the tips are `tip_displacements` [m], scaled for the picture.
         """
         links = [Body(rigid_link(1.0, angle, tip), rigid=True, tip=True) for tip in tips]
         return [*links, Body(rigid_link(1.0, angle)[:1], rigid=True)]

@@ -97,7 +97,7 @@ class JointProfile(ABC):
         duration: Expression,
         /,
     ) -> Values:
-        """Joint angle and its first two time derivatives.
+        """Joint angle [rad] and its first two time derivatives, computed element by element.
 
         Parameters
         ----------
@@ -105,15 +105,8 @@ class JointProfile(ABC):
             `size` coefficients.
         fraction : Expression
             t / duration, between 0 and 1.
-        start, target : Expression
-            Joint angles at the ends [rad].
-        duration : Expression
-            Travelling time [s].
-
-        Returns
-        -------
-        sequence of Expression
-            theta [rad], theta' [rad/s], theta'' [rad/s^2], by operations element by element.
+        start, target, duration : Expression
+            Joint angles at the ends [rad]; travelling time [s].
         """
 
     def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
@@ -178,8 +171,6 @@ class JointPath:
 
     Attributes
     ----------
-    profile, coefficients
-        The family and its member.
     start, target, duration : float
         Joint angles at the ends [rad], and travelling time [s].
     """
@@ -191,17 +182,9 @@ class JointPath:
     duration: float
 
     def __call__(self, time: ArrayLike, order: int = 0) -> NDArray[np.float64]:
-        """Evaluate the path.
+        """The angle [rad], or its derivative of an order up to 3 [rad/s^order].
 
-        Parameters
-        ----------
-        time, order : array_like, int
-            Times [s], any shape, and derivative order, 0 (angle) to 3 (jerk).
-
-        Returns
-        -------
-        ndarray
-            theta [rad] or its derivative [rad/s^order], in the shape of `time`.
+        Times [s] have any shape, as has what is returned.
         """
         if order not in range(4):
             raise ValueError(f"derivative order is {order!r}; give 0, 1, 2 or 3")

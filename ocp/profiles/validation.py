@@ -40,36 +40,25 @@ def check_profile(profile: JointProfile) -> None:
     every = ca.Function("motion", [at], [ca.densify(ca.horzcat(*motion, *rates, *joined))])
     table = every.map(len(_SHARES))(_SHARES[None]).full().reshape(len(_SHARES), -1)
     angle, speed, acceleration, by_angle, by_speed, *others = table.T
-    names = "angle", "speed", "acceleration"
+    ends, fastest = np.array([_START, _TARGET]), float(np.abs(speed).max())
+    at_ends = f"its end of a move from {_START} to {_TARGET} rad"
     compared = [
-        ("speed", speed, by_angle, "the derivative of the angle"),
-        ("acceleration", acceleration, by_speed, "the derivative of the speed"),
+        ("angle", angle[:2], ends, at_ends, 0.0),
+        ("speed", speed[:2], np.zeros(2), "rest at both ends", fastest),
+        ("speed", speed, by_angle, "the derivative of the angle", 0.0),
+        ("acceleration", acceleration, by_speed, "the derivative of the speed", 0.0),
     ]
-    compared += [
-        (f"{name} by outer(inner(...))", other, value, f"the {name} of derivatives")
-        for name, other, value in zip(names, others, table.T[:3], strict=True)
-    ]
-    ends = np.array([_START, _TARGET])
-    _compare(profile, "angle", angle[:2], ends, f"its end of a move from {_START} to {_TARGET} rad")
-    _compare(profile, "speed", speed[:2], np.zeros(2), "rest at both ends", np.abs(speed).max())
-    for name, values, wanted, words in compared:
-        _compare(profile, name, values, wanted, words)
-
-
-def _compare(
-    profile: JointProfile,
-    name: str,
-    values: np.ndarray,
-    wanted: np.ndarray,
-    words: str,
-    scale: float = 0.0,
-) -> None:
-    allowed = _DIFFERENT * max(scale, float(np.abs(wanted).max()), 1e-9)
-    wrong = ~(np.abs(values - wanted) <= allowed)  # nan is wrong as well
-    if wrong.any():
-        k = int(wrong.argmax())
-        raise ValueError(
-            f"profile {profile.name!r}: its {name} is {values[k]:.4g} at {_SHARES[k]:.3g} of the "
-            f"duration, where {words} is {wanted[k]:.4g}; check the factors and signs in "
-            "derivatives (d/dt is d/dfraction over the duration)"
-        )
+    names = "angle", "speed", "acceleration"
+    for name, other, value in zip(names, others, table.T[:3], strict=True):
+        words = f"the {name} of derivatives"
+        compared.append((f"{name} by outer(inner(...))", other, value, words, 0.0))
+    for name, values, wanted, words, scale in compared:
+        allowed = _DIFFERENT * max(scale, float(np.abs(wanted).max()), 1e-9)
+        wrong = ~(np.abs(values - wanted) <= allowed)  # nan is wrong as well
+        if wrong.any():
+            k = int(wrong.argmax())
+            raise ValueError(
+                f"profile {profile.name!r}: its {name} is {values[k]:.4g} at {_SHARES[k]:.3g} of "
+                f"the duration, where {words} is {wanted[k]:.4g}; check the factors and signs in "
+                "derivatives (d/dt is d/dfraction over the duration)"
+            )

@@ -105,15 +105,8 @@ class FreeVibration:
     def peak(self, states: ArrayLike) -> Array:
         """F1 [m]: the largest absolute displacement of a tip within the window.
 
-        Parameters
-        ----------
-        states : array_like, shape (2 * modes,) or (n, 2 * modes)
-            On arrival; many of one vibration, or one of each.
-
-        Returns
-        -------
-        ndarray, shape () or (n,)
-            The peaks, between the samples where a tip turns back there.
+        States on arrival have shape (2 * modes,) or (n, 2 * modes), many of one vibration or one of
+        each; the peaks () or (n,), between the samples where a tip turns back there.
         """
         given = np.asarray(states, dtype=float)
         state = given.reshape(-1, 1, given.shape[-1])

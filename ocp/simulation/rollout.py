@@ -32,20 +32,15 @@ class SymbolicRollout:
 
     Attributes
     ----------
-    joints : list of JointMotion
-        The joint at each Gauss node: angle [rad], speed, acceleration.
-    states : list of NodeState
-        The modes at each Gauss node: W [m], W', W'', by mode.
-    torque : list of Expression
-        Joint torque at each Gauss node [N m].
+    joints, states, torque : list
+        Angle [rad], speed and acceleration of the joint at each Gauss node, its torque [N m], and
+        the modes: W [m], W', W''.
     arrival : Expression
         W (m) and then W' (m/s) at arrival, shape (candidates, 2 * modes).
     h : Expression
         Length of every step [s].
-    unbroken : bool
-        Whether the steps are those of a `Grid` from start to end, without breaks between them.
-    definition : Energy
-        What counts as the energy.
+    unbroken, definition
+        Whether no break lies between the steps; what counts as the energy.
     """
 
     joints: list[JointMotion]
@@ -91,8 +86,6 @@ def symbolic_rollout(
 
     Parameters
     ----------
-    plant, profile
-        What moves, and how the joint does.
     coefficients : Expression or sequence of Expression
         The profile's coefficients: a column (SX, MX or DM) of the decision variables, or one
         expression each, a scalar or of shape (candidates, 3 * steps).
@@ -109,11 +102,6 @@ def symbolic_rollout(
         default.
     energy : Energy
         What counts as the energy.
-
-    Returns
-    -------
-    SymbolicRollout
-        The motion, as expressions of the coefficients.
     """
     if isinstance(coefficients, ca.SX | ca.MX | ca.DM):
         coefficients = ca.vertsplit(coefficients)

@@ -1,8 +1,5 @@
 """The nonlinear programs over a profile's coefficients, and the two that solve them.
 
-A `Problem` is a task on its steps (`Transcription`) with what is minimised and limited
-(`Scalarization`); a solver takes problems with starts and gives a `Solution` for each.
-
 - `Ipopt` writes a problem down in CasADi as it stands and leaves its derivatives to CasADi.
 - `Sqp` solves many at once with derivatives of its own: from what happens at one time (`node`)
   over the motion of rows of candidates (`derivatives`, `batch`) to scaled programs (`constraints`,

@@ -32,14 +32,8 @@ takes a tenth off a call, but doubles the time to build it, and grows with the s
 class Kind(NamedTuple):
     """What candidates of one batch have in common.
 
-    Attributes
-    ----------
-    quantities : tuple of Quantity
-        Limited quantities.
-    errors : tuple of str
-        What may differ from the plant in a row, as by `perturb_plant`.
-    breaks : tuple of float
-        Where the motion is not smooth; of values alone.
+    Errors are what may differ from the plant in a row, as by `perturb_plant`; breaks, where the
+    motion is not smooth, are for values alone.
     """
 
     plant: Plant
@@ -164,7 +158,7 @@ class _Differentiated:
         return Step(self.repeat(self.h), response, self.modes, forced)
 
     def march_along(self, along: Step) -> tuple[list[ca.MX], list[ca.MX], ca.MX]:
-        """States before every step, from rest, with a column for each step of each coefficient."""
+        """States before every step, from rest, once for each coefficient."""
         constant = [_swap(x, self.size) for x in along.column(0)]
         W, dW, arrival = march(constant, self.columns, self.shape, width=self.size)
         steps = self.shape[1]

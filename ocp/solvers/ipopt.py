@@ -125,11 +125,21 @@ class _Program:
         tips = [ca.MX.sym("tips", rows, modes) for rows in form.tips]
         weights, width = ca.MX.sym("weights", 2), ca.MX.sym("width")
 
-        rollouts = [_simulate(form, errors, a, row) for errors in form.scenarios]
-        nominal = rollouts[0]
-        arrival = ca.horzcat(*(rollout.arrival.T for rollout in rollouts))
+        start, target, duration, *initial = ca.vertsplit(row)
+        plants = [
+            perturb_plant(form.plant, dict(zip(form.error_names, errors, strict=True)))
+            for errors in form.scenarios
+        ]
+        rollouts = [
+            symbolic_rollout(
+                plant, form.profile, a, (start, target, duration), form.steps,
+                jerk=ask_for_jerk(form.quantities), initial=initial, energy=form.energy,
+            )
+            for plant in plants
+        ]  # fmt: skip
+        nominal, arrival = rollouts[0], ca.horzcat(*(one.arrival.T for one in rollouts))
         missed = arrival - wanted
-        limited = {one.name: _values(form, one, rollouts) for one in form.quantities}
+        limited = {one.name: _values(one, plants, rollouts) for one in form.quantities}
         least, most = form.sides
         energy = ca.if_else(width > 0, _round_off(form.energy, nominal, width), nominal.energy)
 
@@ -157,28 +167,17 @@ class _Program:
 compile_program = lru_cache(maxsize=16)(_Program)
 
 
-def _simulate(form: _Form, errors: Sequence[float], a: ca.MX, row: ca.MX) -> SymbolicRollout:
-    """The motion of one scenario."""
-    start, target, duration, *initial = ca.vertsplit(row)
-    return symbolic_rollout(
-        _perturb(form, errors), form.profile, ca.vertsplit(a), (start, target, duration),
-        form.steps, jerk=ask_for_jerk(form.quantities), initial=initial, energy=form.energy,
-    )  # fmt: skip
-
-
-def _perturb(form: _Form, errors: Sequence[float]) -> Plant:
-    return perturb_plant(form.plant, dict(zip(form.error_names, errors, strict=True)))
-
-
-def _values(form: _Form, quantity: Quantity, rollouts: Sequence[SymbolicRollout]) -> ca.MX:
+def _values(
+    quantity: Quantity, plants: Sequence[Plant], rollouts: Sequence[SymbolicRollout]
+) -> ca.MX:
     """A limited quantity at all nodes, where it asks for that in all scenarios."""
-    counted = rollouts if quantity.in_scenarios else rollouts[:1]
-    values = list[Any]()
-    for rollout, errors in zip(counted, form.scenarios, strict=False):
-        tips = [_perturb(form, errors).tip_displacements(state.W) for state in rollout.states]
-        for node in zip(rollout.joints, tips, rollout.torque, strict=True):
-            values += quantity.of(*node)
-    return ca.veccat(*(ca.MX.zeros(1, form.steps) + value for value in values))
+    values, scenarios = list[Any](), len(plants) if quantity.in_scenarios else 1
+    for plant, rollout in zip(plants[:scenarios], rollouts[:scenarios], strict=True):
+        for joint, state, torque in zip(
+            rollout.joints, rollout.states, rollout.torque, strict=True
+        ):
+            values += quantity.of(joint, plant.tip_displacements(state.W), torque)
+    return ca.veccat(*(ca.MX.zeros(*rollouts[0].h.shape) + value for value in values))
 
 
 def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:

@@ -35,23 +35,19 @@ def third_opinion(case):
 
 @pytest.fixture(params=range(len(CASES)))
 def case(request, plants):
-    """A task, coefficients of the polynomial, and the third opinion of them."""
+    """A candidate, and the third opinion of it."""
     name, a, start, target, duration = CASES[request.param]
     task = qa.PointToPoint(plants[name], target, duration, start=start)
-    return task, a, third_opinion(request.param)
+    candidate = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a)
+    return candidate, third_opinion(request.param)
 
 
-def test_scipy_agrees(case):
-    task, a, other = case
-    motion = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a).motion
+def test_scipy_agrees_on_what_a_motion_costs_and_asks_of_the_joint(case):
+    candidate, other = case
+    task, motion = candidate.task, candidate.motion
     assert motion.energy == pytest.approx(other.energy, rel=1e-9)
     # The samples after arrival miss 1.2e-6 of a peak at most.
     assert motion.residual == pytest.approx(other.residual, rel=3e-6)
-
-
-def test_scipy_agrees_on_the_diagnostics(case):
-    task, a, other = case
-    motion = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a).motion
     times = np.linspace(0.0, task.duration, 4001)
     joint, states = np.array(other.joint(times)).T, other.during.sol(times)
     torque = np.ravel(other.torque(joint.T, states))
@@ -71,10 +67,11 @@ def test_scipy_agrees_on_the_diagnostics(case):
 
 
 def test_scipy_agrees_at_every_sample(case):
-    (task, a, other), duration = case, case[0].duration
+    candidate, other = case
+    task, duration = candidate.task, candidate.task.duration
     moving, resting = np.linspace(0, duration, 50), np.linspace(duration + 0.01, duration + 1, 50)
     times = np.concatenate([moving, resting])
-    found = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a).sample(times)
+    found = candidate.sample(times)
     states = np.hstack([other.during.sol(moving), other.after.sol(resting)])
     joint = np.vstack([np.array(other.joint(moving)).T, [(task.target, 0.0, 0.0)] * 50])
     torque = np.ravel(other.torque(joint.T, states))
@@ -83,5 +80,5 @@ def test_scipy_agrees_at_every_sample(case):
     assert found.tips == pytest.approx(other.phi * states[: other.modes].T, abs=3e-9)
     assert found.torque == pytest.approx(torque, abs=1e-8)
     assert found.power == pytest.approx(torque * joint[:, 1], abs=1e-7)
-    alone = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a).sample(times[20])
+    alone = candidate.sample(times[20])
     assert alone.modes[0] == pytest.approx(found.modes[20], abs=1e-9)

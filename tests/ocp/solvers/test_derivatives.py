@@ -22,42 +22,44 @@ PROFILES = {
 }
 ENERGIES = {"absolute": ABSOLUTE_POWER, "mixed": 0.5 * ABSOLUTE_POWER + CopperLoss(0.3)}
 CASES = [
-    ("single link", "polynomial", "absolute"),
-    ("arm", "polynomial", "mixed"),
-    ("arm", "gaussians", "absolute"),
-    ("arm", "spline", "mixed"),
-    ("two links", "network", "absolute"),
-    ("two links", "polynomial", "absolute"),
+    ("single link", "polynomial", "absolute", ()),
+    ("arm", "polynomial", "mixed", ("frequency", "damping")),
+    ("arm", "gaussians", "absolute", ()),
+    ("arm", "spline", "mixed", ("omega",)),
+    ("two links", "network", "absolute", ("frequency",)),
+    ("two links", "polynomial", "absolute", ()),
 ]
+ERRORS = [0.08, -0.2]
 
 
-@pytest.fixture(params=CASES, ids=" ".join)
+@pytest.fixture(params=CASES, ids=lambda case: f"{case[0]} {case[1]} {case[2]} {case[3]}")
 def case(request, plants):
-    """A batch, and energy, arrival and limited quantities as CasADi differentiates them."""
-    plant, profile, energy = request.param
+    """A batch, and energy, arrival and limited quantities as CasADi differentiates them.
+
+    The plant has errors and is ringing when the move begins.
+    """
+    plant, profile, energy, names = request.param
     plant, profile, energy = plants[plant], PROFILES[profile], ENERGIES[energy]
     quantities = (*QUANTITIES.values(), LINE.quantity)
+    made = batch(plant, profile, STEPS, quantities, names, energy)
+    plant = qa.perturb_plant(plant, dict(zip(names, ERRORS, strict=False)))
     a, width = ca.MX.sym("a", profile.size), ca.MX.sym("width")
-    rollout = symbolic_rollout(plant, profile, ca.vertsplit(a), MOVE, STEPS, jerk=True)
-    speeds = [joint.speed for joint in rollout.joints]
+    rollout = symbolic_rollout(
+        plant, profile, a, MOVE, STEPS, jerk=True, initial=_ringing(plant.modes)
+    )
+    nodes = list(zip(rollout.joints, rollout.states, rollout.torque, strict=True))
     smooth = integrated(
-        [energy.smooth(*node) for node in zip(rollout.torque, speeds, strict=True)], rollout.h
+        [energy.smooth(torque, joint.speed) for joint, _, torque in nodes], rollout.h
     )
     rounded = integrated([ca.sqrt(p * p + width**2) for p in rollout.power], rollout.h)
     # the fast solver's steps do not ask their neighbours
     sharp = resolved_energy(rollout.power, rollout.h)
     values = ca.veccat(*(
-        ca.MX.zeros(1, STEPS) + value
+        ca.MX.zeros(1, STEPS) + quantity.of(joint, plant.tip_displacements(state.W), torque)[i]
         for quantity in quantities
         for i in range(quantity.rows(plant))
-        for value in (
-            quantity.of(joint, plant.tip_displacements(state.W), torque)[i]
-            for joint, state, torque in zip(
-                rollout.joints, rollout.states, rollout.torque, strict=True
-            )
-        )
+        for joint, state, torque in nodes
     ))  # fmt: skip
-    made = batch(plant, profile, STEPS, quantities, energy=energy)
     symbols = {
         "a": a,
         "width": width,
@@ -69,6 +71,10 @@ def case(request, plants):
     return made, symbols
 
 
+def _ringing(modes):
+    return [0.01, -0.02, 0.1, 0.2][: 2 * modes]
+
+
 @pytest.fixture
 def candidate(case):
     made, _ = case
@@ -77,9 +83,9 @@ def candidate(case):
 
 
 def _found(made, candidate, width, multipliers=None):
-    modes = 2 * made.kind.plant.modes
-    move = np.array([[*MOVE, *np.zeros(modes)]])
-    return made.derivatives(candidate[None], move, np.zeros((1, 0)), np.array([width]), multipliers)
+    move = np.array([[*MOVE, *_ringing(made.kind.plant.modes)]])
+    errors = np.array([ERRORS[: len(made.kind.errors)]])
+    return made.derivatives(candidate[None], move, errors, np.array([width]), multipliers)
 
 
 def _expected(symbols, expressions, candidate, width):
@@ -108,13 +114,14 @@ def test_values_and_first_derivatives(case, candidate, name, width):
         assert one.ravel() == pytest.approx(other.ravel(), rel=1e-9, abs=1e-10 * scale)
 
 
-def test_the_hessian_of_the_lagrangian(case, candidate):
-    # rounded off: of the sharp energy CasADi's second derivatives have no bound where zeros meet
+@pytest.mark.parametrize(("share", "width"), [(1.0, 0.3), (0.0, 0.0)])
+def test_the_hessian_of_the_lagrangian(case, candidate, share, width):
+    # Rounded off: of the sharp energy CasADi's second derivatives have no bound where zeros meet.
     made, symbols = case
-    random, a, width = np.random.default_rng(3), symbols["a"], 0.3
+    random, a = np.random.default_rng(3), symbols["a"]
     weights = {name: random.normal(size=symbols[name].numel()) for name in ("arrival", "limited")}
-    multipliers = Multipliers(np.ones(1), weights["arrival"][None], weights["limited"][None])
-    lagrangian = symbols["rounded"] + sum(
+    multipliers = Multipliers(np.full(1, share), weights["arrival"][None], weights["limited"][None])
+    lagrangian = share * symbols["rounded"] + sum(
         ca.dot(ca.DM(weight), symbols[name]) for name, weight in weights.items()
     )
     (expected,) = _expected(symbols, [ca.hessian(lagrangian, a)[0]], candidate, width)
