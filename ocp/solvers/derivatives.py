@@ -6,7 +6,6 @@ of all steps stand once for each coefficient.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -200,20 +199,19 @@ class _Differentiated:
         self, energy: EnergyDerivatives, of_outputs: list[ca.MX], of_forcing: list[ca.MX]
     ) -> tuple[list[ca.MX], list[ca.MX]]:
         """Sensitivities, and what second derivatives make of them: their product is the Hessian."""
-        steps, pairs = self.shape[1], list[tuple[ca.MX, ca.MX]]()
+        steps, pairs = self.shape[1], list[tuple[Any, Any]]()
         power_a = [outputs[0] for outputs in self.o_a]
         l_vv = self.node.hessian(self.point, [*of_forcing, *of_outputs])
         for v_a, table in zip(self.v_a, self.along(l_vv), strict=True):
             turned = product(table, v_a, self.count)
             pairs += [(v_a[i], turned[i]) for i in sorted({row for row, _ in table})]
         at_nodes = ca.horzsplit(self.of_energy * energy.by_power_twice, steps)
-        bends = list(zip(at_nodes, power_a, strict=True))
+        bends: list[tuple[Any, Any]] = list(zip(at_nodes, power_a, strict=True))
         for weights, bend in energy.zeros:
             terms = zip(map(self.repeat, weights), power_a, strict=True)
             bends.append((self.of_energy[:, :steps] * bend, sum(w * x for w, x in terms)))
         pairs += [(x, self.repeat(bend) * x) for bend, x in bends]
-        left, right = zip(*pairs, strict=True)
-        return left, right
+        return [left for left, _ in pairs], [right for _, right in pairs]
 
     def path_hessian(self, of_outputs: list[ca.MX], of_forcing: list[ca.MX]) -> list[ca.MX]:
         """What the path's own second derivatives add to the Hessian."""
@@ -224,8 +222,8 @@ class _Differentiated:
         by_forcing = product(transpose(self.f_y), of_forcing, count)
         of_y = [x + y for x, y in zip(by_outputs, by_forcing, strict=True)]
         y_aa, zero = self.path.hessian(self.a, self.move, of_y), ca.MX.zeros(self.shape[0], 1)
-        places = itertools.product(range(self.size), repeat=2)
-        return [ca.sum2(y_aa[place]) if place in y_aa else zero for place in places]
+        every = range(self.size)
+        return [ca.sum2(y_aa[i, k]) if (i, k) in y_aa else zero for i in every for k in every]
 
     def compile(self) -> ca.Function:
         """All of it as a function."""

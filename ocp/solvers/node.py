@@ -43,7 +43,7 @@ def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
     }
 
 
-def hessian(expression: ca.MX, by: Sequence[ca.MX]) -> Table:
+def hessian(expression: Any, by: Sequence[ca.MX]) -> Table:
     """Second derivatives of an expression."""
     (gradient,) = ca.reverse([expression], [*by], [[ca.MX.ones(*expression.shape)]])
     upper = {
@@ -119,7 +119,7 @@ class Path:
         """The values y at the nodes."""
         return self._value.call([*a, self._times, *move], True, False)
 
-    def jacobian(self, a: Sequence[ca.MX], move: Sequence[ca.MX]) -> dict[tuple[int, int], Any]:
+    def jacobian(self, a: Sequence[Any], move: Sequence[ca.MX]) -> dict[tuple[int, int], Any]:
         """Derivatives of y by the coefficients; numbers where y is linear."""
         one = [ca.DM.ones(*self._times.shape)]
         given = (one * len(a), [self._times], one * 3) if self.linear else (a, [self._times], move)
