@@ -36,7 +36,7 @@ def _names(text: str) -> tuple[str, ...]:
 
 @command()
 @click.argument("files", nargs=-1, type=INPUT, metavar="FILE...")
-@option("--baselines", type=Parsed("names", _names), default=(),
+@option("--baselines", type=Parsed("names", _names),
         help="Plans: add these for the same move, as zvd,ruckig; or all.")  # fmt: skip
 @error_option
 @option("--samples", default=2000, help="Plans: random plants for the percentiles.")
@@ -46,7 +46,7 @@ def _names(text: str) -> tuple[str, ...]:
 @output_option({FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"})
 def compare(
     files: tuple[Path, ...],
-    baselines: tuple[str, ...],
+    baselines: tuple[str, ...] | None,
     errors: tuple[tuple[str, float], ...],
     samples: int,
     reference: Path | None,
@@ -76,7 +76,7 @@ def compare(
         fronts = {name: one for name, one in answers.items() if isinstance(one, Front)}
         if plans:
             refuse_typed(_OF_FRONTS, "is for fronts; leave it out")
-            report = _of_plans(plans, baselines, once(errors, "--error "), samples)
+            report = _of_plans(plans, baselines or (), once(errors, "--error "), samples)
         else:
             refuse_typed(_OF_PLANS, "is for plans; leave it out")
             report = _of_fronts(fronts, reference, free)
