@@ -172,8 +172,8 @@ bound_option = option(
 )  # fmt: skip
 residual_limit_option = option(
     "--residual-limit", type=LENGTH,
-    help="Largest tip displacement after arrival. [default: at rest; with --error 5 % of how far "
-    "the plain cycloid bends the tip on its way]",
+    help="Largest tip displacement after arrival. [default: at rest; with --error 5 % of the "
+    "plain cycloid's largest deflection, or less]",
 )  # fmt: skip
 seed_option = option("--seed", default=0, help="Seed of the random numbers; the first of several.")
 starts_option = option("--starts", default=4, help="Starts of the solver.")

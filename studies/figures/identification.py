@@ -32,8 +32,8 @@ def identification_figure(found: Identified, recordings: Sequence[Recording]) ->
     Returns
     -------
     matplotlib.figure.Figure
-        A row a part: measured and fitted over time, below it what is left; beside it the spectrum
-        of what is left. At the end, of several parts, the first parameter of each, and the
+        A row a part: measured and fitted over time, below it the residuals; beside them their
+        spectrum. At the end, of several parts, the first parameter of each, and the
         intervals of the mean and of the next swing.
     """
     drawn = found.parts[:_MOST]
@@ -53,7 +53,7 @@ def identification_figure(found: Identified, recordings: Sequence[Recording]) ->
 
 
 def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Recording]) -> None:
-    """Measured and fitted, what is left, and its spectrum."""
+    """Measured and fitted, the residuals, and their spectrum."""
     grid = row.add_gridspec(2, 2, width_ratios=(2.2, 1), height_ratios=(2, 1))
     over = row.add_subplot(grid[0, 0])
     left = row.add_subplot(grid[1, 0], sharex=over)
@@ -66,15 +66,17 @@ def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Rec
     piece = recording.part(recording.rows(part.begin, part.end))
     over.plot(piece.time, piece.values[:, 0], color=GREY, linewidth=2.2, label="measured")
     over.plot(time, fitted, color=BLUE, linewidth=1.0, label="fitted")
-    over.set_title(f"{part.recording}, {part.begin:.3g} to {part.end:.3g} s: {part.misfit:.1%} "
-                   f"left, noise {part.noise:.1%}", loc="left", fontsize=8)  # fmt: skip
+    over.set_title(
+        f"{part.recording}, {part.begin:.3g} to {part.end:.3g} s: misfit {part.misfit:.1%}, "
+        f"noise {part.noise:.1%}", loc="left", fontsize=8,
+    )  # fmt: skip
     quantity = next(iter(recording.signals))
     over.set_ylabel(f"{quantity}\n[{_UNITS[quantity]}]", fontsize=8)
     over.tick_params(labelbottom=False)
     gap = np.append(np.diff(time) > 3 * np.median(np.diff(time)), False)
     left.plot(time, np.where(gap, np.nan, 100 * residual / size), color=RED, linewidth=0.6)
     left.axhline(0, color="0.3", linewidth=0.5)
-    left.set_ylabel("left [%]", fontsize=8)
+    left.set_ylabel("residual [%]", fontsize=8)
     left.set_xlabel("time [s]", fontsize=8)
     at, amplitude = spectrum_of(time[model.kept], residual[model.kept, None])
     spectrum.loglog(at[1:], 100 * amplitude[1:] / size + 1e-9, color=RED, linewidth=0.7)
@@ -83,7 +85,7 @@ def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Rec
     for axis in (spectrum.xaxis, spectrum.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("")
-    spectrum.set_title("spectrum of what is left", loc="left", fontsize=8)
+    spectrum.set_title("spectrum of the residuals", loc="left", fontsize=8)
     spectrum.set_xlabel("frequency [Hz]", fontsize=8)
     spectrum.set_ylabel("[% of the swing]", fontsize=8)
     for ax in (over, left, spectrum):

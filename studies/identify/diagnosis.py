@@ -56,32 +56,32 @@ def cause_of(
         if misfit < max(_MUCH, 4 * noise):
             return "", ""
         return "misfit", (
-            f"{misfit:.0%} of the swing is left, and its noise is {noise:.0%}: it is no free decay "
-            "of one mode; look at the picture, and name the part that is by --part"
+            f"the misfit is {misfit:.0%} of the swing, and its noise {noise:.0%}: it is no free "
+            "decay of one mode; look at the picture, and name the part that is by --part"
         )
     band = np.digitize(at, [0.6 * frequency, 1.5 * frequency])
     most = int(np.bincount(band, excess).argmax())
     peak = float(at[(excess * (band == most)).argmax()])
     ratio = peak / frequency
-    left_words = f"{share:.1%} of the swing is left beside the noise"
+    misfit_words = f"a misfit of {share:.1%} of the swing beside the noise"
     if most == 0:
         return "drift", (
-            f"{left_words}, below the swing at {peak:.3g} Hz: the sensor drifts, the base sways, "
+            f"{misfit_words}, below the swing at {peak:.3g} Hz: the sensor drifts, the base sways, "
             "or the hub moves; fix them, or name the joint's angle by --angle"
         )
     if most == 1:
         return "amplitude", (
-            f"{left_words}, at the swing's own frequency: frequency or damping change with the "
+            f"{misfit_words}, at the swing's own frequency: frequency or damping change with the "
             f"amplitude, a second mode is near ({peak:.3g} Hz), or the hub gives way; name its "
             "angle by --angle, or push as hard as your moves do"
         )
     if abs(ratio - round(ratio)) < 0.04 and round(ratio) in (2, 3, 5):
         return "harmonic", (
-            f"{left_words}, at {round(ratio)} times the swing's frequency ({peak:.4g} Hz): the "
+            f"{misfit_words}, at {round(ratio)} times the swing's frequency ({peak:.4g} Hz): the "
             "sensor or the link is not linear, as one that saturates; push less"
         )
     return "mode", (
-        f"{left_words}, at {peak:.4g} Hz: a second mode; plan with it (--set mode_count=2, where "
+        f"{misfit_words}, at {peak:.4g} Hz: a second mode; plan with it (--set mode_count=2, where "
         "the plant has it), or keep to a band below it"
     )
 

@@ -143,7 +143,7 @@ def _wholes(
     if least > _BAD:
         raise ValueError(
             f"{found[0].recording}: with no {' and '.join(names)} does {plant.name} move so, "
-            f"{least:.0%} of the swing is left; check columns and units"
+            f"the misfit is {least:.0%} of the swing; check columns and units"
         )
     return found
 

@@ -254,7 +254,7 @@ class PartFitter:
         if best.delay and part.hub == "moves" and best.misfit > _MORE * noise:
             side = "late" if best.delay > 0 else "early"
             return replace(part, cause="delay", warning=(
-                f"{best.misfit:.1%} of the swing is left, less if the angle were not "
+                f"the misfit is {best.misfit:.1%} of the swing, less if the angle were not "
                 f"{abs(best.delay) * 1e3:.3g} ms {side}: record both by one clock"
             ))  # fmt: skip
         damping = float(best.p[self._dampings].max(initial=0.0))

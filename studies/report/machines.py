@@ -45,9 +45,9 @@ def prediction_rows(plant: Plant, predictions: Sequence[Prediction]) -> list[Row
     """How much of each ring-down a machine predicts."""
     rows = [("plant", plant.name)]
     for one in predictions:
-        worst = f"at worst {max(one.worst, 0):.1%} from {one.worst_at:.3g} s on"
+        least = f"at least {max(one.worst, 0):.1%}, from {one.worst_at:.3g} s on"
         rows.append((one.recording, f"{one.begin:.3g} to {one.end:.3g} s: {one.share:.1%} of the "
-                     f"swing predicted over five periods, {worst}; by itself {one.frequency:.4g} Hz"
+                     f"swing predicted over five periods, {least}; by itself {one.frequency:.4g} Hz"
         ))  # fmt: skip
     return rows
 
@@ -56,7 +56,7 @@ def machine_notes(found: Identified, held: bool) -> list[str]:
     """What is to be known before the intervals are believed; of a joint that is taken as held."""
     given = _as_given(found)
     notes = [
-        "Left: root mean square of what the fit leaves, as a share of the swing's; and the noise's."
+        "Misfit: root mean square of the residuals, as a share of the swing's; likewise the noise."
     ]
     if given:
         notes.append(
@@ -106,12 +106,11 @@ def _by_amplitude(found: Identified, one: Estimate) -> str:
 
 def _part(plant: Plant, part: Part) -> str:
     values = ", ".join(_short(plant, name, value) for name, value in part.values.items())
-    left = f"{part.misfit:.1%} left, noise {part.noise:.1%}"
-    saturated = f"; {part.saturated} saturated samples left out" if part.saturated else ""
-    drift = "; a slow motion left out" if part.drifts else ""
-    return (
-        f"{part.begin:.3g} to {part.end:.3g} s: {values}, {left}{_HUB[part.hub]}{saturated}{drift}"
-    )
+    misfit = f"misfit {part.misfit:.1%}, noise {part.noise:.1%}"
+    saturated = f"; {part.saturated} saturated samples excluded" if part.saturated else ""
+    drift = "; a slow drift excluded" if part.drifts else ""
+    span = f"{part.begin:.3g} to {part.end:.3g} s"
+    return f"{span}: {values}, {misfit}{_HUB[part.hub]}{saturated}{drift}"
 
 
 def _short(plant: Plant, name: str, value: float) -> str:
