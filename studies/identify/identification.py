@@ -151,12 +151,12 @@ def _wholes(
 def _not_identifiable(
     each: Sequence[tuple[Recording, float]], plant: Plant, names: Sequence[str]
 ) -> dict[str, str]:
-    """The parameters that recordings of moving joints cannot tell, and why."""
+    """The parameters that recordings of moving joints do not identify, and why."""
     for one, _ in each:
         if not moves(one):
             raise ValueError(
-                f"{one.name}: the joint does not move, and what is sought shows while it moves "
-                "alone; record its angle during a move"
+                f"{one.name}: the joint does not move, and these parameters only matter while it "
+                "does; record its angle during a move"
             )
     J = np.concatenate([PartFitter(plant, names, *one).sensitivities() for one in each])
     largest = np.linalg.norm(J, axis=0).max()
