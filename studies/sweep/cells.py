@@ -64,13 +64,8 @@ def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) 
         return rows
     random = np.random.default_rng(seed)
     checked = random.choice(solved, -(-len(solved) // _CHECKED), replace=False).tolist()
-    cold = dict(
-        zip(
-            checked,
-            plan_energies(definition, [tasks[k] for k in checked], _COLD_STARTS),
-            strict=True,
-        )
-    )
+    energies = plan_energies(definition, [tasks[k] for k in checked], _COLD_STARTS)
+    cold = dict(zip(checked, energies, strict=True))
     if any(rows[k]["energy"] > (1 + _ABOVE) * energy for k, energy in cold.items()):
         others = _plan(definition, tasks, _COLD_STARTS)
         rows = [min(both, key=lambda row: row.get("energy", np.inf))
