@@ -187,8 +187,8 @@ class Page:
             self._explored, words, colour = change(now), then, GREY
         except (ValueError, QuietarmError) as error:
             words, colour = str(error), RED
-        self._say(words, colour)
         self._show()
+        self._say(words, colour)  # when all is shown
         return colour == GREY
 
     def _say(self, words: str, colour: str = GREY) -> None:
