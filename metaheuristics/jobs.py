@@ -121,7 +121,7 @@ class Job:
             method, polish = method.removesuffix(POLISH), method.endswith(POLISH)
             size = PRESETS[method].evaluations(population or PRESETS[method].population, 1)
         budget = min(budget, _REHEARSAL * size) if rehearse else budget
-        if callable(method) and not _is_algorithm(method):
+        if _is_function(method):
             function = problem.recorded(budget)
             with suppress(BudgetSpentError):
                 method(function, self.seed, budget)
@@ -140,8 +140,9 @@ def method_name(method: Method) -> str:
     return getattr(method, "__name__", type(method).__name__)
 
 
-def _is_algorithm(method: Method) -> bool:
-    return hasattr(method, "infill")
+def _is_function(method: Method) -> bool:
+    """Whether it is one's own function, not an algorithm of pymoo."""
+    return callable(method) and not hasattr(method, "infill")
 
 
 def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting]) -> int | None:

@@ -90,7 +90,7 @@ class RecordedFunction(MoveFunction):
         self.failed += int(failed.sum())
         self.infeasible += int((broken & ~failed).sum())
         if len(afforded):
-            self.archive.add(afforded, found, ~(failed | broken))
+            self.archive.add(afforded, found, np.logical_not(failed | broken))
         if len(afforded) < len(table):
             raise BudgetSpentError
         return found, violations

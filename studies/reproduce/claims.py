@@ -264,7 +264,7 @@ def _choices(result: Reproduction) -> Judged:
         rows.append({
             case.search_label: name, "seeds": len(energies), "energy": _words(found),
             "above the printed": int((excess > 0).sum()),
-            "Wilcoxon's p of the printed": wilcoxon(excess).pvalue if len(excess) > 1 else None,
+            "Wilcoxon's p of the printed": wilcoxon(excess)[1] if len(excess) > 1 else None,
         })  # fmt: skip
     agree = rows[0]["above the printed"] in (0, rows[0]["seeds"])
     return agree and old.energies.median <= printed, pd.DataFrame(rows)
