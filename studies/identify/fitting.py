@@ -75,7 +75,7 @@ class Model:
 
     def fitted(self, p: Array, rows: NDArray[np.bool_] | None = None) -> Array:
         """The signals that are nearest to some rows by some parameters (rows, signals)."""
-        B, _ = self._columns(p.tobytes(), False)
+        B, _ = self._last(p.tobytes(), False)
         return _products(B, self.amplitudes(B, self.kept if rows is None else rows)).T
 
     def cost(self, p: Array) -> float:
@@ -169,6 +169,9 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
             break
     time, weighed = model.time[model.kept], residual / deviation
     J = (model.jacobian(x, count) / deviation[..., None]).reshape(-1, len(x))
+    size = np.linalg.norm(J, axis=0)
+    size[size == 0] = 1.0
+    J /= size  # units apart: else the pseudo-inverse takes a small one for none
     power = _power_near(time, weighed, frequency, len(x))
     covariance: Any = np.linalg.pinv(J.T @ J, hermitian=True) * power
     B, _, amplitudes = model.evaluate(x, count)
@@ -177,7 +180,7 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
     if model.driven:
         later = np.gradient(_products(B[..., :1], amplitudes[:, :1]), time, axis=1) / deviation
         delay = _delay(weighed.ravel(), later.ravel(), J)
-    deviations = np.sqrt(np.diag(covariance))[:count]
+    deviations = (np.sqrt(np.diag(covariance)) / size)[:count]
     return Fit(x[:count], deviations, model, swinging.T, residual.T, delay)
 
 

@@ -9,6 +9,7 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
+from quietarm.models.joint_motion import ROTARY
 from quietarm.studies.identify.diagnosis import cause_of, exceeds, saturated
 from quietarm.studies.identify.fitting import Fit, Model, fit
 from quietarm.studies.identify.machine import Part
@@ -35,7 +36,7 @@ _SLOW = 0.25
 _FAR = 4.0
 """A quarter of a period belongs to a swing where it leaves less than so many times the usual."""
 _MUCH_DAMPING = 0.12
-"""More than a held beam has; a controller that gives way damps like that."""
+"""More than a held beam has, that turns; a controller that gives way damps like that."""
 _DAMPINGS = (0.002, 0.01, 0.03, 0.08, 0.2, 0.4)
 _STARTS = 2
 """Of whole recordings."""
@@ -170,8 +171,8 @@ class PartFitter:
             tried, other = self._met(replace(part, saturated=int(flat.sum()), values={}), best.p)
             tried, other = self._met(tried, other.p)
             if exceeds(piece.values, other.model.fitted(other.p), flat):
-                return tried
-        if moves(piece):
+                part, best = tried, other
+        if moves(piece) and not part.saturated:
             tried, other = self._met(replace(part, hub="creeps"), best.p)
             if (other.residual.std(axis=0) < _HELPS * best.residual.std(axis=0)).any():
                 part, best = tried, other
@@ -257,14 +258,16 @@ class PartFitter:
                 f"the misfit is {best.misfit:.1%} of the swing, less if the angle were not "
                 f"{abs(best.delay) * 1e3:.3g} ms {side}: record both by one clock"
             ))  # fmt: skip
+        cause, warning = cause_of(time, best.residual, best.swinging, self.frequency, noise)
         damping = float(best.p[self._dampings].max(initial=0.0))
-        if damping > _MUCH_DAMPING and self.recording.angle is None:
-            return replace(part, cause="hub", warning=(
+        held = self.recording.angle is None and self.plant.joint == ROTARY
+        if not cause and held and damping > _MUCH_DAMPING:
+            cause = "hub"
+            warning = (
                 f"a damping ratio of {damping:.2g} is more than a beam on a held joint has: a "
                 "controller that gives way damps like that, and shifts the frequency; hold the "
                 "joint, or name its angle by --angle"
-            ))  # fmt: skip
-        cause, warning = cause_of(time, best.residual, best.swinging, self.frequency, noise)
+            )
         return replace(part, cause=cause, warning=warning)
 
 

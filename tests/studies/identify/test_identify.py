@@ -11,6 +11,7 @@ from scipy.signal import StateSpace, lsim
 
 import quietarm as qa
 
+# alpha1 is above alpha2 * beta1, else it has no inertia and is refused as a plant
 LINK = qa.SingleLinkManipulator(
     alpha1=0.05, alpha2=0.1, c=0.05, omega=12.0, zeta=0.02, beta1=0.3, phi=2.0
 )
@@ -105,6 +106,17 @@ def test_intervals_cover_the_truth():
     assert hits >= 17
 
 
+def test_the_unit_of_a_signal_changes_no_interval():
+    t = np.arange(0, 6, 0.005)
+    each = [
+        beam(qa.Recording(t, tip=unit * noisy(decay(t), 0.02))).estimates for unit in (1.0, 1e-11)
+    ]
+    for one, other in zip(*each, strict=True):
+        assert other.value == pytest.approx(one.value, rel=1e-6)
+        assert other.error == pytest.approx(one.error, rel=1e-3)
+        assert other.error > 0
+
+
 def test_a_simulation_without_noise_is_identified_exactly():
     each = [qa.Recording(TIME, tip=decay(TIME, amplitude=a), name=str(a)) for a in (10, 20)]
     found = beam(*each)
@@ -141,6 +153,15 @@ def test_saturated_and_missing_samples_are_left_out():
     assert found.plant.zeta == pytest.approx(0.01, rel=0.03)
 
 
+def test_a_drift_is_left_out_of_a_saturated_signal_too():
+    t = np.arange(0, 8, 0.005)
+    tip = np.clip(noisy(decay(t) + 1.5 * np.sin(math.pi * t), 0.01), -10, 10)
+    (part,) = beam(qa.Recording(t, tip=tip)).parts
+    assert part.saturated > 100
+    assert part.drifts
+    assert (part.cause, part.values["zeta"]) == ("", pytest.approx(0.01, rel=0.03))
+
+
 def soft_hub(stiffness):
     """A beam of 1.83 Hz and 0.006 on a hub under a soft controller: time, hub and tip."""
     w, t = 2 * math.pi * 1.83, np.arange(0, 10, 0.002)
@@ -158,10 +179,23 @@ def test_a_hub_that_swings_with_the_tip_is_part_of_the_model():
     alone = beam(qa.Recording(t, tip=noisy(tip, 0.002)))
     assert not holds(alone, 1.83)  # a clean swing, of the hub and the beam together
     assert causes(alone) == {"hub"}  # but damped as no beam is
+    with pytest.raises(ValueError, match="more than a beam on a held joint has"):
+        _ = alone.errors
     found = beam(qa.Recording(t, noisy(angle, 0.001), noisy(tip, 0.002)))
     assert found.plant.omega == pytest.approx(2 * math.pi * 1.83, rel=2e-3)
     assert found.plant.zeta == pytest.approx(0.006, abs=2e-3)
     assert found.parts[0].hub == "moves"
+
+
+def test_a_carriage_may_be_damped_more_than_a_beam():
+    each = [
+        qa.Recording(TIME, tip=noisy(decay(TIME, 12, 0.15), 0.005, seed), name=f"{seed}")
+        for seed in (0, 1)
+    ]
+    found = qa.identify(each, qa.LinearAxis())
+    assert causes(found) == set()
+    assert found.plant.zeta1 == pytest.approx(0.15, rel=0.02)
+    assert 0 < found.errors["zeta1"] < 0.1
 
 
 def test_an_encoder_that_flickers_stands():
@@ -170,6 +204,7 @@ def test_an_encoder_that_flickers_stands():
     tip = noisy(decay(t), 0.02)
     by_angle, without = beam(qa.Recording(t, counts, tip)), beam(qa.Recording(t, tip=tip))
     assert by_angle.plant == without.plant
+    assert by_angle.parts[0].hub == ""
 
 
 def test_the_push_of_the_joint_shows_while_it_moves(moved):
