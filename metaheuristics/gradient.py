@@ -83,7 +83,7 @@ def polished(front: Front) -> Front:
     method = f"{front.record.method}+polish"
     if not front.points:
         return front.restated(method=method)
-    better = replace(polish_front(front).front, history=front.history)
+    better = polish_front(front).front
     return _with_cost(better.restated(method=method), before, began, front.record.seconds)
 
 

@@ -58,7 +58,8 @@ class Record:
     seed : int or None
         Seed of the random numbers.
     evaluations, iterations : int
-        Candidates that a search evaluated; iterations of the gradient's solver.
+        Candidates that a search evaluated; iterations of the gradient's solver in the solves
+        that led to the answer.
     versions : mapping of str to str
         Versions of the software.
     seconds : float

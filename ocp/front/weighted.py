@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,6 +114,7 @@ def _minimise(ends: Ends, of_residual: float, of_energy: float, starts: Sequence
     # far starts lead past a dearer minimum, near ones keep to the minimum beside them
     found = [best_of_starts([problem], [starts], solver, warm=warm)[0] for warm in (False, True)]
     best = min(found, key=lambda one: objective_of(one, problem.scalarization))
+    best = replace(best, iterations=sum(one.iterations for one in found))
     return best, {"residual_weight": of_residual, "energy_weight": of_energy}
 
 

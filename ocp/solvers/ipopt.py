@@ -1,6 +1,7 @@
 """The independent answer: a problem written down in CasADi as it stands, and solved by IPOPT.
 
-All derivatives are CasADi's own. It shares the symbolic simulation with `Sqp`, and nothing else.
+All derivatives are CasADi's own. It shares with `Sqp` the symbolic simulation and what a task says:
+weights, limits, the rows of the residual, how multipliers become shadow prices.
 Unknowns are the coefficients a and, where a peak is minimised, that peak p:
 
     minimise    weight * energy(a) + weight * p

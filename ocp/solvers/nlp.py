@@ -75,14 +75,12 @@ def run_ipopt(
     bounds: Bounds,
     constraint_bounds: Bounds,
     parameters: NDArray[np.float64],
-    multipliers: NDArray[np.float64] | None = None,
 ) -> Stop:
     """Run IPOPT from a point, within lower and upper bounds of unknowns and of constraints."""
-    known = {} if multipliers is None else {"lam_g0": multipliers}
     with keep_interrupts(), silent_errors():  # casadi warns of every failure
         result = solver(
             x0=start, lbx=bounds[0], ubx=bounds[1], lbg=constraint_bounds[0],
-            ubg=constraint_bounds[1], p=parameters, **known,
+            ubg=constraint_bounds[1], p=parameters,
         )  # fmt: skip
     x, of_constraints = (result[name].full().ravel() for name in ("x", "lam_g"))
     stats = solver.stats()

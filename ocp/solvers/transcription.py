@@ -107,8 +107,9 @@ class Transcription:
         return {RESIDUAL: float(max(tips)), **limited}
 
     def peak(self, of: Derivatives, name: str) -> float:
-        """The peak of a limited quantity of the nominal plant [SI unit]."""
-        values = of.limited[0, self.batch.places[name]]
+        """The peak of a limited quantity [SI unit], in the scenarios where its limit counts."""
+        counted = slice(None if self.limits[name].quantity.in_scenarios else 1)
+        values = of.limited[counted, self.batch.places[name]]
         return float(self.limits[name].peak(values.min(), values.max()))
 
 

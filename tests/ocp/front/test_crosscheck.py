@@ -5,7 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from moves import CASES
-from quietarm.ocp import CycloidPolynomial, cross_check, epsilon_front
+from quietarm.ocp import (
+    Candidate,
+    CycloidPolynomial,
+    Uncertainty,
+    cross_check,
+    epsilon_front,
+)
 
 
 @pytest.fixture(scope="module", params=["sqp", "ipopt"])
@@ -42,3 +48,15 @@ def test_a_point_that_is_too_dear_is_seen(front):
 def test_a_front_of_a_search_is_checked_by_ipopt(front):
     searched = replace(front, points=front.points[-1:]).restated(settings={})
     assert cross_check(searched).solver == "ipopt"
+
+
+def test_a_deflection_is_limited_in_every_scenario_by_both_solvers(front):
+    """The limit binds in the scenarios, not on the nominal plant."""
+    task = replace(front.task, uncertainty=Uncertainty({"frequency": 0.1}), deflection_limit=31e-3)
+    robust = epsilon_front(task, CycloidPolynomial(4), bound=0.2, points=3)
+    both = cross_check(robust, 3)
+    assert len(both.points) == 3
+    assert both.largest < 1e-6
+    for point in robust.points:
+        motion = Candidate.of_profile(task, robust.profile, point.coefficients).motion
+        assert motion.peak_deflection <= 31e-3 * (1 + 2e-3)
