@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.checks import not_negative
-from quietarm.ocp.front.curve import Asked, Curve, Report, no_report
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Asked, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.interrupts import one_at_a_time
@@ -115,6 +115,8 @@ def _minimise(ends: Ends, of_residual: float, of_energy: float, starts: Sequence
     found = [best_of_starts([problem], [starts], solver, warm=warm)[0] for warm in (False, True)]
     best = min(found, key=lambda one: objective_of(one, problem.scalarization))
     best = replace(best, iterations=sum(one.iterations for one in found))
+    if best.status.solved:  # if it is not certified, its place is known
+        return best, {RESIDUAL_LIMIT: best.residual}
     return best, {"residual_weight": of_residual, "energy_weight": of_energy}
 
 

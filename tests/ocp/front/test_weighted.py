@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from moves import CASES
+from quietarm.ocp.front import curve
 
 import quietarm as qa
 
@@ -54,6 +55,23 @@ def test_given_weights_are_used():
     for of_residual, of_energy in ((1, 1), (1, 3)):
         values = of_residual * r + of_energy * e
         assert values[middle].min() == pytest.approx(values.min(), abs=1e-6)
+
+
+def test_what_is_not_certified_has_the_place_of_its_minimum(monkeypatch):
+    task, bound = CASES["arm"]
+    within = qa.weighted_front(task, bound=bound, weights=[(1, 1)], starts=1).points[1]
+    certify = curve.certify
+
+    def refuse(problems, solved, solver, tolerances, limits):
+        if tolerances == curve.OF_A_PLAN:  # an end
+            return certify(problems, solved, solver, tolerances, limits)
+        return ["refused"] * len(solved)
+
+    monkeypatch.setattr(curve, "certify", refuse)
+    front = qa.weighted_front(task, bound=bound, weights=[(1, 1)], starts=1)
+    (failure,) = front.failures
+    assert failure.reason == "refused"
+    assert failure.asked == {"residual_limit": pytest.approx(within.residual, rel=1e-3)}
 
 
 def test_the_figures_are_those_of_the_independent_integrator(case):
