@@ -30,8 +30,8 @@ from quietarm.studies.sweep.library import MoveLibrary
 
 FRONT_POINTS = 20
 """Enough for a line, within a second."""
-_SHORTEST, _LONGEST, _LEAST, _MOST = 0.1, 5.0, 1e-3, 1e4
-"""Ranges of durations [s], and of limits in the unit that is shown."""
+_SHORTEST, _LONGEST, _FURTHEST, _LEAST, _MOST = 0.1, 5.0, 2.0, 1e-3, 1e4
+"""Ranges of durations [s], of a linear axis [m], and of limits in the unit that is shown."""
 _SHOWN = {"rad": ("deg", degrees(1.0)), "m": ("mm", 1e3)}
 """Units that are shown in the place of SI's, and the factors to them."""
 FILES = ("plan.json", "move.csv", "move.c", "move.h")
@@ -75,10 +75,13 @@ class Explored:
     kept: Plan | None = None
     reach: float = 1.0
     """Range of the coefficients by hand, on either side of 0."""
+    opened: PointToPoint | None = None
+    """The move of the first plan; its dials keep their ranges."""
 
     def __post_init__(self) -> None:
         furthest = max(map(abs, self.plan.coefficients), default=0.0)
         object.__setattr__(self, "reach", max(self.reach, float(ceil(furthest))))
+        object.__setattr__(self, "opened", self.opened or self.task)
 
     @property
     def task(self) -> PointToPoint:
@@ -99,8 +102,8 @@ class Explored:
     @cached_property
     def dials(self) -> dict[str, Dial]:
         """What can be set, by name."""
-        task, joint = self.task, self.task.plant.joint
-        way = tau if joint == ROTARY else max(1.0, 2 * abs(task.start), 2 * abs(task.target))
+        task, joint = self.opened or self.task, self.task.plant.joint
+        way = tau if joint == ROTARY else max(_FURTHEST, abs(task.start), abs(task.target))
         angle, time = joint_unit("rad", joint), task.duration
         ends = dict.fromkeys(OF_MOVES, (angle, (-way, way)))
         ends["duration"] = "s", (min(_SHORTEST, time), max(_LONGEST, time))

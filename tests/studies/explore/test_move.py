@@ -14,6 +14,7 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.studies.cli import main
+from quietarm.studies.explore.move import Explored
 from quietarm.studies.explore.opening import menu, open_file, open_plant
 from quietarm.studies.sweep.library import MoveLibrary
 
@@ -49,6 +50,16 @@ def test_a_linear_axis_is_set_in_millimetres_and_newtons():
     labels = [now.dials[name].label for name in ("target", "torque_limit", "speed_limit")]
     assert labels == ["target [mm]", "torque [N]", "speed [m/s]"]
     assert all(plant.joint == "linear" for plant in menu(axis).values())
+
+
+@pytest.mark.parametrize(("target", "duration", "furthest"), [(0.3, 0.8, 2.0), (4.0, 9.0, 4.0)])
+def test_the_sliders_keep_their_ranges_while_the_move_is_changed(target, duration, furthest):
+    task = PointToPoint(LinearAxis(), target, duration)
+    begun = Explored(evaluate_coefficients(task, [0.0], profile=CycloidPolynomial(1)))
+    now = begun.change({"target": 1500.0, "duration": 2.0})
+    assert (now.task.target, now.task.duration) == (1.5, 2.0)
+    assert now.change({"target": 9999.0}).task.target == furthest
+    assert now.change({"target": 100.0}).dials == begun.dials
 
 
 def test_a_move_that_is_none_is_refused_with_its_remedy(begun):
