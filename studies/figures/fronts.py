@@ -34,7 +34,7 @@ _LEAST_SPAN = 0.01
 def draw_fronts(
     fronts: Sequence[Front],
     ax: Axes | None = None,
-    labels: Sequence[str] = (),
+    labels: Sequence[str] | None = None,
     *,
     linear: bool = False,
 ) -> Axes:
@@ -48,7 +48,7 @@ def draw_fronts(
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
     labels : sequence of str, optional
-        What the legend calls them; by default their methods, or seeds.
+        What the legend calls them; by default their methods, seeds or numbers.
     linear : bool
         Whether the axis of residuals is; logarithmic by default, where they span a factor of five.
         Residuals below 0.001 mm, which count as rest, are drawn there.
@@ -59,13 +59,14 @@ def draw_fronts(
         The axes, with a legend where there are a few fronts.
     """
     ax = axes_or_new(ax)
-    for i, (front, name) in enumerate(zip(fronts, labels or _names(fronts), strict=True)):
+    for k, (begin, end) in enumerate(gap for front in fronts for gap in front.gaps):
+        label = "_" if k else "no weight reaches these"  # once in the legend
+        ax.axvspan(begin * 1e3, end * 1e3, color="0.5", alpha=0.15, linewidth=0, label=label)
+    names = _names(fronts) if labels is None else labels
+    for i, (front, name) in enumerate(zip(fronts, names, strict=True)):
         own = look(i)
         middles = [(begin + end) / 2 for begin, end in front.gaps]
         places = np.searchsorted(front.residuals, middles)  # no line crosses a gap
-        for k, (begin, end) in enumerate(front.gaps):
-            label = "_" if k else "no weight reaches these"  # once in the legend
-            ax.axvspan(begin * 1e3, end * 1e3, color="0.5", alpha=0.15, linewidth=0, label=label)
         draw_front(
             ax,
             np.insert(np.maximum(front.residuals, REST), places, np.nan),  # rest has no logarithm
@@ -73,30 +74,30 @@ def draw_fronts(
             exact=method_of(front.record.method).kind is Kind.GRADIENT, color=own.colour,
             marker=own.mark, markersize=3, alpha=0.8, label=name,
         )  # fmt: skip
-        limits = [1e3 * one.asked.get(RESIDUAL_LIMIT, np.nan) for one in front.failures]
-        if limits:  # weights have no residual
-            ax.plot(
-                limits, np.full(len(limits), 0.03), "x", color=RED,
-                transform=ax.get_xaxis_transform(), label=f"{len(limits)} not found",
-            )  # fmt: skip
+    failures = [one for front in fronts for one in front.failures]
+    if failures:  # weights have no residual
+        limits = [1e3 * one.asked.get(RESIDUAL_LIMIT, np.nan) for one in failures]
+        ax.plot(
+            limits, np.full(len(limits), 0.03), "x", color=RED,
+            transform=ax.get_xaxis_transform(), label=f"{len(limits)} not found",
+        )  # fmt: skip
     if not linear:
         every = [max(point.residual, REST) for front in fronts for point in front.points]
         logarithmic(ax, every, least_span=_LOGARITHMIC_FROM)
     name_objectives(ax)
-    if 1 < len(fronts) <= _MOST_NAMED:
+    if len(fronts) <= _MOST_NAMED and len(ax.get_legend_handles_labels()[1]) > 1:
         ax.legend(fontsize=8)
     return ax
 
 
 def _names(fronts: Sequence[Front]) -> list[str]:
-    """What to call every front: its method where there are several, its seed where that tells."""
+    """What to call every front: its method where there are several; of several runs the seed."""
     methods = [method_of(front.record.method).label for front in fronts]
     several, names = len(set(methods)) > 1, list[str]()
-    for front, method in zip(fronts, methods, strict=True):
-        runs = methods.count(method) > 1
-        names.append(
-            ", ".join([method] * (several or not runs) + [f"seed {front.record.seed}"] * runs)
-        )
+    for i, (front, method) in enumerate(zip(fronts, methods, strict=True), start=1):
+        runs, seed = methods.count(method) > 1, front.record.seed
+        run = f"front {i}" if seed is None else f"seed {seed}"
+        names.append(", ".join([method] * (several or not runs) + [run] * runs))
     return names
 
 

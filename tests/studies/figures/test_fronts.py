@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from quietarm.ocp import FailedPoint, Mark
-from quietarm.studies.figures import front_figure
+from quietarm.studies.figures import draw_fronts, front_figure
 
 
 def history(*shares):
@@ -40,13 +40,30 @@ def test_of_one_front_the_knee_is_named_and_what_failed_is_counted(front_of):
     points, failed = [(0, 0.9), (1, 0.4), (9, 0.3)], FailedPoint({"residual_limit": 5e-3}, "none")
     front = front_of(points, "epsilon", seed=None, failures=(failed,), gaps=((2e-3, 6e-3),))
     (panel,) = front_figure([front]).axes
-    names = [text.get_text() for text in panel.get_legend().get_texts()]
-    assert names == [
+    assert legend(panel) == [
         "no weight reaches these", "epsilon constraint", "1 not found", "knee: 0.4 J at 1 mm"
     ]  # fmt: skip
     line = panel.lines[0]
     assert line.get_drawstyle() == "default"
     assert np.isnan(line.get_xdata()).tolist() == [False, False, True, False]  # none over the gap
+
+
+def legend(panel):
+    return [text.get_text() for text in panel.get_legend().get_texts()]
+
+
+def test_gaps_and_failures_of_all_fronts_are_named_once(front_of):
+    failed = FailedPoint({"residual_limit": 5e-3}, "none")
+    front = front_of(
+        [(1, 0.4), (9, 0.3)], "weighted", seed=None, failures=(failed,), gaps=((2e-3, 6e-3),)
+    )
+    alone = ["no weight reaches these", "weighted sum", "1 not found"]
+    assert legend(draw_fronts([front])) == legend(front_figure([front]).axes[0]) == alone
+    both = ["no weight reaches these", "front 1", "front 2", "2 not found"]
+    assert legend(draw_fronts([front, front])) == both
+    named = legend(draw_fronts([front, front], labels=np.array(["coarse", "fine"])))
+    assert named[1:3] == ["coarse", "fine"]
+    assert draw_fronts([front_of([(1, 0.4)])]).get_legend() is None  # the title says what it is
 
 
 def test_the_hypervolume_is_drawn_with_its_quartiles(fronts):
