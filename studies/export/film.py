@@ -23,7 +23,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
-from quietarm.ocp.checks import positive
+from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
@@ -32,8 +32,9 @@ from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.pictures import as_written
 from quietarm.studies.report.words import move_of, moved, residual_words, title_of
 
-_MOST_FRAMES = 500
-"""More would take minutes."""
+_MOST_MOTIONS, _MOST_FRAMES = 6, 500
+"""More could not be seen side by side, or would take minutes."""
+_LEAST_WIDTH, _MOST_WIDTH = 200, 2000
 _LEAST_A_SECOND, _MOST_A_SECOND = 1, 50
 _ROUNDING = 1e-6
 """Of a frame: one that is this close to the end belongs to it."""
@@ -124,7 +125,7 @@ def animate(
     Parameters
     ----------
     motions : sequence of Line, Plan or Floor
-        The motions, of any plants and durations; a plan alone is drawn beside the plain
+        The motions, of any plants and durations, 6 at most; a plan alone is drawn beside the plain
         cycloid of its task.
     deflection_scale : float, optional
         Scale of the deflections, which is stated in the picture; by default such that the largest
@@ -135,7 +136,7 @@ def animate(
         Frames in a second, 50 at most. A gif counts hundredths of a second: 50, 25 and 20 are
         exact, 30 is rounded.
     width : int
-        Width of the picture [pixels].
+        Width of the picture [pixels], 200 to 2000.
 
     Returns
     -------
@@ -145,9 +146,11 @@ def animate(
     Raises
     ------
     ValueError
-        When there is no motion, or a number is out of range.
+        When there is no motion or too many, or a number is out of range.
     """
     lines = lines_of(motions)
+    whole("number of motions", len(lines), 1, _MOST_MOTIONS, "more are too small side by side")
+    width = whole("width", width, _LEAST_WIDTH, _MOST_WIDTH, "more pixels make a huge file")
     if deflection_scale is not None:
         positive("deflection scale", deflection_scale)
     end = max(line.plan.task.duration + line.plan.task.residual_window for line in lines)

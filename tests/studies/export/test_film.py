@@ -112,3 +112,17 @@ def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", "")
     with pytest.raises(ValueError, match="needs the program ffmpeg, which is not found here"):
         animate([Line(plan, "plan")]).save(tmp_path / "m.mp4")
+
+
+@pytest.mark.parametrize(
+    ("motions", "width", "why"),
+    [
+        (1, -5, "width is -5; give a whole number from 200 up"),
+        (1, 5, "width is 5; give a whole number from 200 up"),
+        (1, 9999, "width is 9999; give at most 2000"),
+        (7, 240, "number of motions is 7; give at most 6"),
+    ],
+)
+def test_a_film_that_could_not_be_seen_is_refused(plan, motions, width, why):
+    with pytest.raises(ValueError, match=why):
+        animate([Line(plan, "plan")] * motions, width=width)
