@@ -35,6 +35,11 @@ def test_one_becomes_a_page_whose_pictures_have_their_code_folded(tmp_path):
     assert page.read_text().count("celltag_hide-input") == len(drawn) + 2  # and twice in its style
 
 
+def test_a_notebook_that_is_not_there_is_told_in_a_line():
+    said = subprocess.run([sys.executable, OFFLINE, "99.ipynb"], capture_output=True, text=True)
+    assert (said.returncode, said.stderr) == (1, "99.ipynb: no such notebook\n")
+
+
 @pytest.fixture(scope="module")
 def offline():
     spec = importlib.util.spec_from_file_location("offline", OFFLINE)

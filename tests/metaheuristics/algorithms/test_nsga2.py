@@ -1,5 +1,6 @@
 """NSGA-II as the paper sets it: its operators, and a run that goes on bit for bit."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -49,6 +50,18 @@ def test_duplicates_are_those_with_equal_coefficients(X, others):
             expected.append(individual)
         known.append(row)
     assert list(kept) == expected
+
+
+@pytest.mark.parametrize("population", [3, 7])
+def test_every_generation_evaluates_exactly_the_population(population):
+    algorithm = PaperNSGA2(population)
+    algorithm.setup(get_problem("zdt1", n_var=5), seed=1, termination=_generations(6))
+    for generation in range(1, 7):
+        assert algorithm.has_next()
+        algorithm.next()
+        assert algorithm.evaluator.n_eval == generation * population
+        assert len(algorithm.pop) == population
+    assert not algorithm.has_next()
 
 
 def test_it_finds_the_front_of_zdt1():

@@ -27,3 +27,11 @@ def test_a_population_spends_what_cvodes_finds(tasks, name, energy):
     fine = PopulationObjective(task, profile, steps=default_steps(task))(X).energy
     assert fine == pytest.approx(expected, rel=1e-5)
     assert PopulationObjective(task, profile)(X).energy == pytest.approx(expected, rel=3e-3)
+
+
+def test_a_search_states_what_cvodes_finds(tasks, energy):
+    task = replace(tasks["single link"][0], energy=energy)
+    front = qa.search(task, "nsga2", bound=0.2, population=20, generations=10)
+    for point in (front.points[0], front.points[-1]):
+        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
+        assert point.energy == pytest.approx(motion.energy, rel=1e-5)

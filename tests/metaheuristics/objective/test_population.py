@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 from fixed_steps import rollout
-from populations import PLANTS, PROFILE, candidates, pi, same_bits
+from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import Candidate, PointToPoint
+from quietarm.ocp import Candidate, CycloidPolynomial, PointToPoint
 from quietarm.ocp.limits import QUANTITIES
 
 LIMITS = tuple(QUANTITIES)
@@ -28,6 +28,15 @@ def test_energy_and_residual_are_those_of_the_rollout_at_the_same_steps(tasks, n
     # Both watch the tip at times of their own, that miss a peak by 5e-5 of it at most
     # (`FreeVibration.rows`).
     assert values.residual == pytest.approx([m.residual for m in motions], rel=5e-5, abs=0)
+
+
+@pytest.mark.parametrize("terms", [1, 10])
+def test_any_number_of_terms(terms):
+    profile, task = CycloidPolynomial(terms), PointToPoint(ARM, pi / 2, 0.8)
+    X = np.random.default_rng(3).uniform(-0.3, 0.3, (7, terms))
+    objective = PopulationObjective(task, profile)
+    energies = [rollout(task, profile, x, objective.steps).motion.energy for x in X]
+    assert objective(X).energy == pytest.approx(energies, rel=1e-12, abs=0)
 
 
 def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):

@@ -5,14 +5,16 @@ import math
 import pytest
 from fixed_steps import rollout
 from quietarm.metaheuristics import search
-from quietarm.ocp import Candidate, CycloidPolynomial
+from quietarm.ocp import Candidate, CycloidPolynomial, PointToPoint
 from small_searches import (
     BOUNDS,
     METHODS,
     TASKS,
+    assert_is_a_front,
     exactly,
     found,
     one_line,
+    pi,
     run,
 )
 
@@ -62,6 +64,13 @@ def test_the_seed_decides(method):
     )
 
 
+@METHODS
+def test_two_threads_find_the_same(method):
+    # more than a block of 200, lest there is nothing to share
+    one, two = (run(method, population=250, generations=3, threads=n) for n in (1, 2))
+    assert exactly(one) == exactly(two)
+
+
 # -- bad input --
 
 
@@ -86,3 +95,17 @@ def test_odd_settings_are_named_with_a_remedy(method, name, value):
         run(method, **settings)
     assert str(value) in str(caught.value)
     one_line(caught)
+
+
+def test_a_plant_of_two_modes(two_links):
+    # docs/physics.md, 'A third plant'
+    task = PointToPoint(two_links, pi / 2, 0.9)
+    front = search(task, "nsga2", bound=0.3, population=30, generations=30)
+    assert_is_a_front(front)
+    stillest, cheapest = (
+        Candidate.of_profile(task, front.profile, point.coefficients).motion
+        for point in (front.smallest_residual(), front.cheapest())
+    )
+    plain = Candidate.of_profile(task, CycloidPolynomial(0), []).motion
+    assert stillest.residual < plain.residual / 4
+    assert cheapest.energy < plain.energy

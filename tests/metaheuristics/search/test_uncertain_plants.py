@@ -16,6 +16,7 @@ from quietarm.ocp import (
     PointToPoint,
     Uncertainty,
     epsilon_front,
+    polish_front,
 )
 
 
@@ -59,3 +60,10 @@ def test_fronts_save_load_and_are_believed(of, request, tmp_path):
     loaded = Front.load(tmp_path / "front.json")
     assert loaded == front
     check_figures(loaded, "front.json")
+
+
+def test_the_gradient_improves_what_a_search_found(searched):
+    few = replace(searched, points=searched.points[:2])
+    polished = polish_front(few)
+    assert all(gain.after < gain.before for gain in polished.gains)
+    assert polished.front.task == searched.task

@@ -9,6 +9,7 @@ import pytest
 from lines import MOVE, run
 from quietarm.ocp import (
     CopperLoss,
+    CycloidNetwork,
     Floor,
     Plan,
     PositivePower,
@@ -47,6 +48,16 @@ def test_a_limit_that_is_too_low_says_the_least_that_would_do(refused, call):
     assert "torque <= 0.01 N m" in message
     least = re.search(r"torque limit ([\d.]+) N m", message).group(1)
     assert call(f"{line} --torque-limit {least}")[0] == 0
+
+
+def test_a_profile_with_other_coefficients(call):
+    code, out, err = call(
+        f"plan {MOVE} --profile network --terms 4 --starts 1 --quiet --output p.json"
+    )
+    assert (code, err) == (0, "")
+    found = Plan.load("p.json")
+    assert found.profile == CycloidNetwork(4)
+    assert found.profile.label in " ".join(out.split())
 
 
 def test_the_motion_without_a_parametrisation_takes_less(call):
@@ -123,6 +134,9 @@ def test_states_and_limits_of_a_drive_are_typed_with_units_by_direction_and_by_s
     assert (task.initial.W, task.initial.dW) == ((0.005, -0.01), (0.0, 0.04))
     assert (task.final.W, task.final.dW) == ((0.0, 0.01), (0.0, 0.0))
     assert task.residual_window == 0.5
+    line = f"evaluate {MOVE} --coefficients=0 --acceleration-limit 90deg/s^2 --output e.json"
+    assert call(line)[0] == 0
+    assert Plan.load("e.json").task.acceleration_limit == pytest.approx(math.pi / 2, rel=1e-15)
 
 
 @pytest.mark.parametrize(("limit", "warned"), [("", True), ("57", True), ("1.5", False)])
