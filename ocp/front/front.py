@@ -129,7 +129,7 @@ class Front(Answer):
 
     def to_frame(self) -> pandas.DataFrame:
         """The points as a data frame of pandas by increasing residual, with the `columns`."""
-        import pandas as pd  # comes with quietarm[sweep]
+        import pandas as pd  # not at the top: it takes half a second to load
 
         return pd.DataFrame(self.columns())
 

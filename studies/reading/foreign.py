@@ -10,13 +10,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError
-from quietarm.studies.reading.table import Column, read_table, reading
+from quietarm.studies.reading.table import ARRAYS, Column, read_table, reading
 
 Array = NDArray[np.float64]
 
 _COEFFICIENT = re.compile(
     r"(?:a|x|coefficients?|pareto_set)?[ _:]?\(?\[?(\d+)\]?\)?", re.IGNORECASE
 )
+_MATRICES = ("coefficients", "x", "a", "pareto_set")
+"""What a matrix of coefficients is called; the first of them that a file has."""
 _CLAIMS = {
     **{f"{name}1": (0, 1.0) for name in ("f", "f:", "objectives:", "pareto_front:")},
     **{f"{name}2": (1, 1.0) for name in ("f", "f:", "objectives:", "pareto_front:")},
@@ -43,12 +45,15 @@ def read_found(path: Path) -> Found:
     named ones.
     """
     table = read_table(path, strict=True)
+    empty = f"{path} holds no coefficients; give a row for each motion"
+    if not any(column.values.size for column in table.columns):
+        raise FileFormatError(empty)
     with reading(path):
-        columns = _uncounted(table.columns)
+        columns = _uncounted(table.columns, text=path.suffix.lower() not in ARRAYS)
         chosen = _coefficients(columns)
         coefficients = np.column_stack([columns[k].values for k in chosen])
     if not coefficients.size:
-        raise FileFormatError(f"{path} holds no coefficients; give a row for each motion")
+        raise FileFormatError(empty)
     claims, ignored = np.full((len(coefficients), 2), np.nan), dict[str, None]()
     for k, column in enumerate(columns):
         name = column.name.lower().replace(" ", "_")
@@ -60,17 +65,21 @@ def read_found(path: Path) -> Found:
     return Found(coefficients, claims, tuple(ignored))
 
 
-def _uncounted(columns: Sequence[Column]) -> Sequence[Column]:
-    """Columns without the row in which pandas counts them; its count of rows is refused."""
-    first = np.array([column.values[0] for column in columns])
-    counts = first[np.isfinite(first)]
-    if 1 < len(columns) <= len(counts) + 1 and np.array_equal(counts, np.arange(len(counts))):
-        return [
-            Column("" if np.isnan(one) else f"{one:.0f}", "", column.values[1:])
-            for one, column in zip(first, columns, strict=True)
-        ]
-    rows, unnamed = columns[0].values, [column.name for column in columns[:2]] == ["0", "1"]
-    if unnamed and len(rows) > 1 and np.array_equal(rows, np.arange(len(rows))):
+def _uncounted(columns: Sequence[Column], text: bool) -> Sequence[Column]:
+    """Columns without the row in which pandas counts them; its count of rows is refused.
+
+    Only a text has that row. It is no heading, for all in it are numbers, and its first cell is
+    empty, above the count of rows.
+    """
+    unnamed = len(columns) > 1 and all(column.name.isdecimal() for column in columns)
+    if not unnamed or not len(columns[0].values):
+        return columns
+    table = np.column_stack([column.values for column in columns])
+    first, rows = table[0], table[:, 0]
+    if text and np.isnan(first[0]) and np.array_equal(first[1:], np.arange(len(first) - 1)):
+        names = ["", *(str(k) for k in range(len(first) - 1))]
+        return [Column(name, "", one[1:]) for name, one in zip(names, table.T, strict=True)]
+    if len(rows) > 1 and np.array_equal(rows, np.arange(len(rows))):
         raise FileFormatError(
             "its first column counts the rows; leave it out, in pandas by index=False"
         )
@@ -80,8 +89,12 @@ def _uncounted(columns: Sequence[Column]) -> Sequence[Column]:
 def _coefficients(columns: Sequence[Column]) -> list[int]:
     """Which columns are coefficients, in their order: by their names, or those of one matrix."""
     numbered, matrices = dict[int, int](), dict[str, list[int]]()
+    names = [column.name.lower() for column in columns]
+    matrix = next((one for one in _MATRICES if f"{one}:1" in names), "")
     for k, column in enumerate(columns):
         name, colon, _ = column.name.partition(":")
+        if matrix and name.lower() != matrix:
+            continue
         if match := _COEFFICIENT.fullmatch(column.name):
             if int(match[1]) in numbered:
                 raise FileFormatError(f"coefficient {match[1]} has two columns; leave one")

@@ -18,6 +18,8 @@ from quietarm.studies.reading.text import read_text
 from quietarm.studies.reading.units import UNITS, normal, split_name
 
 Array = NDArray[np.float64]
+ARRAYS = (".npy", ".npz", ".mat")
+"""Endings of files of arrays; any other is a text."""
 _SHOWN = 12
 _CALLED = {
     "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds"},
@@ -120,26 +122,23 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
     """
     content = read_bytes(path)
     with reading(path):
-        arrays = _arrays(path.suffix.lower(), content, strict)
-        if arrays is None:
-            columns = [Column(*one) for one in read_text(content, strict)]
+        if path.suffix.lower() in ARRAYS:
+            columns = _of_variables(_arrays(path.suffix.lower(), content, strict), strict)
         else:
-            columns = _of_variables(arrays, strict)
-    if not columns:
+            columns = [Column(*one) for one in read_text(content, strict)]
+    if not columns and not strict:
         raise FileFormatError(f"{path}: it has no vectors of numbers; save the time and what rings")
     return Table(path, tuple(columns))
 
 
-def _arrays(kind: str, content: bytes, strict: bool) -> dict[str, Any] | None:
-    """Named arrays of a file of this ending, "" of one alone; None where it is a text."""
+def _arrays(kind: str, content: bytes, strict: bool) -> dict[str, Any]:
+    """Named arrays of a file of this ending, "" of one alone."""
     file = io.BytesIO(content)
     if kind == ".npy":
         return {"": np.load(file, allow_pickle=False)}
     if kind == ".npz":
         with np.load(file, allow_pickle=False) as arrays:
             return dict(arrays)
-    if kind != ".mat":
-        return None
     from scipy.io import loadmat  # not at the top: it takes long to load
 
     try:

@@ -178,6 +178,8 @@ FILES = {
     "named.npz": (numpy_file(None, np.savez, X=X, F=CLAIMS), "energy is right"),
     "found.mat": (matlab(X=X, energy=CLAIMS[:, 1:]), "energy is right"),
     "alone.mat": (matlab(best=X, note=3.0), "ignored: note"),
+    "several.npz": (numpy_file(None, np.savez, a=X[:, ::-1], X=X, x1=X[:, 0]), "ignored: a, x1"),
+    "set.mat": (matlab(x1=X[:, :1], pareto_set=X, pareto_front=CLAIMS), "energy is right"),
 }  # fmt: skip
 
 
@@ -189,6 +191,31 @@ def test_tables_of_many_kinds(call, name):
     assert (code, err) == (0, "")
     assert_same(Front.load("f.json"))
     assert words in out
+
+
+MOTIONS = np.array([[0.0, 1.0], [0.1, 0.2]])
+COUNTING = {
+    "headed.csv": table(["a_1", "a_2"], MOTIONS.tolist()),
+    "plain.csv": "0,1\n0.1,0.2\n",
+    "array.npy": numpy_file(MOTIONS),
+    "counted.csv": table(["", "0", "1"], [[5, 0.0, 1.0], [7, 0.1, 0.2]]),
+}
+
+
+@pytest.mark.parametrize("name", COUNTING)
+def test_a_first_motion_that_counts_is_a_motion(call, name):
+    written(name, COUNTING[name])
+    code, _, err = evaluate(call, name)
+    assert (code, err) == (0, "")
+    assert Front.load("f.json").record.evaluations == len(MOTIONS)
+
+
+@pytest.mark.parametrize("shape", [(0,), (0, 2), (1, 0)])
+def test_an_empty_array_holds_no_coefficients(call, shape):
+    written("x.npy", numpy_file(np.empty(shape)))
+    code, out, err = evaluate(call, "x.npy")
+    assert (code, out) == (2, "")
+    assert "x.npy holds no coefficients; give a row for each motion" in err
 
 
 def test_a_table_without_a_motion_that_keeps_the_limits(call):
