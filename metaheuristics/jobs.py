@@ -151,6 +151,8 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
         if budget is not None:
             raise ValueError(f"{method} ends by itself; leave its budget out")
         return None
+    if budget is not None:
+        budget = whole("budget", budget, 1, MOST_EVALUATIONS)
     if isinstance(method, str):
         search_name = method.removesuffix(POLISH)
         if search_name not in PRESETS:
@@ -165,7 +167,7 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
         raise ValueError(f"give a budget for {method_name(method)}, in evaluations")
     elif settings:
         raise ValueError(f"{method_name(method)} takes no settings here; set it before you give it")
-    return whole("budget", budget, 1, MOST_EVALUATIONS)
+    return budget
 
 
 class LostJobsError(QuietarmError):

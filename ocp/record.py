@@ -68,7 +68,8 @@ class Record:
     Raises
     ------
     ValueError
-        When the method has no name, or a setting is a number that no file could hold.
+        When the method has no name, the bound is not positive, or a setting is a number that no
+        file could hold.
     """
 
     method: str
@@ -86,6 +87,8 @@ class Record:
         for name, value in self.settings.items():
             if isinstance(value, float):
                 finite(f"setting {name}", value)
+        if self.bound is not None:
+            object.__setattr__(self, "bound", coefficient_bound(self.bound))
         object.__setattr__(self, "settings", dict(self.settings))
         object.__setattr__(self, "versions", dict(self.versions))
 

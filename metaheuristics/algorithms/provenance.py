@@ -1,4 +1,4 @@
-"""What an algorithm is set to, in plain numbers and words: part of the provenance of a front."""
+"""What an algorithm is set to, in plain numbers and words: part of the record of a front."""
 
 from __future__ import annotations
 

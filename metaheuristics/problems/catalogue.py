@@ -152,7 +152,7 @@ class NamedProblem:
     def recorded(self, budget: float = inf) -> RecordedFunction:
         """The problem as a function of arrays that records its candidates, up to a budget.
 
-        ValueError where there is a third objective.
+        ValueError where there is a third objective, or the budget is no whole number from 1 up.
         """
         from quietarm.metaheuristics.problems.recorded import RecordedFunction
 

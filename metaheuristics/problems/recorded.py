@@ -64,7 +64,8 @@ class RecordedFunction(MoveFunction):
         problem: str = "",
     ) -> None:
         super().__init__(task, profile, bound=bound, threads=threads)
-        self.reference, self.budget, self.problem = reference, budget, problem
+        self.budget = budget if budget == inf else whole("budget", budget, 1)
+        self.reference, self.problem = reference, problem
         self.archive = Archive(task, len(self.variables), reference)
         self.failed, self.infeasible = 0, 0
 

@@ -49,6 +49,17 @@ def test_evaluations_below_a_generation_are_refused():
         qa.search(TASK, "vepso", evaluations=30, **settings)
 
 
+@pytest.mark.parametrize("given", ["100", math.nan, -1, 0, 100.5])
+def test_a_budget_is_a_whole_number(given):
+    problem = qa.problem_of("single-link-30deg-0.8s-2-terms")
+    with pytest.raises(ValueError, match=r"evaluations is .*; give a whole number from 1 up"):
+        qa.search(TASK, "nsga2", bound=0.2, evaluations=given)
+    with pytest.raises(ValueError, match=r"budget is .*; give a whole number from 1 up"):
+        problem.recorded(budget=given)
+    with pytest.raises(ValueError, match=r"budget is .*; give a whole number from 1 up"):
+        qa.Job(problem, "nsga2", budget=given)
+
+
 def test_a_search_starts_from_the_points_of_a_front():
     front = qa.search(TASK, "gde3", bound=0.2, population=20, generations=30, seed=4)
     further = qa.search(TASK, "nsga2", bound=0.2, population=20, generations=2, start=front)

@@ -41,6 +41,12 @@ def test_coefficients_become_a_front_of_those_that_none_beats(task, given):
     assert (given.failed, given.infeasible) == (0, 0)
 
 
+@pytest.mark.parametrize("bound", [-1.0, 0.0, np.nan, 1e7])
+def test_a_record_has_a_bound_that_a_file_takes(bound):
+    with pytest.raises(ValueError, match="bound on the coefficients is"):
+        Record("a swarm", bound=bound)
+
+
 def test_motions_that_break_a_limit_or_overflow_are_left_out_and_counted(task):
     figures = by_cvodes(task, ROWS)
     torques = [
