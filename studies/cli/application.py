@@ -41,6 +41,12 @@ HEIRS = {
     "animate": "export --output move.gif", "plants": "list plants", "problems": "list problems",
 }  # fmt: skip
 """What took the place of commands that are gone, for one release."""
+OPTION_HEIRS = {
+    "--robust": "--error", "--csv": "--output NAME.csv", "--figure": "--output NAME.png",
+    "--latex": "--output NAME.tex", "--sample-rate": "quietarm export --rate",
+    "--checkpoint": "quietarm search --from front.json",
+}  # fmt: skip
+"""What took the place of options that are gone, for one release."""
 
 
 class LazyGroup(click.Group):
@@ -134,6 +140,10 @@ def _run(arguments: Sequence[str] | None) -> int:
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         return BAD_INPUT
+    except click.NoSuchOption as error:
+        gone, heir = error.option_name, OPTION_HEIRS.get(error.option_name)
+        message = f"{gone} is gone; give {heir}" if heir else error.format_message()
+        return _complain(message, BAD_INPUT)
     except click.ClickException as error:
         return _complain(error.format_message(), BAD_INPUT)
     except (FileFormatError, ValueError) as error:

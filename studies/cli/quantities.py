@@ -203,7 +203,7 @@ def parse_units(text: str) -> dict[str, str]:
 
 def parse_scale(text: str) -> tuple[str, float]:
     """Read what a count of a recorded quantity is in SI units: ``angle=2pi/4096``."""
-    quantity, _, factor = (part.strip() for part in text.partition("="))
+    quantity, _, factor = (part.strip() for part in text.lower().partition("="))
     _of_column(quantity)
     number, _, divisor = factor.partition("/")
     try:

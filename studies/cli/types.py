@@ -39,14 +39,15 @@ class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
 
     def __init__(self, what: str, names: Iterable[str], none: Mapping[str, str] | None = None):
         super().__init__(list(names))
-        self._what, self._none = what, none or {}
+        self._what = what
+        self._none = {spelling(name): why for name, why in (none or {}).items()}
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name."""
         same = [name for name in self.choices if spelling(name) == spelling(value)]
         if not same:
             known = unknown(self._what, value, self.choices)
-            self.fail(self._none.get(value, known), param, ctx)
+            self.fail(self._none.get(spelling(value), known), param, ctx)
         return same[0]
 
 

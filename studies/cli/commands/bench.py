@@ -80,12 +80,16 @@ def bench(
     from quietarm.studies.report.words import print_lines
 
     known = {spelling(name): name for name in (*PRESETS, *GRADIENT)}
-    parts = [name.strip().partition("+") for name in methods.split(",")]
-    names = [known.get(spelling(name), name) + plus + polish for name, plus, polish in parts]
+
+    def named(typed: str) -> str:
+        name, plus, polish = typed.strip().partition("+")
+        return known.get(spelling(name), name) + plus + polish
+
+    names = [named(one) for one in methods.split(",")]
+    parts = [(name.partition("."), value) for name, value in setting]
+    own = [(named(method) + dot + name, value) for (method, dot, name), value in parts]
     chosen, errors = problems_of(problems), Console(stderr=True)
-    jobs, left_out = jobs_of(
-        chosen, names, runs, evaluations, seed, settings_by_method(setting, names)
-    )
+    jobs, left_out = jobs_of(chosen, names, runs, evaluations, seed, settings_by_method(own, names))
     given = [Front.load(path) for path in imported]
     if not quiet():
         print_lines(errors, *left_out, say_power(runs, len(names)))
