@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
-from hashlib import sha256
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 from make import LIMITED_STEPS, exact_front
@@ -20,13 +17,11 @@ from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.certify import judge
 from quietarm.ocp.planning.plan_move import plan_from_starts
-from quietarm.ocp.record import SolveSettings, versions
-from quietarm.ocp.saved import Saved, plain
+from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.solvers.transcription import STILL, Transcription
 
-CERTIFICATES = Path(__file__).parent / "certificates.json"
 _TRIED, _STARTS, _SEED = 20, 5, 2000
 """Points that are also tried from so many random starts, others than found the front."""
 _TELLING = 1e-5
@@ -47,18 +42,15 @@ largest: a population's are sampled, and miss up to 5e-5 of a peak."""
 class Certificate:
     """What is known of a reference front.
 
-    The multiplier of the residual at every point [J/m], 0 where the solver did not confirm it; the
-    largest differences from what CVODES gives, of the energies as a share and of the residuals [m];
-    the largest shares by which fixed steps give other energies and residuals than CVODES does; how
-    many points the solver, started there, calls optimal; from how many starts it was tried to
+    The largest differences from what CVODES gives, of the energies as a share and of the residuals
+    [m]; the largest shares by which fixed steps give other energies and residuals than CVODES does;
+    how many points the solver, started there, calls optimal; from how many starts it was tried to
     beat some; and the largest share by which any solution is cheaper than its point, by CVODES and
     at its residual and limits by their prices.
     """
 
     front: str
-    checksum: str
     points: int
-    prices: tuple[float, ...]
     energy_difference: float
     residual_difference: float
     energy_by_steps: float
@@ -66,7 +58,6 @@ class Certificate:
     confirmed: int
     tried: int
     gained: float
-    optimiser: Mapping[str, str] = field(default_factory=versions, hash=False)
 
     @property
     def holds(self) -> bool:
@@ -75,33 +66,6 @@ class Certificate:
         close = self.energy_by_steps <= DIFFERENT and self.residual_by_steps <= SAMPLED
         most = self.confirmed >= CONFIRMED * self.points
         return same and close and most and self.gained <= BEATEN
-
-
-@dataclass(frozen=True)
-class Certificates(Saved):
-    """The certificates of all named problems."""
-
-    kind: ClassVar[str] = "certificates"
-    version: ClassVar[int] = 1
-
-    entries: tuple[Certificate, ...]
-
-    @classmethod
-    def kept(cls) -> dict[str, Certificate]:
-        """Those that come with quietarm, by their fronts."""
-        return {one.front: one for one in cls.load(CERTIFICATES).entries}
-
-
-def checksum(front: Front) -> str:
-    """SHA-256 of a front's move, profile, box and points, in canonical JSON.
-
-    What the move does not set is left out, so that a new option of tasks changes nothing.
-    """
-    bound = front.record.bound
-    task = {name: value for name, value in plain(front.task).items() if value is not None}
-    content = [task, plain(front.profile), bound, plain(front.points)]
-    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
-    return sha256(text.encode()).hexdigest()
 
 
 def certified(
@@ -144,9 +108,7 @@ def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProble
     by_steps = PopulationObjective(task, front.profile, steps=FIXED_STEPS)(np.array(motions))
     return Certificate(
         front=name,
-        checksum=checksum(front),
         points=len(motions),
-        prices=tuple(-one.slope if one.status.solved else 0.0 for one in warm),
         energy_difference=float(np.abs(energies / front.energies - 1).max()),
         residual_difference=float(np.abs(residuals - front.residuals).max()),
         energy_by_steps=float(np.abs(by_steps.energy / energies - 1).max()),

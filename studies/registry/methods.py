@@ -57,9 +57,7 @@ METHODS = {
     )
 }
 """Every method that a user can ask for, by name."""
-NSGA2, VEPSO = METHODS["nsga2"], METHODS["vepso"]
-PAPERS = (NSGA2, VEPSO)
-"""The searches of the paper, which a study runs where no others are asked for."""
+NSGA2 = METHODS["nsga2"]
 
 
 def method_of(name: str) -> Method:
