@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 from quietarm.studies.cli.files import FOLDER, finish, output_option, report_files
 from quietarm.studies.cli.options import busy, command, option, refuse_typed
-from quietarm.studies.cli.quantities import once
+from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.task import error_option
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.report import Report
@@ -76,11 +76,27 @@ def compare(
         fronts = {name: one for name, one in answers.items() if isinstance(one, Front)}
         if plans:
             refuse_typed(_OF_FRONTS, "is for fronts; leave it out")
-            report = _of_plans(plans, baselines or (), once(errors, "--error "), samples)
+            report = _of_plans(plans, baselines or (), _ranges(plans, errors), samples)
         else:
             refuse_typed(_OF_PLANS, "is for plans; leave it out")
             report = _of_fronts(fronts, reference, free)
     finish(report_files(output, report), report)
+
+
+def _ranges(plans: Mapping[str, Plan], errors: Sequence[tuple[str, float]]) -> dict[str, float]:
+    """Ranges of the parameter errors; `measured` are those that the plans have."""
+    from quietarm.studies.compare.judged import merged_ranges
+
+    ranges = once(errors, "--error ")
+    if ranges.pop(MEASURED, None) is None:
+        return ranges
+    measured = merged_ranges(one.task for one in plans.values())
+    if not measured:
+        raise ValueError(
+            "--error measured is for plans with measured errors, and these have none; give errors "
+            "as frequency=10%"
+        )
+    return {**measured, **ranges}
 
 
 def _of_plans(
