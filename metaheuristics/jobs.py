@@ -151,8 +151,6 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
         if budget is not None:
             raise ValueError(f"{method} ends by itself; leave its budget out")
         return None
-    if budget is not None:
-        budget = whole("budget", budget, 1, MOST_EVALUATIONS)
     if isinstance(method, str):
         search_name = method.removesuffix(POLISH)
         if search_name not in PRESETS:
@@ -167,7 +165,7 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
         raise ValueError(f"give a budget for {method_name(method)}, in evaluations")
     elif settings:
         raise ValueError(f"{method_name(method)} takes no settings here; set it before you give it")
-    return budget
+    return whole("budget", budget, 1, MOST_EVALUATIONS)
 
 
 class LostJobsError(QuietarmError):

@@ -121,8 +121,6 @@ def search(
 
     if generations is not None and evaluations is not None:
         raise ValueError("evaluations stand in place of generations; leave one of them out")
-    if evaluations is not None:
-        evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
     if isinstance(algorithm, str):
         method, preset = algorithm, preset_of(algorithm)
         chosen, own = _known(preset, task, population, evaluations, settings)
@@ -137,6 +135,7 @@ def search(
         generations = whole("generations", generations, 1, MOST_GENERATIONS)
         limits: dict[str, Any] = {"generations": generations}
     else:
+        evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
         generations, limits = -(-evaluations // size), {"evaluations": evaluations}
     profile = CycloidPolynomial() if profile is None else profile
     bound = profile.default_bound if bound is None else bound

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from numbers import Integral
 from typing import TYPE_CHECKING
 
 from quietarm.metaheuristics.algorithms.settings import Setting, Value, with_defaults
@@ -123,9 +124,9 @@ class Preset:
         return self.swarms * population * generations
 
     def refuse_less_than_one(self, evaluations: int, population: int) -> None:
-        """Refuse evaluations that are less than a generation."""
+        """Refuse whole numbers of evaluations that are less than a generation."""
         size = self.evaluations(population, 1)
-        if evaluations < size:
+        if isinstance(evaluations, Integral) and evaluations < size:
             raise ValueError(
                 f"evaluations is {evaluations}, less than one generation of {self.name}, {size}; "
                 "give more, or a smaller population"

