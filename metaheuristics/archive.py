@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.quality import Reference
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, reference_corner
+from quietarm.ocp.cost import COST
 from quietarm.ocp.front.points import LEVELS, evaluated
 from quietarm.ocp.record import Record, Setting, versions
 
@@ -42,12 +43,13 @@ class Archive:
         self._reference, self._next = reference, 1.0
         self._X, self._F = np.empty((0, variables)), np.empty((0, 2))
         self._waiting: list[tuple[Array, Array]] = []
-        self._began, self._own = time.thread_time(), 0.0
+        self._began, self._own, self._cost = time.thread_time(), 0.0, COST.copy()
 
     @property
     def seconds(self) -> float:
-        """Processor time since the beginning, without that of the archive [s]."""
-        return time.thread_time() - self._began - self._own
+        """Processor time since the beginning, without the archive's and compilation's [s]."""
+        apart = self._own + COST.since(self._cost).builds
+        return time.thread_time() - self._began - apart
 
     def non_dominated(self) -> tuple[Array, Array]:
         """Coefficients and objectives of what was found."""

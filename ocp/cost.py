@@ -6,11 +6,12 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from typing import Literal
 
 
 @dataclass
 class Cost:
-    """Work of this process: motions simulated, and processor seconds of CVODES.
+    """Work of this process: motions simulated, processor seconds of CVODES and of compilation.
 
     `candidates` are simulated for their values alone, the others with first or second derivatives.
     """
@@ -19,6 +20,7 @@ class Cost:
     gradients: int = 0
     hessians: int = 0
     checks: float = 0.0
+    builds: float = 0.0
 
     def since(self, earlier: Cost) -> Cost:
         """What came after an earlier `copy`."""
@@ -29,13 +31,13 @@ class Cost:
         return replace(self)
 
     @contextmanager
-    def checking(self) -> Iterator[None]:
-        """Count the block's processor time as a check."""
+    def timed(self, name: Literal["checks", "builds"]) -> Iterator[None]:
+        """Count the block's processor time as that of checks or builds."""
         began = time.thread_time()
         try:
             yield
         finally:
-            self.checks += time.thread_time() - began
+            setattr(self, name, getattr(self, name) + time.thread_time() - began)
 
 
 COST = Cost()

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.ma  # numpy would load it within the first run
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.archive import Archive
 from quietarm.metaheuristics.objective.population import UNUSABLE

@@ -61,7 +61,7 @@ def integrate(
     energy: Energy,
 ) -> Run:
     """Follow a motion on a plant with errors, by so many steps of the quadrature on a piece."""
-    with COST.checking(), _refusing(path.remedy):
+    with COST.timed("checks"), _refusing(path.remedy):
         figures = _figures(plant, path.law, path.given.shape, steps, tuple(errors), energy)
         given = path.given.T, [list(errors.values())], [initial]
         outputs, arrival, spent, net_work = (value.T.copy() for value in figures(*given))

@@ -118,7 +118,8 @@ class _Compiled:
         """The outputs, a row each, a block for each thread at a time."""
         most, rows = self._sizes[-1], max(len(inputs[0]), 1)
         blocks = [[one[i : i + most] for one in inputs] for i in range(0, rows, most)]
-        self.prepare(len(blocks[0][0]))
+        for size in {len(blocks[0][0]), len(blocks[-1][0])}:
+            self.prepare(size)  # in this thread, whose time counts
         if threads > 1 and len(blocks) > 1:
             with ThreadPoolExecutor(threads) as pool:
                 parts = list(pool.map(self._evaluate, blocks))
@@ -134,7 +135,8 @@ class _Compiled:
             self._singles += 1
             return min(larger)
         if size not in self._functions:
-            self._functions[size] = self._build(size)
+            with COST.timed("builds"):
+                self._functions[size] = self._build(size)
             self._idle[size] = []
         return size
 
