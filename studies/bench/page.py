@@ -18,8 +18,7 @@ from quietarm.studies.bench.statistics import (
     moves_of,
     pairs_on,
     ranking_over,
-    say_power,
-    values_on,
+    say_power_of,
     verdict_on,
 )
 from quietarm.studies.report import Report
@@ -38,7 +37,6 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
     """
     problems = [problem.name for problem in results.problems]
     ranking = ranking_over(results)
-    runs = [list(map(len, values_on(results, name, "missing").values())) for name in problems]
     pairs = pd.concat([
         pd.DataFrame({"problem": name, "measure": measure} | dict(pairs_on(results, name, measure)))
         for name in problems for measure in _TESTED
@@ -64,10 +62,10 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
     versions = results.runs[0].front.record.versions
     values = {
         "line": line, "problems": problems, "methods": [label_of(m) for m in results.methods],
-        "power": say_power(min((min(one) for one in runs if one), default=1), max(map(len, runs))),
+        "power": say_power_of((run.problem.name, run.method) for run in results.runs),
         "ranking": ranking,
         "label_of": label_of, "corner": CORNER, "accuracy": ACCURACY, "at_rest": 1e3 * AT_REST,
-        "target": 100 * SHOWN_TARGET, "moves": len(moves_of(results.problems)),
+        "target": f"{100 * SHOWN_TARGET:g}", "moves": len(moves_of(results.problems)),
         "verdicts": {name: verdict_on(results, name) for name in problems},
         "on_energy": {name: verdict_on(results, name, "energy_1mm") for name in problems},
         "energy_ranking": ranking_over(results, "energy_1mm"),

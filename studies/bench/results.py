@@ -85,18 +85,7 @@ class Results:
         labels = [label for label, _ in {(job.label, job.budget) for job in fronts}]
         several = {label for label in labels if labels.count(label) > 1}
         runs = [Run(job.problem, _method(job, several), front) for job, front in fronts.items()]
-        for front in imported:
-            name = front.record.settings.get("problem")
-            if name not in problems:
-                raise ValueError(
-                    f"a run of {front.record.method} is on {name or 'no named problem'}, and the "
-                    f"bench on {', '.join(problems)}; give that problem too, or leave the run out"
-                )
-            problem = problems[str(name)]
-            if (front.task, front.profile) != (problem.task, problem.profile):
-                raise ValueError(f"a run of {front.record.method} is of another move than {name}")
-            runs.append(Run(problem, front.record.method, measured(front, problem.reference())))
-        return cls(runs)
+        return cls([*runs, *imported_runs(imported, list(problems.values()))])
 
     @cached_property
     def problems(self) -> tuple[NamedProblem, ...]:
@@ -196,6 +185,42 @@ class Results:
                     row |= zip((by, f"{by}_low", f"{by}_high"), found, strict=True)
                 rows.append(row)
         return pd.DataFrame(rows).replace(np.inf, np.nan)
+
+
+def imported_runs(fronts: Sequence[Front], problems: Sequence[NamedProblem]) -> list[Run]:
+    """Recorded runs of other libraries on the problems that they name.
+
+    ValueError when a front is of none of the problems, or of another move or a wider box.
+    """
+    by_name, runs = {problem.name: problem for problem in problems}, list[Run]()
+    for front in fronts:
+        name, method = front.record.settings.get("problem"), front.record.method
+        if name not in by_name:
+            raise ValueError(
+                f"a run of {method} is on {name or 'no named problem'}, and the bench on "
+                f"{', '.join(by_name)}; give that problem too, or leave the run out"
+            )
+        problem = by_name[str(name)]
+        if (front.task, front.profile) != (problem.task, problem.profile):
+            raise ValueError(f"a run of {method} is of another move than {name}")
+        if front.record.bound != problem.bound:
+            _refuse_beyond(front, problem)
+        runs.append(Run(problem, method, measured(front, problem.reference())))
+    return runs
+
+
+def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
+    """ValueError where a point is not in the problem's box."""
+    lower, upper = problem.profile.box(problem.bound)
+    table = front.coefficients
+    beyond = np.argwhere((table < lower) | (table > upper))
+    if len(beyond):
+        row, column = beyond[0]
+        raise ValueError(
+            f"a run of {front.record.method} has a_{column + 1} = {table[row, column]:.4g}, and "
+            f"{problem.name} allows {lower[column]:.4g} to {upper[column]:.4g}; search within that "
+            "box, or leave the run out"
+        )
 
 
 def _drawn_again(runs: int) -> NDArray[np.int64]:

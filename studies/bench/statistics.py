@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import comb, sqrt
@@ -13,12 +14,13 @@ import pandas as pd
 from numpy.typing import NDArray
 from quietarm.metaheuristics import NamedProblem
 from quietarm.studies.bench.results import Results, label_of, quartiles
+from quietarm.studies.report.words import counted
 from scipy import stats
 
 Array = NDArray[np.float64]
 ALPHA = 0.05
 _EXACT = 12
-"""Runs of each method up to which Mann-Whitney's test is exact, where no values are equal."""
+"""Runs of either method up to which Mann-Whitney's test is exact."""
 
 
 def attainable_p(runs: int, others: int, pairs: int) -> float:
@@ -34,14 +36,31 @@ def say_power(runs: int, methods: int) -> str:
     least = attainable_p(runs, runs, pairs)
     if least < ALPHA:
         return (
-            f"with {runs} runs of each of {methods} methods ({pairs} pairs) the least p that a "
-            f"pair can have is {least:.2g}"
+            f"with {runs} runs of each of {methods} methods ({counted(pairs, 'pair')}) the least p "
+            f"that a pair can have is {least:.2g}"
         )
     needed = next(n for n in range(runs, 1000) if attainable_p(n, n, pairs) < ALPHA)
     return (
-        f"with {runs} runs and {pairs} pairs no p can fall below {ALPHA}: {needed} runs are "
-        "needed for a verdict"
+        f"with {counted(runs, 'run')} and {counted(pairs, 'pair')} no p can fall below {ALPHA}: "
+        f"{needed} runs are needed for a verdict"
     )
+
+
+def say_power_of(runs: Iterable[tuple[str, str]]) -> str:
+    """What runs, each a problem and a method, can show: the fewest of one, and most methods."""
+    counts = defaultdict[str, Counter[str]](Counter)
+    for problem, method in runs:
+        counts[problem][method] += 1
+    tested = [
+        [count for count in own.values() if count >= _least_runs(own.values())]
+        for own in counts.values()
+    ]
+    return say_power(min(map(min, tested), default=1), max(map(len, tested), default=0))
+
+
+def _least_runs(counts: Collection[int]) -> float:
+    """Half as many runs as is usual: fewer of one method would take the power from all tests."""
+    return float(np.median(list(counts))) / 2
 
 
 @dataclass(frozen=True)
@@ -82,7 +101,7 @@ class Ranking:
 
 
 def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.DataFrame:
-    """Every pair of methods on a problem: effect size, exact p and p by Holm.
+    """Every pair of methods on a problem: effect size, p and p by Holm.
 
     The effect is the share of pairs of runs in which the first is better (Vargha and Delaney's A;
     0.5 is no difference). Runs without a value come last.
@@ -99,13 +118,29 @@ def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.Data
 def _mann_whitney(mine: Array, theirs: Array) -> tuple[float, float]:
     """Effect size and p value of two samples."""
     both = np.nan_to_num(np.concatenate([mine, theirs]), nan=np.inf)
-    exact = len(set(both.tolist())) == len(both) and max(len(mine), len(theirs)) <= _EXACT
     ranks = stats.rankdata(both)  # the test may refuse infinities
     if np.ptp(ranks) == 0:  # nor does it know what is all alike
         return 0.5, 1.0
     first, second = np.split(ranks, [len(mine)])
-    found = stats.mannwhitneyu(first, second, method="exact" if exact else "asymptotic")
-    return 1 - float(found.statistic) / (len(mine) * len(theirs)), float(found.pvalue)
+    found = stats.mannwhitneyu(first, second, method="asymptotic")
+    effect = 1 - float(found.statistic) / (len(mine) * len(theirs))
+    fewer = min(first, second, key=len)
+    return effect, _exact_p(fewer, ranks) if len(fewer) <= _EXACT else float(found.pvalue)
+
+
+def _exact_p(some: Array, ranks: Array) -> float:
+    """Twice the share of equally large subsets of the ranks, ties included, with a sum as far out.
+
+    scipy's exact test knows no ties.
+    """
+    doubled = np.rint(2 * ranks).astype(int)  # of ties they are halves
+    size, total = len(some), round(2 * some.sum())
+    subsets = np.zeros((size + 1, np.sort(doubled)[-size:].sum() + 1))  # by size and sum
+    subsets[0, 0] = 1
+    for rank in doubled:
+        subsets[1:, rank:] += subsets[:-1, :-rank]
+    below, above = subsets[size, : total + 1].sum(), subsets[size, total:].sum()
+    return min(1.0, 2 * float(min(below, above) / subsets[size].sum()))
 
 
 def kruskal_on(results: Results, problem: str, column: str = "missing") -> float:
@@ -128,12 +163,11 @@ def holm(p_values: Array) -> Array:
 def values_on(results: Results, problem: str, column: str) -> Mapping[str, Array]:
     """A column of the table of runs by method, of one problem.
 
-    Of methods with two runs or more, and half as many as is usual at least: a few runs of one
-    method would take the power from the tests of all.
+    Of methods with two runs or more, and half as many as is usual at least.
     """
     groups: Any = results.table[results.table["problem"] == problem].groupby("method")[column]
     grouped = {str(name): own.to_numpy(dtype=float) for name, own in groups}
-    least = max(2, np.median([len(own) for own in grouped.values()]) / 2)
+    least = max(2, _least_runs([len(own) for own in grouped.values()]))
     return {name: own for name, own in grouped.items() if len(own) >= least}
 
 

@@ -73,8 +73,8 @@ def bench(
     from quietarm.ocp.errors import QuietarmError
     from quietarm.studies.bench.asked import jobs_of, problems_of, write_references
     from quietarm.studies.bench.page import bench_report, brief_report
-    from quietarm.studies.bench.results import Results
-    from quietarm.studies.bench.statistics import say_power
+    from quietarm.studies.bench.results import Results, imported_runs
+    from quietarm.studies.bench.statistics import say_power_of
     from quietarm.studies.report import show
     from quietarm.studies.report.progress import progress
     from quietarm.studies.report.words import print_lines
@@ -91,8 +91,10 @@ def bench(
     chosen, errors = problems_of(problems), Console(stderr=True)
     jobs, left_out = jobs_of(chosen, names, runs, evaluations, seed, settings_by_method(own, names))
     given = [Front.load(path) for path in imported]
+    planned = [(job.problem.name, job.label) for job in jobs]
+    planned += [(run.problem.name, run.method) for run in imported_runs(given, chosen)]
     if not quiet():
-        print_lines(errors, *left_out, say_power(runs, len(names)))
+        print_lines(errors, *left_out, say_power_of(planned))
     write_references(chosen, output)
     trouble: QuietarmError | None = None
     with progress(len(jobs), errors, quiet=quiet()) as begin:

@@ -5,16 +5,22 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from dataclasses import replace
+from itertools import combinations
 from math import comb
 
 import moocore
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from quietarm.metaheuristics import Job, finished_jobs, run_jobs
 from quietarm.metaheuristics.objective.population import ACCURACY
+from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.metaheuristics.quality import CORNER
+from quietarm.ocp.cost import COST
 from quietarm.studies.bench.asked import jobs_of, problems_of
 from quietarm.studies.bench.page import bench_report, problem_table
 from quietarm.studies.bench.results import Results, Run, quartiles
@@ -24,8 +30,10 @@ from quietarm.studies.bench.statistics import (
     pairs_on,
     ranking_over,
     say_power,
+    say_power_of,
     verdict_on,
 )
+from scipy import stats
 
 import quietarm as qa
 
@@ -127,6 +135,35 @@ def test_a_recorded_run_has_the_figures_of_a_job(fronts):
         Results.of_jobs({job: front}, [elsewhere.front("my tool")])
 
 
+def test_a_run_from_a_wider_box_is_imported_where_its_motions_lie_within_the_problem_s(fronts):
+    job, front = next((j, f) for j, f in fronts.items() if j.method == "random")
+    assert np.abs(front.coefficients).max() <= job.problem.bound
+    unbounded = front.restated(bound=None, method="my tool")
+    assert "my tool" in Results.of_jobs({job: front}, [unbounded]).methods
+    rows = np.random.default_rng(0).uniform(0.3, 0.5, (20, 2))
+    for bound in (0.5, None):
+        beyond = qa.Front.from_coefficients(
+            front.task, rows, method="my tool", profile=front.profile, bound=bound,
+            settings={"problem": NAME},
+        )  # fmt: skip
+        words = (
+            rf"a run of my tool has a_1 = 0\.\d+, and {NAME} allows -0\.2 to 0\.2; search within"
+        )
+        with pytest.raises(ValueError, match=words):
+            Results.of_jobs({job: front}, [beyond])
+
+
+def test_what_a_recorded_run_compiles_is_no_part_of_its_time():
+    task = qa.PointToPoint(qa.SingleLinkManipulator(omega=7.123), target=0.5, duration=0.8)
+    for rows in (100, 5, 105):  # the last are another block
+        before, began = COST.copy(), time.thread_time()
+        recorded = RecordedFunction(task, qa.CycloidPolynomial(2), bound=0.2)
+        recorded(np.zeros((rows, 2)))
+        seconds, built = recorded.archive.seconds, COST.since(before).builds
+        assert 0 < seconds <= time.thread_time() - began - built
+        assert (built > 0) == (rows < 105)
+
+
 def test_a_function_of_ones_own_is_a_method_and_runs_in_workers(tmp_path):
     def halton(function, seed, budget):
         rng = np.random.default_rng(seed)
@@ -158,6 +195,66 @@ def test_tests_are_exact_and_no_verdict_is_given_without_power(fronts):
     assert "random search" not in verdict
     few = Results.of_jobs({job: front for job, front in fronts.items() if job.seed < 3})
     assert "no verdict: with 3 runs" in verdict_on(few, NAME)
+
+
+def results_with(one, other, front):
+    """Two methods whose energies within 1 mm have the order of these numbers; 0 is none."""
+    still = front.points[0]
+    runs = []
+    for method, numbers in (("one", one), ("other", other)):
+        for seed, number in enumerate(numbers):
+            point = replace(still, residual=0.0 if number else 1.0, energy=1.0 + number)
+            own = replace(front.restated(seed=seed), points=(point,))
+            runs.append(Run(qa.problem_of(NAME), method, own))
+    return Results(runs)
+
+
+samples = st.lists(st.integers(0, 4), min_size=2, max_size=5)
+
+
+@settings(max_examples=30)
+@given(one=samples, other=samples)
+def test_with_ties_p_is_that_of_all_permutations_and_never_below_the_least(fronts, one, other):
+    (pair,) = pairs_on(results_with(one, other, next(iter(fronts.values()))), NAME, "energy_1mm").p
+    ranks = stats.rankdata([number or 9 for number in (*one, *other)])
+    sums = [sum(subset) for subset in combinations(ranks, len(one))]
+    own = ranks[: len(one)].sum()
+    tails = np.mean(np.array(sums) <= own), np.mean(np.array(sums) >= own)
+    assert pair == pytest.approx(min(1.0, 2 * min(tails)))
+    assert pair >= attainable_p(len(one), len(other), 1) * (1 - 1e-12)
+
+
+@pytest.mark.parametrize(("mine", "theirs"), [(5, 5), (12, 12), (12, 20), (9, 6)])
+def test_without_ties_p_is_scipys_exact(fronts, mine, theirs):
+    numbers = 1 + np.random.default_rng(mine + theirs).permutation(mine + theirs)
+    one, other = np.split(numbers, [mine])
+    results = results_with(one.tolist(), other.tolist(), next(iter(fronts.values())))
+    wanted = stats.mannwhitneyu(one, other, method="exact").pvalue
+    assert pairs_on(results, NAME, "energy_1mm")["p"].tolist() == pytest.approx([wanted])
+
+
+def test_power_counts_what_is_imported():
+    own = [(NAME, method) for method in ("nsga2", "epsilon") for _ in range(5)]
+    assert say_power_of(own).startswith("with 5 runs of each of 2 methods (1 pair) the least p")
+    assert "5 runs of each of 3 methods (3 pairs)" in say_power_of([*own, *[(NAME, "my")] * 6])
+    assert say_power_of([*own, (NAME, "my")]) == say_power_of(own)  # too few runs for a test
+    assert say_power_of([(NAME, "nsga2"), (NAME, "my")]) == (
+        "with 1 run and 1 pair no p can fall below 0.05: 4 runs are needed for a verdict"
+    )
+
+
+def test_the_command_counts_imports_and_refuses_them_before_it_runs(call, tmp_path, fronts):
+    front = next(iter(fronts.values()))
+    for name, task in (("mine", front.task), ("other", replace(front.task, duration=0.9))):
+        replace(front, task=task).restated(method="my tool").save(tmp_path / f"{name}.json")
+    line = f"bench {NAME} --methods random --runs 1 --evaluations 100 --output {tmp_path / 'out'}"
+    code, _, err = call(f"{line} --import {tmp_path / 'mine.json'}")
+    assert code == 0
+    assert "with 1 run and 1 pair no p can fall below 0.05" in err
+    code, _, err = call(f"{line}2 --import {tmp_path / 'other.json'}")
+    assert code == 2
+    assert "a run of my tool is of another move than" in err
+    assert not (tmp_path / "out2").exists()
 
 
 def test_of_motions_that_nobody_found_there_is_no_verdict(fronts):
@@ -226,6 +323,8 @@ def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
     assert (tmp_path / "curves.png").stat().st_size > 10_000
     text = (tmp_path / "report.md").read_text()
     assert "5 runs of each of 4 methods (6 pairs)" in text
+    assert "Ranks are over 1 independent move." in text
+    assert '"To 10 %" is the expected' in text
     assert "By energy within 1 mm: epsilon-constraint, SQP (points=8) ends nearest" in text
     pairs = pd.read_csv(tmp_path / "pairs.csv")
     assert pairs["measure"].value_counts().to_dict() == {"missing": 6, "energy_1mm": 6}
