@@ -126,6 +126,9 @@ class Fit:
         What swings of the nearest signals, without the trend; and what is left.
     delay : float
         By which the angle seems to be late [s]; 0 where it does not.
+    inflation : float
+        How many times as large a parameter's deviation is because the size of what the joint's
+        motion does is not known.
     """
 
     p: Array
@@ -134,6 +137,7 @@ class Fit:
     swinging: Array
     residual: Array
     delay: float
+    inflation: float
 
     @property
     def misfit(self) -> float:
@@ -176,12 +180,17 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
     covariance: Any = np.linalg.pinv(J.T @ J, hermitian=True) * power
     B, _, amplitudes = model.evaluate(x, count)
     own = B.shape[-1] - model.trend.shape[1]
-    swinging, delay = _products(B[..., :own], amplitudes[:, :own]), 0.0
+    swinging, delay, inflation = _products(B[..., :own], amplitudes[:, :own]), 0.0, 1.0
     if model.driven:
         later = np.gradient(_products(B[..., :1], amplitudes[:, :1]), time, axis=1) / deviation
         delay = _delay(weighed.ravel(), later.ravel(), J)
+        if not model.fixed:
+            known = np.delete(J, count + np.arange(len(B)) * B.shape[-1], axis=1)
+            certain: Any = np.linalg.pinv(known.T @ known, hermitian=True) * power
+            shares = np.diag(covariance)[:count] / np.diag(certain)[:count]
+            inflation = float(np.sqrt(shares.max()))
     deviations = (np.sqrt(np.diag(covariance)) / size)[:count]
-    return Fit(x[:count], deviations, model, swinging.T, residual.T, delay)
+    return Fit(x[:count], deviations, model, swinging.T, residual.T, delay, inflation)
 
 
 def _products(B: Array, amplitudes: Array) -> Array:

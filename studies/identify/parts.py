@@ -35,6 +35,8 @@ _SLOW = 0.25
 """Of the swing's frequency: slower motions are taken for drift."""
 _FAR = 4.0
 """A quarter of a period belongs to a swing where it leaves less than so many times the usual."""
+_INFLATED, _UNSURE = 20.0, 1e-3
+"""Times a frequency's deviation, and its share: the hub's share in it is then not identifiable."""
 _MUCH_DAMPING = 0.12
 """More than a held beam has, that turns; a controller that gives way damps like that."""
 _DAMPINGS = (0.002, 0.01, 0.03, 0.08, 0.2, 0.4)
@@ -107,13 +109,15 @@ class PartFitter:
                 parts.append(part)
             else:
                 why = f"{part.begin:.3g} to {part.end:.3g} s is no free decay of {frequency:.3g} Hz"
-        if not by_hand and moves(recording):
-            parts = self._with_hub(parts)
+        if moves(recording):
+            groups = [([part], self._rows(part)) for part in parts]
+            groups = groups if by_hand else [(parts, slice(None))]
+            parts = [part for own, rows in groups for part in self._with_hub(own, rows)]
         return parts, "" if parts else why
 
-    def whole(self) -> Part:
-        """All of the recording, by how the plant answers its joint's motion."""
-        part = replace(self._part(slice(None)), hub="moves")
+    def whole(self, rows: slice = slice(None)) -> Part:
+        """All of the recording, or some rows, by how the plant answers its joint's motion."""
+        part = replace(self._part(rows), hub="moves")
         starts = [self._given, *self._starts(self.frequency * _FACTORS)]
         best = sorted(starts, key=self.model(part).cost)[:_STARTS]
         return min((self._met(part, start)[0] for start in best), key=lambda one: one.misfit)
@@ -138,7 +142,14 @@ class PartFitter:
         """A fit of a part as it says, and the part with what that says."""
         ends = bounds_of(self.plant, self.names, start)
         best = fit(self.model(part), start, *ends, self.frequency)
-        return self._described(part, best), best
+        part = self._described(part, best)
+        for name, value, low, high in zip(self.names, best.p, *ends, strict=True):
+            if np.isfinite(high - low) and min(value - low, high - value) < 1e-6 * (high - low):
+                part = replace(part, cause="bound", warning=(
+                    f"{name} ends at the limit of what is sought: the model does not fit; begin "
+                    "after the release, by --part, or hold the joint"
+                ))  # fmt: skip
+        return part, best
 
     def _starts(self, frequencies: Array) -> list[Array]:
         """Frequencies and dampings from which fits may start, whichever mode swings."""
@@ -181,8 +192,11 @@ class PartFitter:
             part = part if tried.cause == "drift" else tried
         return part
 
+    def _rows(self, part: Part) -> slice:
+        return self.recording.rows(part.begin, part.end)
+
     def _piece(self, part: Part) -> Recording:
-        return self.recording.part(self.recording.rows(part.begin, part.end))
+        return self.recording.part(self._rows(part))
 
     def _part(self, rows: slice) -> Part:
         time = self.recording.time[rows]
@@ -205,15 +219,17 @@ class PartFitter:
             begin -= 1
         return slice(rows.stop - (count - begin) * size, rows.stop)
 
-    def _with_hub(self, parts: list[Part]) -> list[Part]:
-        """The parts, or the whole recording where the hub swings with them and that meets it all.
+    def _with_hub(self, parts: list[Part], rows: slice) -> list[Part]:
+        """The parts, or all of these rows where the hub swings with them and that meets it all.
 
         A hub that swings with the tip shifts the frequency (docs/plants.md).
         """
         if parts and not any(self._hub_swings(part) for part in parts):
             return parts
-        whole = self.whole()
-        if whole.misfit < max(_MET, 2 * whole.noise) and whole.cause != "delay":
+        whole = self.whole(rows)
+        fails = whole.cause in ("bound", "hub")
+        met = whole.misfit < max(_MET, 2 * whole.noise)
+        if met and not fails and whole.cause != "delay":
             return [whole]
         warning = (
             "the hub swings with the tip, so that the frequency is not that of a held one: hold "
@@ -222,7 +238,8 @@ class PartFitter:
         held = self.frequency_of(whole)
         return [
             replace(part, cause="hub", warning=warning)
-            if abs(self.frequency_of(part) / held - 1) > _HUB and not (part.warning or part.hub)
+            if (fails or abs(self.frequency_of(part) / held - 1) > _HUB)
+            and not (part.warning or part.hub)
             else part
             for part in parts
         ]
@@ -257,6 +274,11 @@ class PartFitter:
             return replace(part, cause="delay", warning=(
                 f"the misfit is {best.misfit:.1%} of the swing, less if the angle were not "
                 f"{abs(best.delay) * 1e3:.3g} ms {side}: record both by one clock"
+            ))  # fmt: skip
+        if best.inflation > _INFLATED and (best.deviations > _UNSURE * np.abs(best.p)).any():
+            return replace(part, cause="hub", warning=(
+                "the hub swings in proportion to the tip, so that its share in the frequency is "
+                "not identifiable: hold it, by a brake or a stiffer controller"
             ))  # fmt: skip
         cause, warning = cause_of(time, best.residual, best.swinging, self.frequency, noise)
         damping = float(best.p[self._dampings].max(initial=0.0))
