@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import import_module
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.ma  # numpy would load it within the first run
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.archive import Archive
 from quietarm.metaheuristics.objective.population import UNUSABLE
@@ -18,6 +18,8 @@ from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import table_of
 from quietarm.ocp.record import Setting
+
+import_module("numpy.ma")  # numpy would load it within the first run
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.quality import Reference

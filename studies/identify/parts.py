@@ -282,13 +282,12 @@ class PartFitter:
             ))  # fmt: skip
         cause, warning = cause_of(time, best.residual, best.swinging, self.frequency, noise)
         damping = float(best.p[self._dampings].max(initial=0.0))
-        held = self.recording.angle is None and self.plant.joint == ROTARY
-        if not cause and held and damping > _MUCH_DAMPING:
-            cause = "hub"
+        if not cause and self.plant.joint == ROTARY and damping > _MUCH_DAMPING:
+            cause, named = "hub", self.recording.angle is not None
             warning = (
                 f"a damping ratio of {damping:.2g} is more than a beam on a held joint has: a "
                 "controller that gives way damps like that, and shifts the frequency; hold the "
-                "joint, or name its angle by --angle"
+                f"joint{'' if named else ', or name its angle by --angle'}"
             )
         return replace(part, cause=cause, warning=warning)
 

@@ -187,6 +187,17 @@ def test_a_hub_that_swings_with_the_tip_is_part_of_the_model():
     assert found.parts[0].hub == "moves"
 
 
+@pytest.mark.parametrize("by_hand", [{}, {"parts": [(3.0, 6.4)]}])
+def test_a_hub_that_only_swings_with_the_tip_hides_its_share(by_hand):
+    """Without a move frequency and coupling are one number too many for a decay."""
+    t, angle, tip = soft_hub(1.5)
+    late = (t > 3.0) & (t < 6.4)
+    found = beam(qa.Recording(t[late], noisy(angle[late], 0.02), noisy(tip[late], 0.02)), **by_hand)
+    assert causes(found) == {"hub"}
+    with pytest.raises(ValueError, match="hold"):
+        _ = found.errors
+
+
 def test_a_carriage_may_be_damped_more_than_a_beam():
     each = [
         qa.Recording(TIME, tip=noisy(decay(TIME, 12, 0.15), 0.005, seed), name=f"{seed}")
