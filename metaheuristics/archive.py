@@ -78,7 +78,8 @@ class Archive:
     def mark(self, seconds: float) -> None:
         """Note where the search is."""
         F = self.non_dominated()[1]
-        quality = None if self._reference is None else self._reference.quality(F)
+        points = F[spread(F, MOST_POINTS)]  # as many as its front would have
+        quality = None if self._reference is None else self._reference.quality(points)
         self.marks.append(Mark(self.evaluations, self.share_of_box(), seconds, quality=quality))
 
     def front(

@@ -26,7 +26,7 @@ Method: TypeAlias = "str | Algorithm | Callable[..., Any]"
 POLISH = "+polish"
 _REHEARSAL = 3
 """Generations, or points, that are found and forgotten before the first job of its kind in a
-process: what is compiled and loaded then is no part of a method's time."""
+process: what is loaded then, and compiled by IPOPT and others, is no part of a method's time."""
 _rehearsed: set[tuple[NamedProblem, str]] = set()
 
 

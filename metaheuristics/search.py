@@ -244,7 +244,7 @@ def _own(
 ) -> tuple[Algorithm, dict[str, Any]]:
     """A copy of an algorithm that was given, and what it is set to."""
     from quietarm.metaheuristics.algorithms.own import own_algorithm
-    from quietarm.metaheuristics.algorithms.provenance import settings_of
+    from quietarm.metaheuristics.algorithms.own_settings import settings_of
 
     given: Any = algorithm
     if inspect.isclass(given):

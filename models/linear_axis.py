@@ -65,9 +65,9 @@ class LinearAxis(Plant):
 
     @property
     def measured(self) -> dict[str, float]:
-        """The parameters that may be wrong by a share: of one mode, not those of the second."""
-        known = super().measured
-        return {name: v for name, v in known.items() if self.modes == 2 or not name.endswith("2")}
+        """The parameters that may have relative errors; with one mode, without those of mode 2."""
+        unused = () if self.modes == 2 else ("omega2", "zeta2", "share2")
+        return {name: v for name, v in super().measured.items() if name not in unused}
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """Accelerations of the load by each mode, seen from the carriage [m/s^2]."""

@@ -83,7 +83,7 @@ class Record:
 
     def __post_init__(self) -> None:
         if not self.method.strip():
-            raise ValueError(f"method is {self.method!r}; give the name of what found the points")
+            raise ValueError(f"method is {self.method!r}; give the name of the method")
         for name, value in self.settings.items():
             if isinstance(value, float):
                 finite(f"setting {name}", value)

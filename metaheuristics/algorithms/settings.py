@@ -100,7 +100,7 @@ _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
     "obj_crowding": ("objective_crowding", "spread the objectives", _yes_or_no),
     "var_crowding": ("coefficient_crowding", "spread the coefficients", _yes_or_no),
 }  # fmt: skip
-"""By the algorithms' own arguments, with a dot of an operator's."""
+"""By the algorithm's own argument; ``crossover.eta`` is the crossover operator's ``eta``."""
 
 
 @dataclass(frozen=True)

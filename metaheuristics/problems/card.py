@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from quietarm.metaheuristics.quality import objectives
 from quietarm.ocp import Front
 
 _SHALLOW = 1e-4
@@ -39,7 +40,7 @@ class Card:
 
 def card_of(front: Front) -> Card:
     """The card of a front, by its points; a range between two neighbours is taken as convex."""
-    points = np.column_stack([front.residuals, front.energies])
+    points = objectives(front)
     span = np.ptp(points, axis=0)
     ranges = [
         (float(points[i, 0]), float(points[j, 0]))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib import import_module
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,17 +15,13 @@ from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.quality import measured
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import whole
-from quietarm.ocp.front.points import table_of
+from quietarm.ocp.front.points import beyond, table_of
 from quietarm.ocp.record import Setting
-
-import_module("numpy.ma")  # numpy would load it within the first run
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.quality import Reference
 
 Array = NDArray[np.float64]
-_ROUNDING = 1e-9
-"""Share of the box by which scaling from another may pass it."""
 
 
 class BudgetSpentError(Exception):
@@ -78,17 +73,14 @@ class RecordedFunction(MoveFunction):
         ValueError also when a coefficient is beyond the box, or is no number.
         """
         table = table_of(candidates, len(self.variables))
-        inside = np.clip(table, self.lower, self.upper)
-        beyond = np.argwhere(~(np.abs(table - inside) <= _ROUNDING * (self.upper - self.lower)))
-        if len(beyond):
-            row, column = beyond[0]
+        for row, column in beyond(table, self.lower, self.upper):
             raise ValueError(
                 f"{self.variables[column]} of candidate {self.archive.evaluations + row + 1} is "
                 f"{table[row, column]:.4g}, not from {self.lower[column]:.4g} to "
                 f"{self.upper[column]:.4g}; clip candidates to the function's lower and upper"
             )
         left = self.budget - self.archive.evaluations
-        afforded = inside[: int(min(left, len(inside)))]
+        afforded = np.clip(table, self.lower, self.upper)[: int(min(left, len(table)))]
         found, violations = super().__call__(afforded)
         failed, broken = (found >= UNUSABLE).any(axis=1), (violations > 0).any(axis=1)
         self.failed += int(failed.sum())

@@ -101,7 +101,6 @@ class FreeSolution:
     energy: float
     peaks: dict[str, float]
     status: SolveStatus
-    iterations: int
 
 
 class FloorProgram:
@@ -212,7 +211,6 @@ class FloorProgram:
             energy=float(mean * self.task.duration * self._measures[0]),
             peaks=dict(zip(names, (peaks * self._measures[1:]).tolist(), strict=True)),
             status=SolveStatus.from_ipopt(stop.return_status),
-            iterations=stop.iterations,
         )
 
     def _guess(self, free: FreeMotion) -> Array:

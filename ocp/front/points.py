@@ -141,8 +141,8 @@ class Evaluated(NamedTuple):
 
 
 def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.float64]:
-    """Coefficients, one row for each motion; one motion at least where any columns will do."""
-    if np.ma.isMaskedArray(coefficients):
+    """Coefficients, a row for each motion; without `columns` any number of them, and a row."""
+    if hasattr(coefficients, "filled"):  # to name numpy's class would load numpy.ma
         raise ValueError(
             "coefficients are a masked array; give plain numbers, as of its filled(value)"
         )
@@ -164,6 +164,12 @@ def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.
     return table
 
 
+def beyond(table: NDArray[np.float64], lower: ArrayLike, upper: ArrayLike) -> NDArray[np.int64]:
+    """Row and column of every coefficient that is not within a box, or is no number."""
+    size = np.maximum(np.abs(lower), np.abs(upper))
+    return np.argwhere(~(np.abs(table - np.clip(table, lower, upper)) <= _ROUNDING * size))
+
+
 def refuse_beyond_box(
     profile: JointProfile,
     table: NDArray[np.float64],
@@ -174,11 +180,7 @@ def refuse_beyond_box(
     if bound is None:
         return
     most = positive("its bound", bound)
-    lower, upper = profile.box(most)
-    room = _ROUNDING * np.maximum(np.abs(lower), np.abs(upper))
-    beyond = np.argwhere((table < lower - room) | (table > upper + room))
-    if len(beyond):
-        row, column = beyond[0]
+    for row, column in beyond(table, *profile.box(most)):
         raise ValueError(
             f"point {row + 1} of {len(table)} has the coefficient {table[row, column]:.4g}, "
             f"beyond the stated bound of {most:g}{remedy}"

@@ -54,7 +54,7 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     Parameters
     ----------
     front : Front
-        A front of any method; the bound among its settings is kept.
+        A front of any method; the bound of its record is kept.
     steps : int, optional
         Steps of the solver's discretisation, as for `plan_move`.
     report : callable, optional
@@ -82,14 +82,15 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     found, record = [one for own in tried for one in own], front.record
     polished = curve.to_front("polish", found, len(front.points), time.perf_counter() - began)
     polished = replace(
-        polished, record=record, reference=front.reference, history=front.history
-    ).restated(
-        method=f"{record.method}, polished",
-        settings={**record.settings, "polish": curve.settings.solver,
-                  "steps": curve.transcription.steps},
-        iterations=record.iterations + polished.record.iterations,
-        versions=polished.record.versions,
-        seconds=record.seconds + polished.record.seconds,
+        polished, reference=front.reference, history=front.history,
+        record=replace(
+            record, method=f"{record.method}, polished",
+            settings={**record.settings, "polish": curve.settings.solver,
+                      "steps": curve.transcription.steps},
+            iterations=record.iterations + polished.record.iterations,
+            versions=polished.record.versions,
+            seconds=record.seconds + polished.record.seconds,
+        ),
     )  # fmt: skip
     return Polish(polished, tuple(map(_gain, front.points, tried)))
 

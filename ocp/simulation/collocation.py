@@ -119,7 +119,7 @@ class Step:
         ends = [(dot(_ONCE[NODES], own), dot(_TWICE[NODES], own)) for own in by_mode]
         return (
             [w + dot(times, (v, twice)) for w, v, (_, twice) in zip(W, dW, ends, strict=True)],
-            [v + dot(times, (once, 0.0)) for v, (once, _) in zip(dW, ends, strict=True)],
+            [v + dot(times[:1], (once,)) for v, (once, _) in zip(dW, ends, strict=True)],
         )
 
     def transition(self) -> tuple[list[Expression], list[list[Expression]]]:

@@ -137,8 +137,8 @@ def march(
 ) -> tuple[list[Expression], list[Expression], Expression]:
     """States before every step (rows, steps), by mode, and the state at arrival; from rest or else.
 
-    Only this recursion is sequential: everything else is computed for all steps at once. A row may
-    have several states side by side, of another constant: that then has `width` columns a step.
+    Only this recursion is sequential: everything else is computed for all steps at once. With a
+    `width` above 1 a row has as many states side by side, and the constant as many columns a step.
     """
     (rows, steps), size = shape, len(constant)
     acting = tuple((i, k) for k in range(size) for i in range(size) if not is_zero(columns[k][i]))

@@ -118,13 +118,12 @@ class _Compiled:
         """The outputs, a row each, a block for each thread at a time."""
         most, rows = self._sizes[-1], max(len(inputs[0]), 1)
         blocks = [[one[i : i + most] for one in inputs] for i in range(0, rows, most)]
-        for size in {len(blocks[0][0]), len(blocks[-1][0])}:
-            self.prepare(size)  # in this thread, whose time counts
+        sizes = [self.prepare(len(one[0])) for one in blocks]  # in this thread, whose time counts
         if threads > 1 and len(blocks) > 1:
             with ThreadPoolExecutor(threads) as pool:
-                parts = list(pool.map(self._evaluate, blocks))
+                parts = list(pool.map(self._evaluate, blocks, sizes))
         else:
-            parts = [self._evaluate(block) for block in blocks]
+            parts = list(map(self._evaluate, blocks, sizes))
         return [np.concatenate(part) for part in zip(*parts, strict=True)]
 
     def prepare(self, rows: int) -> int:
@@ -140,9 +139,8 @@ class _Compiled:
             self._idle[size] = []
         return size
 
-    def _evaluate(self, block: Sequence[Array]) -> tuple[Array, ...]:
+    def _evaluate(self, block: Sequence[Array], size: int) -> tuple[Array, ...]:
         rows = len(block[0])
-        size = self.prepare(rows)
         try:
             function = self._idle[size].pop()
         except IndexError:  # all are in use by other threads, or none is made yet

@@ -51,9 +51,9 @@ def differentiate_energy(
     """
     steps, share = h.shape[1], energy.absolute
     of_nodes = ca.horzcat(*(w * h for w in GAUSS_WEIGHTS))
-    least = ca.sqrt(ca.sum2(power * power) / power.shape[1]) + _TINY
+    rms = ca.sqrt(ca.sum2(power * power) / power.shape[1]) + _TINY
     of_sharp, zeros = differentiate_absolute(
-        ca.horzsplit(power, steps), _LEAST_SLOPE * ca.repmat(least, 1, steps) * length
+        ca.horzsplit(power, steps), _LEAST_SLOPE * ca.repmat(rms, 1, steps) * length
     )
     rounded, is_rounded = ca.sqrt(power * power + width * width), width > 0
     sharp_slope = ca.repmat(h, 1, NODES) * ca.horzcat(*of_sharp)

@@ -14,7 +14,7 @@ from quietarm.metaheuristics import PRESETS, Job, NamedProblem
 from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front
-from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.front.points import LEVELS, beyond
 
 Array = NDArray[np.float64]
 AT_REST = LEVELS[0]
@@ -213,9 +213,7 @@ def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
     """ValueError where a point is not in the problem's box."""
     lower, upper = problem.profile.box(problem.bound)
     table = front.coefficients
-    beyond = np.argwhere((table < lower) | (table > upper))
-    if len(beyond):
-        row, column = beyond[0]
+    for row, column in beyond(table, lower, upper):
         raise ValueError(
             f"a run of {front.record.method} has a_{column + 1} = {table[row, column]:.4g}, and "
             f"{problem.name} allows {lower[column]:.4g} to {upper[column]:.4g}; search within that "

@@ -10,7 +10,7 @@ import numpy as np
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import CycloidPolynomial, Floor, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
@@ -194,7 +194,7 @@ def _way(size: float, task: PointToPoint) -> str:
 
 def _peak(name: str, task: PointToPoint, motion: Motion, remedy: str) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
-    peak, unit = motion.peak(name), joint_unit(QUANTITIES[name].unit, task.plant.joint)
+    peak, unit = motion.peak(name), quantities_of(task.plant.joint)[name].unit
     if name == "deflection":
         small = task.plant.small_deflection
         if small is None or max(motion.peak_deflection, motion.residual) <= small:
