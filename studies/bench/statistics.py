@@ -19,8 +19,8 @@ from scipy import stats
 
 Array = NDArray[np.float64]
 ALPHA = 0.05
-_EXACT = 12
-"""Runs of either method up to which Mann-Whitney's test is exact."""
+_EXACT = 50
+"""Runs of the method with fewer, up to which Mann-Whitney's test is exact."""
 
 
 def attainable_p(runs: int, others: int, pairs: int) -> float:

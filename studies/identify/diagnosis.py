@@ -117,6 +117,4 @@ def exceeds(values: Array, fitted: Array, flat: NDArray[np.bool_]) -> bool:
     """Whether a swing fitted to the other samples passes what the flat ones show by far."""
     side = np.sign(values - np.median(values, axis=0))
     further = ((fitted - values) * side)[flat].mean(axis=0)
-    levels = np.diff(np.unique(values))
-    resolution = float(levels.min()) if len(levels) else 0.0
-    return bool((further > np.maximum(2 * noise_of(values), 0.6 * resolution)).any())
+    return bool((further > 2 * noise_of(values)).any())

@@ -126,9 +126,9 @@ class Fit:
         What swings of the nearest signals, without the trend; and what is left.
     delay : float
         By which the angle seems to be late [s]; 0 where it does not.
-    inflation : float
-        How many times as large a parameter's deviation is because the size of what the joint's
-        motion does is not known.
+    inflation : array
+        By what factor each parameter's deviation grows because the size of the response to the
+        joint's motion is unknown.
     """
 
     p: Array
@@ -137,7 +137,7 @@ class Fit:
     swinging: Array
     residual: Array
     delay: float
-    inflation: float
+    inflation: Array
 
     @property
     def misfit(self) -> float:
@@ -177,20 +177,25 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
     size[size == 0] = 1.0
     J /= size  # units apart: else the pseudo-inverse takes a small one for none
     power = _power_near(time, weighed, frequency, len(x))
-    covariance: Any = np.linalg.pinv(J.T @ J, hermitian=True) * power
+    variances = _variances(J)
     B, _, amplitudes = model.evaluate(x, count)
     own = B.shape[-1] - model.trend.shape[1]
-    swinging, delay, inflation = _products(B[..., :own], amplitudes[:, :own]), 0.0, 1.0
+    swinging, delay = _products(B[..., :own], amplitudes[:, :own]), 0.0
+    inflation = np.ones(count)
     if model.driven:
         later = np.gradient(_products(B[..., :1], amplitudes[:, :1]), time, axis=1) / deviation
         delay = _delay(weighed.ravel(), later.ravel(), J)
         if not model.fixed:
             known = np.delete(J, count + np.arange(len(B)) * B.shape[-1], axis=1)
-            certain: Any = np.linalg.pinv(known.T @ known, hermitian=True) * power
-            shares = np.diag(covariance)[:count] / np.diag(certain)[:count]
-            inflation = float(np.sqrt(shares.max()))
-    deviations = (np.sqrt(np.diag(covariance)) / size)[:count]
+            inflation = np.sqrt(variances[:count] / _variances(known)[:count])
+    deviations = (np.sqrt(variances * power) / size)[:count]
     return Fit(x[:count], deviations, model, swinging.T, residual.T, delay, inflation)
+
+
+def _variances(J: Array) -> Array:
+    """Variances of parameters by the derivatives of residuals of unit variance."""
+    covariance: Any = np.linalg.pinv(J.T @ J, hermitian=True)
+    return np.diag(covariance)
 
 
 def _products(B: Array, amplitudes: Array) -> Array:

@@ -29,7 +29,7 @@ def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
 
     0 where nothing swings; ValueError where nothing does in any, or as no arm does.
     """
-    tables = [_candidates(_longest_rest(one)) for one in recordings]
+    tables = [_candidates_of(one) for one in recordings]
     if not any(any(table.values()) for table in tables):
         raise ValueError(
             f"{recordings[0].name}: no swing stands out of the noise; push harder, or record "
@@ -87,6 +87,12 @@ def _longest_rest(recording: Recording) -> Recording:
     first, last = max(runs, key=lambda run: run[1] - run[0], default=(0, 0))
     long = last - first >= max(len(at_rest) / 5, LEAST_ROWS)
     return recording.part(slice(first, last)) if long else recording
+
+
+def _candidates_of(recording: Recording) -> dict[float, float]:
+    """Candidates of the longest rest, or where nothing swings there of the whole recording."""
+    at_rest = _candidates(_longest_rest(recording))
+    return at_rest if any(at_rest.values()) else _candidates(recording)
 
 
 def _candidates(recording: Recording) -> dict[float, float]:

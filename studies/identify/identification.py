@@ -16,7 +16,7 @@ from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
 from quietarm.studies.identify.machine import Identified, Part, in_torque_alone
 from quietarm.studies.identify.parameters import is_modal
-from quietarm.studies.identify.parts import PartFitter
+from quietarm.studies.identify.parts import SILENT, PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.ring_downs import moves
 
@@ -77,7 +77,8 @@ def identify(
         if not fitted and not any(moves(one) for one in recordings):
             raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
     if not fitted:
-        left_out = {}
+        left_out = {one.name: SILENT for one, frequency in each if not frequency}
+        each = [(one, frequency) for one, frequency in each if frequency]
         unknown = _not_identifiable(each, plant, names)
         fitted = _wholes(each, plant, [name for name in names if name not in unknown])
     estimates, wide = combine([name for name in names if name not in unknown], fitted)
@@ -93,7 +94,7 @@ def curve_of(found: Identified, part: Part, recordings: Sequence[Recording]) -> 
     """What was fitted in a part, and the signals that it was met by (rows, signals)."""
     recording = next(one for one in recordings if one.name == part.recording)
     fitter = PartFitter(found.plant, list(part.values), recording, 1.0)
-    fitter.frequency = fitter.frequency_of(part)
+    fitter.frequency = fitter.frequency_of(np.array(list(part.values.values())))
     model = fitter.model(part)
     return model, model.fitted(np.array(list(part.values.values())))
 
@@ -142,8 +143,8 @@ def _wholes(
     least = min(part.misfit for part in found)
     if least > _BAD:
         raise ValueError(
-            f"{found[0].recording}: with no {' and '.join(names)} does {plant.name} move so, "
-            f"the misfit is {least:.0%} of the swing; check columns and units"
+            f"{plant.name} does not move as recorded with any {' and '.join(names)}: the best "
+            f"misfit is {least:.0%} of the swing; check columns and units"
         )
     return found
 

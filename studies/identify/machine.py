@@ -28,7 +28,7 @@ class Estimate:
     low, high : float
         Ends of the interval that covers the mean in 95 of 100 cases.
     next_low, next_high : float or None
-        Ends of the interval that covers the next recording's in 95 of 100 cases, from the scatter
+        Ends of the interval that covers the next swing's in 95 of 100 cases, from the scatter
         of the parts beyond their own uncertainty; None with one part.
     """
 
@@ -74,7 +74,7 @@ class Part:
     noise : float
         The recording's own noise, as a share of the same.
     cause, warning : str
-        Why the residuals are more than noise: a word, and a sentence; empty if they are not.
+        Why the part is doubted: a word, and a sentence; empty where it is not.
     saturated : int
         Samples at the sensor's limit, which are excluded.
     drifts : bool
@@ -134,7 +134,7 @@ class Identified(Saved):
 
     @property
     def errors(self) -> dict[str, float]:
-        """Relative errors by the intervals of the next recording, for an `Uncertainty`.
+        """Relative errors by the intervals of the next swing, for an `Uncertainty`.
 
         Raises
         ------

@@ -36,12 +36,15 @@ _SLOW = 0.25
 _FAR = 4.0
 """A quarter of a period belongs to a swing where it leaves less than so many times the usual."""
 _INFLATED, _UNSURE = 20.0, 1e-3
-"""Times a frequency's deviation, and its share: the hub's share in it is then not identifiable."""
+"""Factor on a frequency's deviation, and that deviation as a share: beyond both the hub's share in
+the frequency is not identifiable."""
 _MUCH_DAMPING = 0.12
 """More than a held beam has, that turns; a controller that gives way damps like that."""
 _DAMPINGS = (0.002, 0.01, 0.03, 0.08, 0.2, 0.4)
 _STARTS = 2
 """Of whole recordings."""
+SILENT = "no swing stands out of the noise"
+"""Why a recording is left out."""
 
 
 class PartFitter:
@@ -94,7 +97,7 @@ class PartFitter:
         """The ring-downs of the recording, or why there are none."""
         recording, frequency = self.recording, self.frequency
         if not frequency:
-            return [], "no swing stands out of the noise"
+            return [], SILENT
         if by_hand:
             found = [recording.rows(*ends) for ends in by_hand]
             found = [rows for rows in found if rows.stop - rows.start >= LEAST_ROWS]
@@ -134,9 +137,9 @@ class PartFitter:
         by_p -= others @ np.linalg.lstsq(others, by_p, rcond=None)[0]
         return by_p * np.where(self._given != 0, np.abs(self._given), 1e-2)
 
-    def frequency_of(self, part: Part) -> float:
-        """Of a part's slowest mode [Hz], by its values."""
-        return float(self._response.eigenvalues(_p(part))[0][0].imag) / tau
+    def frequency_of(self, p: Array) -> float:
+        """Frequency of the slowest mode [Hz] by some parameters."""
+        return float(self._response.eigenvalues(p)[0][0].imag) / tau
 
     def _met(self, part: Part, start: Array) -> tuple[Part, Fit]:
         """A fit of a part as it says, and the part with what that says."""
@@ -235,10 +238,10 @@ class PartFitter:
             "the hub swings with the tip, so that the frequency is not that of a held one: hold "
             "it, by a brake or a stiffer controller"
         )
-        held = self.frequency_of(whole)
+        held = self.frequency_of(_p(whole))
         return [
             replace(part, cause="hub", warning=warning)
-            if (fails or abs(self.frequency_of(part) / held - 1) > _HUB)
+            if (fails or abs(self.frequency_of(_p(part)) / held - 1) > _HUB)
             and not (part.warning or part.hub)
             else part
             for part in parts
@@ -275,7 +278,8 @@ class PartFitter:
                 f"the misfit is {best.misfit:.1%} of the swing, less if the angle were not "
                 f"{abs(best.delay) * 1e3:.3g} ms {side}: record both by one clock"
             ))  # fmt: skip
-        if best.inflation > _INFLATED and (best.deviations > _UNSURE * np.abs(best.p)).any():
+        unsure = (best.inflation > _INFLATED) & (best.deviations > _UNSURE * np.abs(best.p))
+        if unsure[self._rates].any():
             return replace(part, cause="hub", warning=(
                 "the hub swings in proportion to the tip, so that its share in the frequency is "
                 "not identifiable: hold it, by a brake or a stiffer controller"

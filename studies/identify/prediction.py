@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,15 +70,13 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
             hub = part.hub if part.hub == "moves" else ""
             model = fitter.model(Part(one.name, part.begin, part.end, hub=hub))
             model.trend = model.trend[:, :1]  # a slope of two periods leads astray
-            known = replace(part, values=dict(zip(names, p.tolist(), strict=True)))
-            shares = _shares(model, p, 1 / fitter.frequency_of(known))
+            shares = _shares(model, p, 1 / fitter.frequency_of(p))
             if shares:
                 worst, worst_at = min(shares)
                 share = float(np.median([share for share, _ in shares]))
                 ends = part.begin, part.end
-                found.append(
-                    Prediction(one.name, *ends, share, worst, worst_at, fitter.frequency_of(part))
-                )
+                own = fitter.frequency_of(np.array(list(part.values.values())))
+                found.append(Prediction(one.name, *ends, share, worst, worst_at, own))
     if not found:
         raise ValueError(f"{recordings[0].name}: no ring-down of three periods; record longer")
     return found

@@ -198,6 +198,14 @@ def test_a_hub_that_only_swings_with_the_tip_hides_its_share(by_hand):
         _ = found.errors
 
 
+def test_a_swing_is_found_where_the_joint_rests_in_silence():
+    t, angle, tip = soft_hub(1.5)
+    late = (t > 1.6) & (t < 6.4)
+    found = beam(qa.Recording(t[late], noisy(angle[late], 0.001), noisy(tip[late], 0.001)))
+    assert found.plant.omega == pytest.approx(2 * math.pi * 1.83, rel=5e-3)
+    assert found.parts[0].hub == "moves"
+
+
 def test_a_carriage_may_be_damped_more_than_a_beam():
     each = [
         qa.Recording(TIME, tip=noisy(decay(TIME, 12, 0.15), 0.005, seed), name=f"{seed}")
