@@ -17,7 +17,7 @@ from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, cert
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, SolveSettings
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Scalarization, Solution
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution
 from quietarm.ocp.solvers.transcription import Transcription
 from quietarm.ocp.task import PointToPoint
 
@@ -75,16 +75,11 @@ class Curve:
         """Of points between the ends: less exact than a plan; steps are doubled once."""
         return Tolerances(energy=1e-4, most_steps=2 * self.transcription.steps)
 
-    def limits(self, residual: float = np.inf) -> tuple[Limit, ...]:
-        """The task's limits, and one of the residual [m]."""
-        return (*self.task.limits, Limit.of_residual(residual))
-
     def problem(
         self, residual_limit: float = np.inf, minimise: Mapping[str, float] = LEAST_ENERGY
     ) -> Problem:
         """The problem at a residual limit [m]."""
-        asked = Scalarization(self.limits(residual_limit), self.settings.bound, minimise)
-        return Problem(self.transcription, asked)
+        return Problem.of(self.transcription, residual_limit, self.settings.bound, minimise)
 
     def certify(
         self,
@@ -100,7 +95,8 @@ class Curve:
         """
         solved = [solution for solution, _ in found if solution.status.solved]
         problems = [self.problem(np.inf if free else one.residual) for one in solved]
-        tolerances, limits = OF_A_PLAN if free else self.tolerances, self.limits(most_residual)
+        tolerances = OF_A_PLAN if free else self.tolerances
+        limits = (Limit.of_residual(most_residual), *self.task.limits)
         outcomes = iter(certify(problems, solved, self.solver, tolerances, limits))
         ended = [next(outcomes) if one.status.solved else one.status.text for one, _ in found]
         return [

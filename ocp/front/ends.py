@@ -91,13 +91,13 @@ def _least_residual(curve: Curve, cheapest: Solution) -> tuple[Solution, Certifi
     if least is None:
         return cheapest, _certify_cheapest(curve, cheapest)
     transcription, asked = curve.problem(minimise={RESIDUAL: 1.0})
-    limits, solver = curve.limits(), curve.solver
+    limits, solver = curve.problem().scalarization.limits, curve.solver
     try:
         reached = certify_one(Problem(transcription, asked), least, solver, limits=limits)
         transcription, asked = reached.problem
         residual = Limit.of_residual(reached.solution.residual * (1 + _SAMPLING))
         others = [limit for limit in asked.limits if limit.name != RESIDUAL]
-        asked = asked._replace(limits=(*others, residual), minimise=LEAST_ENERGY, offset=None)
+        asked = asked._replace(limits=(*others, residual), minimise=LEAST_ENERGY, offset=0.0)
         problem = Problem(transcription, asked)
         (found,) = solver.solve([problem], [reached.solution.coefficients], warm=True)
         still = found if found.status.solved else reached.solution

@@ -11,7 +11,7 @@ import numpy as np
 from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.limits import QUANTITIES, Limit, TorqueSpeedLine
+from quietarm.ocp.limits import QUANTITIES, TorqueSpeedLine
 from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.feasibility import explain, least_peaks_of
 from quietarm.ocp.planning.plan import Plan
@@ -20,7 +20,7 @@ from quietarm.ocp.planning.terms import CHOSEN, SIX
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import FreeVibration
-from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.solvers.transcription import Transcription
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
@@ -187,8 +187,8 @@ class _Search:
         The default residual limit of an uncertain task is not known yet; other limits count.
         """
         residual = 1.0 if task.uncertainty else self.settings["residual_limit"] or 0.0
-        asked = Scalarization((Limit.of_residual(residual), *task.limits), self.settings["bound"])
-        problem = Problem(Transcription.of(task.certain, self.profile), asked)
+        steps = Transcription.of(task.certain, self.profile)
+        problem = Problem.of(steps, residual, self.settings["bound"])
         starts = [self.profile.plain, *([] if guess is None else [np.array(guess)])]
         (found,) = best_of_starts([problem], [starts], Sqp())
         if found.status.solved:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.limits import QUANTITIES, Limit
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
     start_coefficients,
@@ -23,7 +23,7 @@ from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
 from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
+from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.transcription import first_steps, transcribe
 from quietarm.ocp.task import PointToPoint
 
@@ -107,7 +107,7 @@ def plan_moves(
     settings = SolveSettings(residual_limit, bound, starts, seed, solver=solver)
     _check(tasks, profile)
     problems = [
-        Problem(one, Scalarization((Limit.of_residual(residual_limit), *one.task.limits), bound))
+        Problem.of(one, residual_limit, bound)
         for one in transcribe(tasks, profile, _steps(tasks, profile))
     ]
     chosen, first = solver_of(settings), start_coefficients(profile, settings)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
     solve_from_starts,
@@ -30,7 +30,7 @@ from quietarm.ocp.record import REST, SolveSettings, Verification
 from quietarm.ocp.robustness.measures import quiet_residual
 from quietarm.ocp.robustness.perturbed import Worst, peaks_between
 from quietarm.ocp.solvers.choice import SolverName, solver_of
-from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.transcription import Transcription
 from quietarm.ocp.task import PointToPoint
 
@@ -193,9 +193,8 @@ def _hold_default(
         plan = _hold(task, profile, replace(settings, residual_limit=min(largest, most)), starts)
     except InfeasibleTaskError:
         transcription = Transcription.of(task, profile, settings.steps)
-        asked = Scalarization(task.limits, settings.bound, {RESIDUAL: 1.0})
-        problem, solver = Problem(transcription, asked), solver_of(settings)
-        (found,) = best_of_starts([problem], [starts], solver)
+        problem = Problem.of(transcription, bound=settings.bound, minimise={RESIDUAL: 1.0})
+        (found,) = best_of_starts([problem], [starts], solver_of(settings))
         if not found.status.solved:
             raise
         limit = min((1 + EXCESS) * found.residual, most)
@@ -265,8 +264,7 @@ def plan_from_starts(
     began, solver = time.perf_counter(), solver_of(settings)
     starts = start_coefficients(profile, settings) if starts is None else starts
     transcription = Transcription.of(task, profile, settings.steps)
-    limits = (Limit.of_residual(settings.residual_limit), *task.limits)
-    problem = Problem(transcription, Scalarization(limits, settings.bound))
+    problem = Problem.of(transcription, settings.residual_limit, settings.bound)
     best, solved = solve_from_starts(problem, starts, solver)
     certified = certify_one(problem, best, solver)
     assert isinstance(certified.checked, Candidate)  # one alone is judged by CVODES

@@ -14,13 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import best_of_starts, start_coefficients
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.record import Setting, SolveSettings
 from quietarm.ocp.solvers.choice import solver_of
-from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
+from quietarm.ocp.solvers.problem import Problem, Solution
 from quietarm.ocp.solvers.transcription import Transcription
 from quietarm.ocp.task import PointToPoint
 
@@ -81,10 +80,8 @@ def plan_with_chosen_terms(
 
 def _solve_with_six(task: PointToPoint, settings: SolveSettings) -> Solution:
     """What six terms give for the nominal plant, by the solver's own steps."""
-    limits = (Limit.of_residual(settings.residual_limit), *task.limits)
-    problem = Problem(
-        Transcription.of(task.certain, SIX, settings.steps), Scalarization(limits, settings.bound)
-    )
+    steps = Transcription.of(task.certain, SIX, settings.steps)
+    problem = Problem.of(steps, settings.residual_limit, settings.bound)
     starts = start_coefficients(SIX, settings)
     (six,) = best_of_starts([problem], [starts], solver_of(settings))
     return six

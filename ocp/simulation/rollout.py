@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import casadi as ca
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, power_of
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.limits import Quantity, ask_for_jerk
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import (
     GAUSS_WEIGHTS,
@@ -21,6 +23,7 @@ from quietarm.ocp.simulation.collocation import (
 )
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import spent
+from quietarm.ocp.uncertainty import perturb_plant
 
 
 @dataclass(frozen=True)
@@ -32,9 +35,9 @@ class SymbolicRollout:
 
     Attributes
     ----------
-    joints, states, torque : list
-        Angle [rad], speed and acceleration of the joint at each Gauss node, its torque [N m], and
-        the modes: W [m], W', W''.
+    joints, states, tips, torque : list
+        Angle [rad], speed and acceleration of the joint at each Gauss node, the modes: W [m], W',
+        W'', the tip displacements [m], and the joint torque [N m].
     arrival : Expression
         W (m) and then W' (m/s) at arrival, shape (candidates, 2 * modes).
     h : Expression
@@ -45,6 +48,7 @@ class SymbolicRollout:
 
     joints: list[JointMotion]
     states: list[NodeState]
+    tips: list[Sequence[Expression]]
     torque: list[Expression]
     arrival: Expression
     h: Expression
@@ -67,6 +71,42 @@ class SymbolicRollout:
         """F2 [J], one row a candidate."""
         speed = [joint.speed for joint in self.joints]
         return spent(self.definition, self.torque, speed, self.h, unbroken=self.unbroken)
+
+    def values(self, quantity: Quantity) -> list[Expression]:
+        """A quantity at the nodes, (candidates, steps) each: all nodes of its first value first."""
+        nodes = zip(self.joints, self.tips, self.torque, strict=True)
+        by_value = zip(*(quantity.of(*node) for node in nodes), strict=True)
+        return [0 * self.h + x for at_nodes in by_value for x in at_nodes]
+
+
+class Simulation(NamedTuple):
+    """What simulations of many candidates have in common.
+
+    Errors are what may differ from the plant in a candidate, as by `perturb_plant`; breaks are the
+    fractions of the move at which the motion is not smooth.
+    """
+
+    plant: Plant
+    profile: JointProfile
+    steps: int
+    quantities: tuple[Quantity, ...]
+    errors: tuple[str, ...]
+    energy: Energy
+    breaks: tuple[float, ...] = ()
+
+    def rollout(
+        self,
+        coefficients: Expression | Sequence[Expression],
+        row: Sequence[Expression],
+        errors: Sequence[Expression],
+        candidates: int = 1,
+    ) -> SymbolicRollout:
+        """As of `symbolic_rollout`, of the `row` of a task and relative errors of its plant."""
+        return symbolic_rollout(
+            perturb_plant(self.plant, dict(zip(self.errors, errors, strict=True))), self.profile,
+            coefficients, row[:3], self.steps, candidates, ask_for_jerk(self.quantities),
+            self.breaks, row[3:], self.energy,
+        )  # fmt: skip
 
 
 @one_at_a_time
@@ -116,10 +156,19 @@ def symbolic_rollout(
     every_step = collocate(modal_system(plant, joint), h)
     W, dW, arrival = march(*every_step.transition(), h.shape, initial)
     states = every_step.nodes(W, dW, every_step.accelerations(W, dW))
-    torque = plant.torque(joint, *modes_at_nodes(states))
+    modes = modes_at_nodes(states)
+    torque, tips = plant.torque(joint, *modes), plant.tip_displacements(modes.W)
     fields = zip(*(at_each_node(x, h) for x in joint if x is not None), strict=True)
-    joints = [JointMotion(*field) for field in fields]
-    return SymbolicRollout(joints, states, at_each_node(torque, h), arrival, h, not breaks, energy)
+    return SymbolicRollout(
+        joints=[JointMotion(*field) for field in fields],
+        states=states,
+        tips=list(zip(*(at_each_node(x, h) for x in tips), strict=True)),
+        torque=at_each_node(torque, h),
+        arrival=arrival,
+        h=h,
+        unbroken=not breaks,
+        definition=energy,
+    )
 
 
 def modes_at_nodes(states: Sequence[NodeState]) -> NodeState:

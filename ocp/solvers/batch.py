@@ -24,7 +24,8 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.solvers.derivatives import Kind, compile_derivatives, compile_values
+from quietarm.ocp.simulation.rollout import Simulation
+from quietarm.ocp.solvers.derivatives import compile_derivatives, compile_values
 from quietarm.ocp.solvers.node import path_of
 
 Array = NDArray[np.float64]
@@ -154,19 +155,19 @@ class _Compiled:
 class Batch:
     """A plant's motion along a profile in a number of steps, for many candidates at once."""
 
-    def __init__(self, kind: Kind) -> None:
-        self.kind = kind
-        self._values = _Compiled(partial(compile_values, kind), _OF_VALUES, _copy)
+    def __init__(self, simulation: Simulation) -> None:
+        self.simulation = simulation
+        self._values = _Compiled(partial(compile_values, simulation), _OF_VALUES, _copy)
         self._derivatives = _Compiled(
-            partial(compile_derivatives, kind), _OF_DERIVATIVES, self._unpack
+            partial(compile_derivatives, simulation), _OF_DERIVATIVES, self._unpack
         )
 
     @cached_property
     def places(self) -> dict[str, slice]:
         """Where the values of each limited quantity stand among all."""
         places, first = dict[str, slice](), 0
-        for quantity in self.kind.quantities:
-            count = quantity.rows(self.kind.plant) * NODES * self.kind.steps
+        for quantity in self.simulation.quantities:
+            count = quantity.rows(self.simulation.plant) * NODES * self.simulation.steps
             places[quantity.name] = slice(first, first + count)
             first += count
         return places
@@ -187,18 +188,18 @@ class Batch:
         """
         columns = self._speeds
         if columns is None:
-            return np.eye(self.kind.profile.size)
+            return np.eye(self.simulation.profile.size)
         if boxed:
             least = _LEAST_STRETCH * np.linalg.norm(columns, 2)
-            columns = np.concatenate([columns, least * np.eye(self.kind.profile.size)])
+            columns = np.concatenate([columns, least * np.eye(self.simulation.profile.size)])
         triangle: Any = np.linalg.qr(columns, mode="r")
         return np.linalg.inv(triangle) * triangle[0, 0]
 
     @cached_property
     def _speeds(self) -> Array | None:
         """The path's speed at the nodes by each coefficient; None if it is not linear in them."""
-        size, grid = self.kind.profile.size, Grid(self.kind.steps)
-        path = path_of(self.kind.profile, grid, False, 1)
+        size, grid = self.simulation.profile.size, Grid(self.simulation.steps)
+        path = path_of(self.simulation.profile, grid, False, 1)
         if not path.linear:
             return None
         table, weights = path.jacobian([0.0] * size, []), np.sqrt(np.tile(grid.lengths, NODES))
@@ -230,7 +231,7 @@ class Batch:
         errors of its plant, and the power [W] over which |power| is rounded off; the multipliers
         are those of the sum whose Hessian is asked for.
         """
-        rows, states = len(coefficients), 2 * self.kind.plant.modes
+        rows, states = len(coefficients), 2 * self.simulation.plant.modes
         COST.gradients += rows
         COST.hessians += rows if multipliers is not None else 0
         width = np.zeros(rows) if width is None else width
@@ -247,7 +248,7 @@ class Batch:
 
     def _unpack(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
         """What `Derivatives` holds; a column of the outputs is a candidate."""
-        size, steps = self.kind.profile.size, self.kind.steps
+        size, steps = self.simulation.profile.size, self.simulation.steps
 
         def by_coefficient(one: Array) -> Array:
             """From (value, coefficient, step; candidate) to (candidate; coefficient; others)."""
@@ -280,4 +281,4 @@ def batch(
     breaks: tuple[float, ...] = (),
 ) -> Batch:
     """The compiled functions of a plant, a profile and a number of steps."""
-    return Batch(Kind(plant, profile, steps, quantities, errors, energy, breaks))
+    return Batch(Simulation(plant, profile, steps, quantities, errors, energy, breaks))

@@ -7,17 +7,15 @@ of all steps stand once for each coefficient.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import casadi as ca
 import numpy as np
 from quietarm.models import Plant
-from quietarm.ocp.energy import Energy
-from quietarm.ocp.limits import Quantity, ask_for_jerk
-from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.limits import ask_for_jerk
 from quietarm.ocp.simulation.collocation import NODES, Step, collocate, modal_system
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.simulation.rollout import march, modes_at_nodes, symbolic_rollout
+from quietarm.ocp.simulation.rollout import Simulation, march, modes_at_nodes
 from quietarm.ocp.solvers.energy import EnergyDerivatives, differentiate_energy
 from quietarm.ocp.solvers.node import Node, Table, path_of, product, transpose
 from quietarm.ocp.uncertainty import perturb_plant
@@ -28,51 +26,25 @@ takes a tenth off a call, but doubles the time to build it, and grows with the s
 """
 
 
-class Kind(NamedTuple):
-    """What candidates of one batch have in common.
-
-    Errors are what may differ from the plant in a row, as by `perturb_plant`; breaks, where the
-    motion is not smooth, are for values alone.
-    """
-
-    plant: Plant
-    profile: JointProfile
-    steps: int
-    quantities: tuple[Quantity, ...]
-    errors: tuple[str, ...]
-    energy: Energy
-    breaks: tuple[float, ...] = ()
-
-
-def compile_values(kind: Kind, rows: int) -> ca.Function:
+def compile_values(simulation: Simulation, rows: int) -> ca.Function:
     """The values of so many candidates.
 
     (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
-    plant, profile, steps, quantities, names, energy, breaks = kind
-    counts = profile.size, 3 + 2 * plant.modes, len(names)
+    steps, modes = simulation.steps, simulation.plant.modes
+    counts = simulation.profile.size, 3 + 2 * modes, len(simulation.errors)
     inputs = [ca.MX.sym("x", rows, count) for count in counts]
-    columns = len(Grid(steps, breaks).lengths)
-    a, row, errors = (_widen(one, NODES * columns) for one in inputs)
-    rollout = symbolic_rollout(
-        perturb_plant(plant, dict(zip(names, errors, strict=True))), profile, a, row[:3], steps,
-        rows, ask_for_jerk(quantities), breaks, ca.horzsplit(inputs[1], 1)[3:], energy,
-    )  # fmt: skip
-    perturbed = perturb_plant(
-        plant, dict(zip(names, (one[:, :columns] for one in errors), strict=True))
-    )
-    nodes = zip(rollout.joints, rollout.states, rollout.torque, strict=True)
-    limited = [
-        [x for one in quantities for x in one.of(joint, perturbed.tip_displacements(at.W), torque)]
-        for joint, at, torque in nodes
-    ]
-    by_value = [ca.MX.zeros(rows, columns) + x for of in zip(*limited, strict=True) for x in of]
-    found = [[rollout.energy], [rollout.arrival], by_value]
+    nodes = NODES * len(Grid(steps, simulation.breaks).lengths)
+    a, row, errors = (_widen(one, nodes) for one in inputs)
+    initial = ca.horzsplit(inputs[1], 1)[3:]
+    rollout = simulation.rollout(a, [*row[:3], *initial], errors, rows)
+    limited = [x for one in simulation.quantities for x in rollout.values(one)]
+    found = [[rollout.energy], [rollout.arrival], limited]
     options = {"cse": steps <= _STEPS_OF_CSE}
     return ca.Function("values", inputs, [_join(one, rows) for one in found], options)
 
 
-def compile_derivatives(kind: Kind, rows: int) -> ca.Function:
+def compile_derivatives(simulation: Simulation, rows: int) -> ca.Function:
     """The values of so many candidates with their derivatives.
 
     (coefficients, rows of tasks, errors, width over which |power| is rounded off, multipliers of
@@ -80,14 +52,14 @@ def compile_derivatives(kind: Kind, rows: int) -> ca.Function:
     derivatives by the coefficients, two factors whose product is the Hessian of the Lagrangian, and
     what the path's own curvature adds to it where it is not linear.
     """
-    return _Differentiated(kind, rows).compile()
+    return _Differentiated(simulation, rows).compile()
 
 
 class _Differentiated:
     """The expressions of `compile_derivatives`, from the motion to the Hessian."""
 
-    def __init__(self, kind: Kind, rows: int) -> None:
-        plant, profile, steps, quantities, names, self.definition, _ = kind
+    def __init__(self, simulation: Simulation, rows: int) -> None:
+        plant, profile, steps, quantities, names, self.definition, _ = simulation
         self.size, self.modes, self.shape = profile.size, plant.modes, (rows, steps)
         grid, nodes = Grid(steps), NODES * steps
         self.path = path_of(profile, grid, ask_for_jerk(quantities), rows)

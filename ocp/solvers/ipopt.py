@@ -24,18 +24,16 @@ from typing import Any, ClassVar, NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import Plant
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
-from quietarm.ocp.limits import RESIDUAL, Quantity, ask_for_jerk
-from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.free_vibration import after_arrival
+from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.simulation.objective import integrated
-from quietarm.ocp.simulation.rollout import SymbolicRollout, symbolic_rollout
+from quietarm.ocp.simulation.rollout import Simulation, SymbolicRollout
+from quietarm.ocp.solvers.batch import Values
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
-from quietarm.ocp.uncertainty import perturb_plant
+from quietarm.ocp.uncertainty import Scenario
 
 Array = NDArray[np.float64]
 _WIDTHS = (0.5, 0.05, 0.0)
@@ -71,6 +69,7 @@ class Ipopt:
 
     print_level: int = 0
 
+    @keep_interrupts()  # casadi loses a Ctrl-C
     def solve(
         self,
         problems: Sequence[Problem],
@@ -81,104 +80,70 @@ class Ipopt:
     ) -> list[Solution]:
         """Solve each problem from its start, as `Sqp.solve` does; groups are not used."""
         del groups
-        widths = _WIDTHS[-1:] if warm else _WIDTHS
         pairs = zip(problems, starts, strict=True)
-        return [_Numbers(one, self.print_level, warm).solve(start, widths) for one, start in pairs]
+        return [_Run(one, warm, self.print_level).solve(start) for one, start in pairs]
 
 
-class _Form(NamedTuple):
-    """What problems that share a compiled program have in common; all else are its parameters."""
+class _Program(NamedTuple):
+    """A nonlinear program: IPOPT for it; how many values each constraint has, in their order.
 
-    plant: Plant
-    profile: JointProfile
-    energy: Energy
-    steps: int
-    quantities: tuple[Quantity, ...]
-    error_names: tuple[str, ...]
-    scenarios: tuple[tuple[float, ...], ...]
-    tips: tuple[int, ...]
-    at_rest: bool
-    peak: str | None
-    sides: tuple[float, float]
-    print_level: int
-    warm: bool
-
-
-class _Program:
-    """The nonlinear program of a form in symbols, and IPOPT compiled for it.
-
-    Attributes
-    ----------
-    solver : Function
-        IPOPT.
-    counts : dict of str to int
-        How many values each constraint has, in their order.
-    figures : Function
-        (coefficients, row of a task) -> energy, state on arrival of every scenario, values of each
-        limited quantity.
+    The figures are a function of coefficients and the row of a task: energy, state on arrival and
+    limited quantities in every scenario, as of `Values`.
     """
 
-    def __init__(self, form: _Form) -> None:
-        modes, scenarios = 2 * form.plant.modes, len(form.scenarios)
-        a, p = ca.MX.sym("a", form.profile.size), ca.MX.sym("p", form.peak is not None)
-        row, wanted = ca.MX.sym("row", 3 + modes), ca.MX.sym("wanted", modes, scenarios)
-        scale, scales = ca.MX.sym("scale", modes), ca.MX.sym("scales", len(form.quantities))
-        tips = [ca.MX.sym("tips", rows, modes) for rows in form.tips]
-        weights, width = ca.MX.sym("weights", 2), ca.MX.sym("width")
-
-        start, target, duration, *initial = ca.vertsplit(row)
-        plants = [
-            perturb_plant(form.plant, dict(zip(form.error_names, errors, strict=True)))
-            for errors in form.scenarios
-        ]
-        rollouts = [
-            symbolic_rollout(
-                plant, form.profile, a, (start, target, duration), form.steps,
-                jerk=ask_for_jerk(form.quantities), initial=initial, energy=form.energy,
-            )
-            for plant in plants
-        ]  # fmt: skip
-        nominal, arrival = rollouts[0], ca.horzcat(*(one.arrival.T for one in rollouts))
-        missed = arrival - wanted
-        limited = {one.name: _values(one, plants, rollouts) for one in form.quantities}
-        least, most = form.sides
-        energy = ca.if_else(width > 0, _round_off(form.energy, nominal, width), nominal.energy)
-
-        bounded = {RESIDUAL: ca.vertcat(*(rows @ missed[:, i] for i, rows in enumerate(tips)))}
-        bounded |= {name: values / scales[i] for i, (name, values) in enumerate(limited.items())}
-        constraints = {"arrival": missed[:, 0] / scale if form.at_rest else ca.MX(0, 1)}
-        for name, values in bounded.items():
-            if name == form.peak:
-                constraints |= {"below peak": values - most * p, "above peak": values - least * p}
-            else:
-                constraints[name] = values
-        nlp = {
-            "x": ca.veccat(a, p),
-            "p": ca.veccat(row, wanted, scale, *tips, scales, weights, width),
-            "f": weights[0] * energy + (weights[1] * p if form.peak else 0.0),
-            "g": ca.vertcat(*constraints.values()),
-        }
-        self.counts = {name: values.numel() for name, values in constraints.items()}
-        options = {**(_WARM if form.warm else _OPTIONS), "print_level": form.print_level}
-        self.solver = compile_nlp(nlp, options)
-        figures = [nominal.energy, arrival.T, *limited.values()]
-        self.figures = ca.Function("figures", [a, row], figures)
+    solver: ca.Function
+    counts: dict[str, int]
+    figures: ca.Function
 
 
-compile_program = lru_cache(maxsize=16)(_Program)
+@lru_cache(maxsize=16)
+def compile_program(
+    simulation: Simulation,
+    scenarios: tuple[Scenario, ...],
+    tip_rows: tuple[int, ...],
+    at_rest: bool,
+    peak: str | None,
+    warm: bool,
+    print_level: int,
+) -> _Program:
+    """The program in symbols; whatever else differs between problems is a parameter of it."""
+    modes, quantities = 2 * simulation.plant.modes, simulation.quantities
+    a, p = ca.MX.sym("a", simulation.profile.size), ca.MX.sym("p", peak is not None)
+    row, wanted = ca.MX.sym("row", 3 + modes), ca.MX.sym("wanted", modes, len(scenarios))
+    tips = [ca.MX.sym("tips", rows, modes) for rows in tip_rows]
+    scale, scales = ca.MX.sym("scale", modes), ca.MX.sym("scales", len(quantities))
+    sides, weights, width = ca.MX.sym("sides", 2), ca.MX.sym("weights", 2), ca.MX.sym("width")
 
+    rollouts = [simulation.rollout(a, ca.vertsplit(row), errors) for errors in scenarios]
+    nominal, arrival = rollouts[0], ca.horzcat(*(one.arrival.T for one in rollouts))
+    missed = arrival - wanted
+    sampled = [[ca.horzcat(*one.values(quantity)) for quantity in quantities] for one in rollouts]
+    energy = ca.if_else(width > 0, _round_off(simulation.energy, nominal, width), nominal.energy)
 
-def _values(
-    quantity: Quantity, plants: Sequence[Plant], rollouts: Sequence[SymbolicRollout]
-) -> ca.MX:
-    """A limited quantity at all nodes, where it asks for that in all scenarios."""
-    values, scenarios = list[Any](), len(plants) if quantity.in_scenarios else 1
-    for plant, rollout in zip(plants[:scenarios], rollouts[:scenarios], strict=True):
-        for joint, state, torque in zip(
-            rollout.joints, rollout.states, rollout.torque, strict=True
-        ):
-            values += quantity.of(joint, plant.tip_displacements(state.W), torque)
-    return ca.veccat(*(ca.MX.zeros(*rollouts[0].h.shape) + value for value in values))
+    bounded = {RESIDUAL: ca.vertcat(*(rows @ missed[:, i] for i, rows in enumerate(tips)))}
+    for k, quantity in enumerate(quantities):
+        counted = sampled if quantity.in_scenarios else sampled[:1]
+        bounded[quantity.name] = ca.veccat(*(values[k] for values in counted)) / scales[k]
+    constraints = {"arrival": missed[:, 0] / scale if at_rest else ca.MX(0, 1)}
+    for name, values in bounded.items():
+        if name == peak:
+            constraints["below peak"] = values - sides[1] * p
+            constraints["above peak"] = values - sides[0] * p
+        else:
+            constraints[name] = values
+    nlp = {
+        "x": ca.veccat(a, p),
+        "p": ca.veccat(row, wanted, *tips, scale, scales, sides, weights, width),
+        "f": weights[0] * energy + (weights[1] * p if peak else 0.0),
+        "g": ca.vertcat(*constraints.values()),
+    }
+    options = {**(_WARM if warm else _OPTIONS), "print_level": print_level}
+    limited = ca.vertcat(*(ca.horzcat(ca.MX(1, 0), *values) for values in sampled))
+    return _Program(
+        compile_nlp(nlp, options),
+        {name: values.numel() for name, values in constraints.items()},
+        ca.Function("figures", [a, row], [nominal.energy, arrival.T, limited]),
+    )
 
 
 def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
@@ -189,111 +154,83 @@ def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
     return energy.absolute * integrated(rounded, rollout.h) + integrated(smooth, rollout.h)
 
 
-class _Numbers:
-    """One problem's numbers: the parameters of its program, and what its solution means."""
+class _Run:
+    """A problem's numbers: parameters and bounds of its program, and what its solution means."""
 
-    def __init__(self, problem: Problem, print_level: int, warm: bool) -> None:
-        (transcription, self.asked), task = problem, problem.transcription.task
-        self.task, self.profile, modes = task, transcription.profile, 2 * task.plant.modes
-        self.tips = [vibration.rows for vibration in after_arrival(task)]
-        tips = self.tips if self.asked.bounds_residual else [np.zeros((0, modes))] * len(self.tips)
-        form = _Form(
-            task.plant, self.profile, task.energy, transcription.steps,
-            tuple(one.quantity for one in task.limits), task.error_names, task.scenarios,
-            tuple(map(len, tips)), self.asked.at_rest, self.asked.peak,
-            transcription.limits[self.asked.peak or RESIDUAL].sides, print_level, warm,
+    def __init__(self, problem: Problem, warm: bool, print_level: int) -> None:
+        self.problem, self.widths = problem, _WIDTHS[-1:] if warm else _WIDTHS
+        (transcription, asked), task = problem, problem.transcription.task
+        tips = [rows if asked.bounds_residual else rows[:0] for rows in transcription.tip_rows]
+        self.program = compile_program(
+            transcription.batch.simulation, task.scenarios, tuple(map(len, tips)), asked.at_rest,
+            asked.peak, warm, print_level,
         )  # fmt: skip
-        with keep_interrupts():  # casadi loses a Ctrl-C
-            self.program = compile_program(form)
-        self.wanted = np.array([task.final_state] * len(self.tips))
-        if self.asked.offset is not None:
-            self.wanted = self.wanted - self.asked.offset
-        self._measure()
+        plain = self.figures(transcription.profile.plain)
+        peaks = transcription.peaks(plain, asked.offset)
+        wanted = np.broadcast_to(transcription.wanted - asked.offset, plain.arrival.shape)
+        swing = np.abs(plain.arrival - wanted).max(axis=0)
+        self.scale, self.energy = np.where(swing > 0, swing, 1.0), float(plain.energy[0]) or 1.0
+        self.scales = {name: peak or 1.0 for name, peak in peaks.items()}
+        of_energy, of_peak = asked.weights(self.energy, self.scales.get(asked.peak or "", 0.0))
+        self.of_energy = of_energy / self.energy
         self.parameters = [
-            task.row, self.wanted, self.scale, *(r.T / self.scales[RESIDUAL] for r in tips),
-            [self.scales[limit.name] for limit in task.limits], self.weights,
+            task.row, wanted, *(rows.T / self.scales[RESIDUAL] for rows in tips), self.scale,
+            [self.scales[limit.name] for limit in task.limits],
+            transcription.limits[asked.peak or RESIDUAL].sides, [self.of_energy, of_peak],
         ]  # fmt: skip
 
-    def _measure(self) -> None:
-        """Scales, by the plain motion; and weights of energy and scaled peak."""
-        asked, (energy, arrival, peaks) = self.asked, self.figures(self.profile.plain)
-        self.energy = energy or 1.0
-        swing = np.abs(arrival - self.wanted).max(axis=0)
-        self.scale = np.where(swing > 0, swing, 1.0)
-        self.scales = {name: peak or 1.0 for name, peak in peaks.items()}
-        self.scales[RESIDUAL] = self.residual(arrival) or 1.0
-        peak_scale = self.scales[asked.peak] if asked.peak else 0.0
-        of_energy, of_peak = asked.weights(self.energy, peak_scale)
-        self.weights = [of_energy / self.energy, of_peak]
+    def figures(self, coefficients: Array) -> Values:
+        """Of coefficients, in all scenarios."""
+        row = self.problem.transcription.task.row
+        energy, arrival, limited = self.program.figures.call([coefficients, row])
+        return Values(energy.full()[0], arrival.full(), limited.full())
 
-    def figures(self, coefficients: Array) -> tuple[float, Array, dict[str, float]]:
-        """Energy, state on arrival by scenario, and peaks of the limited quantities."""
-        with keep_interrupts():
-            found = [x.full() for x in self.program.figures.call([coefficients, self.task.row])]
-        limited = zip(self.task.limits, found[2:], strict=True)
-        peaks = {one.name: float(one.peak(x.min(), x.max())) for one, x in limited}
-        return found[0].item(), found[1], peaks
-
-    def residual(self, arrival: Array) -> float:
-        """The largest of all scenarios [m]."""
-        missed = zip(self.tips, arrival - self.wanted, strict=True)
-        return max(float(np.abs(rows @ state).max()) for rows, state in missed)
-
-    def solve(self, start: Array, widths: Sequence[float]) -> Solution:
+    def solve(self, start: Array) -> Solution:
         """Run IPOPT for one width after another."""
-        lower, upper = self.profile.box(self.asked.bound)
-        x, total, stop = np.clip(start, lower, upper), 0, None
-        if self.asked.peak is not None:
-            _, arrival, peaks = self.figures(x)
-            peaks[RESIDUAL] = self.residual(arrival)
-            x = np.append(x, peaks[self.asked.peak] / self.scales[self.asked.peak])
+        transcription, asked = self.problem
+        box = transcription.profile.box(asked.bound)
+        x, (lower, upper), iterations, stop = np.clip(start, *box), box, 0, None
+        if asked.peak is not None:
+            peak = transcription.peaks(self.figures(x), asked.offset)[asked.peak]
+            x = np.append(x, peak / self.scales[asked.peak])
             lower, upper = np.append(lower, -np.inf), np.append(upper, np.inf)
-        for width in widths:
-            given = [*self.parameters, [width * self.energy / self.task.duration]]
+        for width in self.widths:
+            given = [*self.parameters, [width * self.energy / transcription.task.duration]]
             parameters = np.concatenate([np.ravel(one) for one in given])
-            bounds = (lower, upper), self._bounds()
+            bounds = (lower, upper), self.bounds()
             stop = run_ipopt(self.program.solver, x, *bounds, parameters)
-            x, total = stop.unknowns, total + stop.iterations
+            x, iterations = stop.unknowns, iterations + stop.iterations
         assert stop is not None
-        return self._in_units(x, stop.multipliers, stop.return_status, total)
+        coefficients = np.clip(x[: transcription.profile.size], *box)
+        status = SolveStatus.from_ipopt(stop.return_status)
+        return Solution.of_motion(
+            self.problem,
+            self.figures(coefficients),
+            at_rest=asked.at_rest and status.solved,
+            coefficients=coefficients,
+            status=status,
+            iterations=iterations,
+            shadow_prices=self.prices(stop.multipliers),
+            reason=stop.return_status.replace("_", " ").lower(),
+        )
 
-    def _bounds(self) -> tuple[Array, Array]:
+    def bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the constraints."""
         bounds = {
             "arrival": (0.0, 0.0), "below peak": (-np.inf, 0.0), "above peak": (0.0, np.inf),
             **{one.name: (one.lower / self.scales[one.name], one.upper / self.scales[one.name])
-               for one in self.asked.limits},
+               for one in self.problem.scalarization.limits},
         }  # fmt: skip
         counts, free = self.program.counts, (-np.inf, np.inf)
-        lower, upper = zip(*(bounds.get(name, free) for name in counts), strict=True)
-        sizes = list(counts.values())
-        return np.repeat(lower, sizes), np.repeat(upper, sizes)
+        each = np.array([bounds.get(name, free) for name in counts])
+        lower, upper = np.repeat(each, list(counts.values()), axis=0).T
+        return lower, upper
 
-    def _in_units(
-        self, x: Array, multipliers: Array, return_status: str, iterations: int
-    ) -> Solution:
-        """What IPOPT found, in SI units."""
-        asked, size = self.asked, self.profile.size
-        coefficients = np.clip(x[:size], *self.profile.box(asked.bound))
-        energy, arrival, peaks = self.figures(coefficients)
-        status = SolveStatus.from_ipopt(return_status)
-        rest = asked.at_rest and status.solved
-        return Solution(
-            coefficients=coefficients,
-            energy=energy,
-            peaks={RESIDUAL: 0.0 if rest else self.residual(arrival), **peaks},
-            status=status,
-            iterations=iterations,
-            arrival=arrival if asked.offset is None else arrival + asked.offset,
-            shadow_prices=self._shadow_prices(multipliers),
-            reason=return_status.replace("_", " ").lower(),
-        )
-
-    def _shadow_prices(self, multipliers: Array) -> dict[str, float]:
+    def prices(self, multipliers: Array) -> dict[str, float]:
         """What the least energy falls by if a limit is widened [J by its unit]."""
-        counts = self.program.counts
+        counts, (transcription, asked) = self.program.counts, self.problem
         parts = np.split(multipliers, np.cumsum(list(counts.values()))[:-1])
         own = dict(zip(counts, parts, strict=True))
         bounded = {name: own[name] / self.scales[name] for name in own.keys() & self.scales.keys()}
-        of_arrival = own["arrival"] / self.scale if self.asked.at_rest else own["arrival"]
-        return shadow_prices(self.asked, self.weights[0], bounded, of_arrival, self.tips[0])
+        of_arrival = own["arrival"] / self.scale if asked.at_rest else own["arrival"]
+        return shadow_prices(asked, self.of_energy, bounded, of_arrival, transcription.tip_rows[0])

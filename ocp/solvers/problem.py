@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import daqp
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.solvers.batch import Values
 from quietarm.ocp.solvers.transcription import ENERGY, Transcription
 
 LEAST_ENERGY = {ENERGY: 1.0}
@@ -27,14 +28,14 @@ class Scalarization(NamedTuple):
         Largest absolute coefficient, as the profile's `box` takes it.
     minimise : mapping of str to float
         Weights of the energy [1/J] and of at most one peak [1/m, ...], whose sum is minimised.
-    offset : ndarray, shape (scenarios, 2 * modes), or None
+    offset : ndarray, shape (scenarios, 2 * modes), or 0
         Added to the state on arrival of every scenario [m, m/s]: what the steps miss of it.
     """
 
     limits: tuple[Limit, ...]
     bound: float | None = None
     minimise: Mapping[str, float] = LEAST_ENERGY
-    offset: NDArray[np.float64] | None = None
+    offset: NDArray[np.float64] | float = 0.0
 
     @property
     def peak(self) -> str | None:
@@ -69,6 +70,18 @@ class Problem(NamedTuple):
 
     transcription: Transcription
     scalarization: Scalarization
+
+    @classmethod
+    def of(
+        cls,
+        transcription: Transcription,
+        residual_limit: float = np.inf,
+        bound: float | None = None,
+        minimise: Mapping[str, float] = LEAST_ENERGY,
+    ) -> Problem:
+        """Within a task's limits and one of the residual [m], the least energy or another sum."""
+        limits = Limit.of_residual(residual_limit), *transcription.task.limits
+        return cls(transcription, Scalarization(limits, bound, minimise))
 
 
 _LITTLE = 1e-8
@@ -108,6 +121,20 @@ class Solution:
     arrival: NDArray[np.float64]
     shadow_prices: Mapping[str, float] = field(default_factory=dict)
     reason: str = ""
+
+    @classmethod
+    def of_motion(
+        cls, problem: Problem, motion: Values, *, at_rest: bool, **ended: Any
+    ) -> Solution:
+        """Of a motion in all scenarios; at rest it counts as without residual."""
+        transcription, asked = problem
+        peaks = transcription.peaks(motion, asked.offset)
+        return cls(
+            energy=float(motion.energy[0]),
+            peaks=peaks | ({RESIDUAL: 0.0} if at_rest else {}),
+            arrival=motion.arrival + asked.offset,
+            **ended,
+        )
 
     @property
     def residual(self) -> float:

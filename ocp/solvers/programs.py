@@ -50,11 +50,10 @@ class Programs:
         self._errors = np.array([each.errors for each in self._transcriptions])
         self._energy = np.array([each.energy_scale for each in self._transcriptions])
         self._arrival = np.array([each.arrival_scale for each in self._transcriptions])
-        offsets = [0.0 if each.offset is None else each.offset for each in self._scalarizations]
-        self._offset = np.array([
-            np.broadcast_to(offset - each.wanted, (self._scenarios, one.wanted.size))
-            for offset, each in zip(offsets, self._transcriptions, strict=True)
-        ])  # fmt: skip
+        shape = self._scenarios, one.wanted.size
+        self._offset = np.array(
+            [np.broadcast_to(asked.offset - each.wanted, shape) for each, asked in problems]
+        )
         self.weights = np.array([
             asked.weights(each.energy_scale, each.scale_of(self._peak) if self._peak else 0.0)
             for each, asked in problems

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
-from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, End, Ended, minimise
 from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
 from quietarm.ocp.solvers.programs import Programs
@@ -113,24 +112,19 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     coefficients = programs.coefficients(ended.x)
     motions = evaluate([problem.transcription for problem in problems], coefficients)
     prices = _shadow_prices(programs, ended, problems)
-    found = list[Solution]()
-    for i, ((transcription, asked), motion) in enumerate(zip(problems, motions, strict=True)):
-        peaks = transcription.peaks(motion, asked.offset)
-        if asked.at_rest and ended.violation[i] <= _NONE:
-            peaks[RESIDUAL] = 0.0
-        found.append(
-            Solution(
-                coefficients=coefficients[i],
-                energy=float(motion.energy[0]),
-                peaks=peaks,
-                status=_STATUS[ended.ends[i]],
-                iterations=int(ended.iterations[i]),
-                arrival=motion.arrival if asked.offset is None else motion.arrival + asked.offset,
-                shadow_prices=prices[i],
-                reason=ended.ends[i].value,
-            )
+    return [
+        Solution.of_motion(
+            problem,
+            motions[i],
+            at_rest=problem.scalarization.at_rest and bool(ended.violation[i] <= _NONE),
+            coefficients=coefficients[i],
+            status=_STATUS[ended.ends[i]],
+            iterations=int(ended.iterations[i]),
+            shadow_prices=prices[i],
+            reason=ended.ends[i].value,
         )
-    return found
+        for i, problem in enumerate(problems)
+    ]
 
 
 def _shadow_prices(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> list[Prices]:

@@ -14,7 +14,7 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.validation import check_profile
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.solvers.batch import Derivatives, batch
+from quietarm.ocp.solvers.batch import Derivatives, Values, batch
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
@@ -99,14 +99,14 @@ class Transcription:
         """One candidate in all scenarios."""
         return evaluate([self], coefficients[None])[0]
 
-    def peaks(self, of: Derivatives, offset: Array | None = None) -> dict[str, float]:
+    def peaks(self, of: Values, offset: Array | float = 0.0) -> dict[str, float]:
         """The largest residual of all scenarios [m], and the peaks of the limited quantities."""
-        missed = of.arrival - self.wanted + (0.0 if offset is None else offset)
+        missed = of.arrival - self.wanted + offset
         tips = [np.abs(r @ z).max() for r, z in zip(self.tip_rows, missed, strict=True)]
         limited = {name: self.peak(of, name) for name in self.batch.places}
         return {RESIDUAL: float(max(tips)), **limited}
 
-    def peak(self, of: Derivatives, name: str) -> float:
+    def peak(self, of: Values, name: str) -> float:
         """The peak of a limited quantity [SI unit], in the scenarios where its limit counts."""
         counted = slice(None if self.limits[name].quantity.in_scenarios else 1)
         values = of.limited[counted, self.batch.places[name]]

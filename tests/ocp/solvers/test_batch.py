@@ -18,14 +18,14 @@ MOVES = np.array([[0.0, math.pi / 2, 0.8], [-0.4, 1.1, 0.7], [0.3, -1.0, 1.0]])
 ERRORS = {"frequency": 0.1, "damping": -0.3}
 
 
-def _candidates(rows, kind, seed=0):
+def _candidates(rows, simulation, seed=0):
     """Coefficients, moves that begin in a ringing state and errors, others in every row."""
     random = np.random.default_rng(seed)
-    shape = rows, kind.profile.size
-    coefficients = kind.profile.plain + random.uniform(-0.3, 0.3, shape)
+    shape = rows, simulation.profile.size
+    coefficients = simulation.profile.plain + random.uniform(-0.3, 0.3, shape)
     moves = MOVES[np.arange(rows) % len(MOVES)] * random.uniform(0.9, 1.1, (rows, 1))
-    errors = random.uniform(-0.1, 0.1, (rows, len(kind.errors)))
-    ringing = random.uniform(-0.02, 0.02, (rows, 2 * kind.plant.modes))
+    errors = random.uniform(-0.1, 0.1, (rows, len(simulation.errors)))
+    ringing = random.uniform(-0.02, 0.02, (rows, 2 * simulation.plant.modes))
     return coefficients, np.hstack([moves, ringing]), errors
 
 
@@ -33,7 +33,7 @@ def _weights(made, rows, energy=1.0, seed=1):
     random = np.random.default_rng(seed)
     return Multipliers(
         np.full(rows, energy),
-        random.normal(size=(rows, 2 * made.kind.plant.modes)),
+        random.normal(size=(rows, 2 * made.simulation.plant.modes)),
         random.normal(size=(rows, made.limited)),
     )
 
@@ -50,7 +50,7 @@ def test_figures_are_those_of_the_rollout(task, errors):
     ringing = qa.ModalState(*np.reshape([0.01, -0.1, 0.02, 0.05][: 2 * task.plant.modes], (2, -1)))
     task = replace(task, start=-0.2, initial=ringing, **dict.fromkeys(LIMITS, 1.0))
     made = batch(task.plant, profile, steps, QUANTITIES, tuple(errors))
-    a = _candidates(1, made.kind)[0]
+    a = _candidates(1, made.simulation)[0]
     inputs = a, np.array([task.row]), np.array([list(errors.values())])
     wrong = replace(task, plant=qa.perturb_plant(task.plant, errors))
     expected = rollout(wrong, profile, a[0], steps=steps)
@@ -69,7 +69,7 @@ def test_figures_are_those_of_the_rollout(task, errors):
 def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
     profile = qa.CycloidPolynomial(4)
     made = batch(plants["arm"], profile, 12, (BY_NAME["torque"],), ("frequency",))
-    candidates = _candidates(rows, made.kind)
+    candidates = _candidates(rows, made.simulation)
     weights = _weights(made, rows)
     together = _derivatives(made, candidates, 0.1, weights)
     valued = made.values(*candidates, threads=threads)
@@ -89,8 +89,8 @@ def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
 @pytest.mark.parametrize("name", ["arm", "two links"])
 def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants, name):
     made = batch(plants[name], qa.CycloidPolynomial(3), 30)
-    candidates = _candidates(2, made.kind, seed=5)
-    none = np.zeros((2, 2 * made.kind.plant.modes))
+    candidates = _candidates(2, made.simulation, seed=5)
+    none = np.zeros((2, 2 * made.simulation.plant.modes))
     weights = Multipliers(np.ones(2), none, np.zeros((2, 0)))
     found = _derivatives(made, candidates, 0.0, weights).hessian
     (a, *others), h = candidates, 1e-6
@@ -105,7 +105,7 @@ def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants,
 def test_the_rounded_energy_is_above_the_sharp_one_and_tends_to_it(task):
     # Rounded off, |power| is seen at the nodes only: of 80 steps they miss less than 2e-3 of it.
     made = batch(task.plant, qa.CycloidPolynomial(4), 80)
-    candidates = _candidates(4, made.kind)
+    candidates = _candidates(4, made.simulation)
     sharp = _derivatives(made, candidates).energy
     shares = []
     for width in WIDTHS[:-1]:  # as shares of the mean power

@@ -79,12 +79,12 @@ def _ringing(modes):
 def candidate(case):
     made, _ = case
     random = np.random.default_rng(0)
-    return made.kind.profile.plain + random.uniform(-0.3, 0.3, made.kind.profile.size)
+    return made.simulation.profile.plain + random.uniform(-0.3, 0.3, made.simulation.profile.size)
 
 
 def _found(made, candidate, width, multipliers=None):
-    move = np.array([[*MOVE, *_ringing(made.kind.plant.modes)]])
-    errors = np.array([ERRORS[: len(made.kind.errors)]])
+    move = np.array([[*MOVE, *_ringing(made.simulation.plant.modes)]])
+    errors = np.array([ERRORS[: len(made.simulation.errors)]])
     return made.derivatives(candidate[None], move, errors, np.array([width]), multipliers)
 
 
