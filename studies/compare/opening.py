@@ -19,7 +19,7 @@ def open_answers(paths: Sequence[Path]) -> dict[str, Plan] | dict[str, Front]:
     """
     if not paths:
         raise ValueError("nothing is given to compare; give plans, fronts, or a folder of fronts")
-    found = {path: _format(path) for given in paths for path in _files(given)}
+    found = {path: format_of(path) for given in paths for path in _files(given)}
     fronts = [path for path, kind in found.items() if kind == _FRONT]
     plans = [path for path, kind in found.items() if kind == _PLAN]
     if plans and fronts:
@@ -40,13 +40,13 @@ def _files(path: Path) -> Iterator[Path]:
     if not path.is_dir():
         yield path
         return
-    fronts = [one for one in sorted(path.rglob("*.json")) if _format(one) == _FRONT]
+    fronts = [one for one in sorted(path.rglob("*.json")) if format_of(one) == _FRONT]
     if not fronts:
         raise FileFormatError(f"{path} holds no fronts; give a folder of a bench, or files")
     yield from fronts
 
 
-def _format(path: Path) -> str:
+def format_of(path: Path) -> str:
     """The format that a file names; empty where it names none."""
     try:
         document = json.loads(path.read_text(encoding="utf-8"))

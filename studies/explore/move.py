@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from math import ceil, degrees, tau
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY, joint_unit
-from quietarm.ocp import (
-    CycloidPolynomial,
-    Front,
-    Plan,
-    PointToPoint,
-    epsilon_front,
-    evaluate_coefficients,
-    plan_move,
-)
+from quietarm.ocp import Front, Plan, PointToPoint, epsilon_front, evaluate_coefficients, plan_move
 from quietarm.ocp.front.curve import Report, no_report
-from quietarm.ocp.limits import quantities_of
+from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.studies.export.formats import export_plan
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
+from quietarm.studies.report.words import moved
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary
 
@@ -34,8 +27,14 @@ _SHORTEST, _LONGEST, _FURTHEST, _LEAST, _MOST = 0.1, 5.0, 2.0, 1e-3, 1e4
 """Ranges of durations [s], of a linear axis [m], and of limits in the unit that is shown."""
 _SHOWN = {"rad": ("deg", degrees(1.0)), "m": ("mm", 1e3)}
 """Units that are shown in the place of SI's, and the factors to them."""
-FILES = ("plan.json", "move.csv", "move.c", "move.h")
-"""What can be downloaded."""
+CHOICES = ("plant", "profile", "terms")
+FILES: Mapping[str, Callable[[Plan, Path], object]] = {
+    "plan.json": Plan.save,
+    "move.csv": Plan.save_csv,
+    "move.c": export_plan,
+    "move.h": lambda plan, path: export_plan(plan, path.with_suffix(".c")),
+}
+"""What can be downloaded, and what writes it."""
 
 
 class Dial(NamedTuple):
@@ -44,18 +43,9 @@ class Dial(NamedTuple):
     label: str
     least: float
     most: float
-    factor: float = 1.0
-    optional: bool = False
-    """Whether it may be empty, as a limit."""
-
-    @classmethod
-    def of(cls, name: str, unit: str, ends: tuple[float, float] | None = None) -> Dial:
-        """In the unit that is shown for one of SI, as its ends are; without ends a limit."""
-        shown, factor = _SHOWN.get(unit, (unit, 1.0))
-        label = name if unit == "-" else f"{name} [{shown}]"
-        if ends is None:
-            return cls(label, 0.0 if name == "residual" else _LEAST, _MOST, factor, True)
-        return cls(label, factor * ends[0], factor * ends[1], factor)
+    factor: float
+    group: str
+    """Where it stands: move, shape or limits; these may be empty."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,18 +94,18 @@ class Explored:
         """What can be set, by name."""
         task, joint = self.opened or self.task, self.task.plant.joint
         way = tau if joint == ROTARY else max(_FURTHEST, abs(task.start), abs(task.target))
-        angle, time = joint_unit("rad", joint), task.duration
-        ends = dict.fromkeys(OF_MOVES, (angle, (-way, way)))
-        ends["duration"] = "s", (min(_SHORTEST, time), max(_LONGEST, time))
+        ends = dict.fromkeys(OF_MOVES, (joint_unit("rad", joint), -way, way))
+        ends["duration"] = "s", min(_SHORTEST, task.duration), max(_LONGEST, task.duration)
         for axis in self.library.grid.axes if self.library else ():
-            ends[axis.name] = axis.unit, (axis.values[0], axis.values[-1])
+            ends[axis.name] = axis.unit, axis.values[0], axis.values[-1]
         limits = {one.limit: (one.name, one.unit) for one in quantities_of(joint).values()}
         limits |= {"residual_limit": ("residual", "m"), "bound": ("largest |a_n|", "-")}
-        return (
-            {name: Dial.of(name, *one) for name, one in ends.items()}
-            | {name: Dial.of(*one) for name, one in limits.items()}
-            | {name: Dial(name, -self.reach, self.reach) for name in self.coefficients}
-        )
+        reach = "-", -self.reach, self.reach
+        return {
+            **{name: _dial("move", name, *one) for name, one in ends.items()},
+            **{name: _dial("shape", name, *reach) for name in self.coefficients},
+            **{name: _dial("limits", *one) for name, one in limits.items()},
+        }
 
     @cached_property
     def _values(self) -> dict[str, Any]:
@@ -124,10 +114,12 @@ class Explored:
         known = {**self.task.plant.parameters, **vars(self.task), **own}
         return {name: known[name] for name in self.dials}
 
-    @property
-    def shown(self) -> dict[str, float | None]:
-        """Values of the dials in the units that are shown; a limit of two sides shows none."""
-        return {
+    @cached_property
+    def shown(self) -> dict[str, Any]:
+        """What stands in every field, in the units that are shown; a limit of two sides is none."""
+        terms = getattr(self.plan.profile, "terms", None)
+        chosen = {"plant": moved(self.task), "profile": self.profile, "terms": terms}
+        return chosen | {
             name: float(f"{value * self.dials[name].factor:.12g}")
             if isinstance(value, float | int) else None
             for name, value in self._values.items()
@@ -143,62 +135,57 @@ class Explored:
             dial = self.dials[name]
             if value is not None:
                 values[name] = min(max(value, dial.least), dial.most) / dial.factor
-            elif dial.optional:
+            elif dial.group == "limits":
                 values[name] = None
-        at = {name: values[name] for name in (self.library.grid.names if self.library else ())}
-        if self.library and not shown.keys().isdisjoint(at):
-            task, coefficients = self.library.task(**at), self.library.coefficients(**at)
-        else:
-            ends = {name: values[name] for name in OF_MOVES}
-            task, coefficients = replace(self.task, **ends), [values[a] for a in self.coefficients]
-        limits = {name: value for name, value in values.items() if name in _LIMITS}
-        task = replace(task, **limits, torque_speed=self.task.torque_speed)
+        task, coefficients = self.task, [values[name] for name in self.coefficients]
+        if self.library:
+            at = {name: values[name] for name in self.library.grid.names}
+            task = self.library.task(**at)
+            if not shown.keys().isdisjoint(at):
+                coefficients = self.library.coefficients(**at).tolist()
+        task = replace(task, **{name: values[name] for name in _OF_TASK})
+        asked = {name: values[name] for name in ("residual_limit", "bound")}
         same = task == self.task and values["bound"] == self.bound
-        return replace(
-            self._evaluate(task, coefficients), front=self.front if same else None,
-            residual_limit=values["residual_limit"], bound=values["bound"],
-        )  # fmt: skip
+        return self._moved(task, coefficients, front=self.front if same else None, **asked)
 
-    def _evaluate(self, task: PointToPoint, coefficients: Any, **record: Any) -> Explored:
-        plan = evaluate_coefficients(task, coefficients, profile=self.plan.profile, **record)
-        return replace(self, plan=plan)
+    def _moved(
+        self, task: PointToPoint, coefficients: Any, profile: Any = None, **others: Any
+    ) -> Explored:
+        """The same with another motion, which nothing has optimised."""
+        plan = evaluate_coefficients(task, coefficients, profile=profile or self.plan.profile)
+        return replace(self, plan=plan, **others)
 
     def begin_again(self) -> Explored:
         """The same move with the coefficients from which the gradient starts first."""
-        return self._evaluate(self.task, self.plan.profile.plain)
+        return self._moved(self.task, self.plan.profile.plain)
 
     def choose_plant(self, plant: Plant) -> Explored:
         """The same move and motion of another plant, which begins at rest."""
         task = replace(self.task, plant=plant, initial=None, final=None)
-        return replace(self._evaluate(task, self.plan.coefficients), library=None, front=None)
+        return self._moved(task, self.plan.coefficients, library=None, front=None)
 
     def choose_profile(self, name: str, terms: int | None = None) -> Explored:
         """The same move by another profile, of its usual size by default."""
         profile = profile_of(name, self.task, terms)
-        plan = evaluate_coefficients(self.task, profile.plain, profile=profile)
-        return replace(self, plan=plan, front=None, reach=1.0)
+        return self._moved(self.task, profile.plain, profile, front=None, reach=1.0)
 
     def solve(self) -> Explored:
         """The same with the gradient's motion; it raises what `plan_move` does."""
-        plan = plan_move(
-            self.task, self.plan.profile, residual_limit=self.residual_limit, bound=self.bound
-        )
-        return replace(self, plan=plan)
+        asked = {"residual_limit": self.residual_limit, "bound": self.bound}
+        return replace(self, plan=plan_move(self.task, self.plan.profile, **asked))
 
     def find_front(self, report: Report = no_report) -> Explored:
         """The same with the front of this move; it raises what `epsilon_front` does."""
-        front = epsilon_front(
-            self.task, self.plan.profile, bound=self.bound, points=FRONT_POINTS, report=report
-        )
-        return replace(self, front=front)
+        asked = {"bound": self.bound, "points": FRONT_POINTS, "report": report}
+        return replace(self, front=epsilon_front(self.task, self.plan.profile, **asked))
 
     def pick(self, number: int) -> Explored:
         """The same with the motion of a point of the front, by its number from 0."""
         assert self.front is not None
-        coefficients, record = self.front.points[number].coefficients, self.front.record
-        return self._evaluate(
-            self.task, coefficients, method=record.method, settings=record.settings
-        )
+        picked, record = self.front.points[number], self.front.record
+        now = self._moved(self.task, picked.coefficients)
+        plan = now.plan.restated(method=record.method, settings=record.settings)
+        return replace(now, plan=plan)
 
     def keep(self) -> Explored:
         """The same with this motion kept to be compared; no more where it is kept already."""
@@ -209,27 +196,19 @@ class Explored:
         """Whether the motion is a point of the front."""
         return self.front is not None and self.plan.record.method == self.front.record.method
 
-    @property
-    def cycloid(self) -> Plan:
-        """The plain cycloid of this move."""
-        return _cycloid(self.task)
-
     def file(self, name: str) -> str:
         """The text of one of `FILES`."""
         with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
-            path = Path(folder) / name
-            if name == "plan.json":
-                self.plan.save(path)
-            elif name == "move.csv":
-                self.plan.save_csv(path)
-            else:
-                export_plan(self.plan, path.with_suffix(".c"))
+            path = Path(folder, name)
+            FILES[name](self.plan, path)
             return path.read_text(encoding="utf-8")
 
 
-_LIMITS = tuple(quantity.limit for quantity in quantities_of(ROTARY).values())
+_OF_TASK = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()))
 
 
-@lru_cache(maxsize=8)
-def _cycloid(task: PointToPoint) -> Plan:
-    return evaluate_coefficients(task, [], profile=CycloidPolynomial(0))
+def _dial(group: str, label: str, unit: str, *ends: float) -> Dial:
+    """In the unit that is shown for one of SI, as its ends are; those of limits are the same."""
+    shown, factor = _SHOWN.get(unit, (unit, 1.0))
+    low, high = [factor * end for end in ends] or (_LEAST * (label != "residual"), _MOST)
+    return Dial(label if unit == "-" else f"{label} [{shown}]", low, high, factor, group)

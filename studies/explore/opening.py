@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import suppress
 from math import pi
 from pathlib import Path
 
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import LINEAR, ROTARY
-from quietarm.ocp import CycloidPolynomial, PointToPoint, evaluate_coefficients
-from quietarm.ocp.files import read_bytes
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, evaluate_coefficients
+from quietarm.studies.compare.opening import format_of
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.reading.saved import load_front, load_plans
 from quietarm.studies.report.words import plant_words
@@ -32,15 +31,11 @@ def open_file(path: Path) -> Explored:
         library = MoveLibrary(path)
         middle = {axis.name: axis.values[len(axis.values) // 2] for axis in library.grid.axes}
         return Explored(library.plan(**middle), library=library)
-    if _format_of(path) == "quietarm-front":
+    if format_of(path) == f"quietarm-{Front.kind}":
         front = load_front(path)
-        first = evaluate_coefficients(
-            front.task,
-            front.points[0].coefficients,
-            profile=front.profile,
-            method=front.record.method,
-        )
-        return Explored(first, bound=front.record.bound, front=front)
+        coefficients = front.points[0].coefficients
+        plan = evaluate_coefficients(front.task, coefficients, profile=front.profile)
+        return Explored(plan, bound=front.record.bound, front=front).pick(0)
     (plan,) = load_plans([path]).values()
     return Explored(plan, residual_limit=plan.residual_limit or None, bound=plan.record.bound)
 
@@ -48,15 +43,8 @@ def open_file(path: Path) -> Explored:
 def is_file(what: str) -> bool:
     """Whether this names a file or a folder of answers, and no plant."""
     path = Path(what)
-    machine = path.suffix == ".json" and _format_of(path) == "quietarm-machine"
+    machine = path.suffix == ".json" and format_of(path) == "quietarm-machine"
     return path.suffix in (".json", ".zarr") and not machine
-
-
-def _format_of(path: Path) -> object:
-    """The format that a file states; None where it is no JSON, for its reader to refuse."""
-    with suppress(ValueError, AttributeError):
-        return json.loads(read_bytes(path)).get("format")
-    return None
 
 
 def menu(plant: Plant) -> dict[str, Plant]:

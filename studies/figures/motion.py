@@ -104,7 +104,9 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
                     linewidth=1.6, label=label)  # fmt: skip
     for duration in {line.plan.task.duration for line in lines}:
         ax.axvline(duration, color="0.6", linewidth=0.8, linestyle="--")
-    _draw_limits(ax, lines, quantity, np.concatenate(drawn))
+    for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn))):
+        label = "_" if k else "limit"  # once in the legend
+        ax.axhline(level, color="black", linewidth=1.1, linestyle=":", label=label)
     if _cut_off_pulses(ax, lines, quantity):
         title += ", pulses cut off"
     ax.set_title(title, **TITLE)
@@ -216,15 +218,14 @@ def lines_of(motions: Motions) -> list[Line]:
     ]
 
 
-def _draw_limits(ax: Axes, lines: Sequence[Line], quantity: str, values: Array) -> None:
-    """Draw the limits that a motion comes near."""
+def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list[float]:
+    """The limits of a quantity that its values come near, in the unit that is shown."""
     limits = [line.plan.task.limit_of(quantity) for line in lines]
     bounds = {bound for one in limits if one is not None for bound in (one.lower, one.upper)}
-    label = "limit"
-    for level in sorted(scale_of(quantity) * bound for bound in bounds):
-        if (values * np.sign(level)).max() >= _IN_SIGHT * abs(level):
-            ax.axhline(level, color="black", linewidth=1.1, linestyle=":", label=label)
-            label = "_"  # once in the legend
+    return [
+        level for level in sorted(scale_of(quantity) * bound for bound in bounds)
+        if (values * np.sign(level)).max() >= _IN_SIGHT * abs(level)
+    ]  # fmt: skip
 
 
 def _cut_off_pulses(ax: Axes, lines: Sequence[Line], quantity: str) -> bool:
