@@ -1,6 +1,5 @@
 """Plans that choose their terms, on random machines within limits: against shapers and the floor.
 
-    pip install ".[benchmark,ruckig]"
     python benchmarks/terms.py [--machines 40] [--seed 1] [--output terms.csv]
 
 Machines of 1 to 60 Hz with one mode or two move within 0.6 to 12 periods of the first, within a
@@ -21,6 +20,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import ruckig  # noqa: F401 - without it its motions would be left out
 from parts.measuring import console, machine, timed
 from quietarm.models import DualLinkManipulator, Plant, SingleLinkManipulator
 from quietarm.ocp import (

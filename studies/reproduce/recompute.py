@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from functools import cached_property, partial
 from itertools import product
 from pathlib import Path
 from typing import Any
 
-from quietarm.metaheuristics import search
+from quietarm.metaheuristics import INERTIA_2002, search
 from quietarm.metaheuristics.parallel import side_by_side
 from quietarm.ocp import (
     CrossCheck,
@@ -42,10 +42,9 @@ from quietarm.studies.reproduce.searched import (
 BEYOND_SIX = (8, 10)
 """Numbers of terms that check the paper's 'no gain above six'."""
 TERMS = (2, 4, SIX_TERMS, *BEYOND_SIX)
-VEPSO_2002 = {
-    "inertia": 1.0, "last_inertia": 0.4, "constriction": 1.0, "cognitive": 0.5, "social": 0.5
-}  # fmt: skip
-"""Constants of Parsopoulos and Vrahatis; the paper names none."""
+_CONSTANTS = ("inertia", "last_inertia", "constriction", "cognitive", "social")
+VEPSO_2002 = dict(zip(_CONSTANTS, astuple(INERTIA_2002), strict=True))
+"""Settings with the constants of Parsopoulos and Vrahatis; the paper names none."""
 FREQUENCY_ERROR = {"frequency": 0.1}
 _SHAPERS = ("cycloid", "zv", "zvd", "ei")
 

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from floors import coarse_floors
 from pages import COMMAND_BLOCKS, PAGES, blocks
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
@@ -19,7 +20,6 @@ from quietarm.ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
@@ -170,7 +170,6 @@ def shortened(words):
 @pytest.fixture
 def follow(tmp_path, capfd, monkeypatch, quick_pictures):
     """Run the commands of a block in this process, on coarse grids; what each of them prints."""
-    monkeypatch.setattr(floor_search, "FIRST_INTERVALS", 24)
     monkeypatch.chdir(tmp_path)
     asked = set()
 
@@ -193,7 +192,8 @@ def follow(tmp_path, capfd, monkeypatch, quick_pictures):
             printed.append(out)
         return printed
 
-    return run
+    with coarse_floors():
+        yield run
 
 
 CALLED = [name for name in COMMAND_BLOCKS if not name.startswith((STARTED, "explore", "machine"))]

@@ -5,18 +5,20 @@ import subprocess
 import sys
 from pathlib import Path
 
+from floors import INTERVALS
+
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
 MOVE = "single-link --target 30deg --duration 0.8"
 TWO_TERMS = "--coefficients=0.003347,-0.1697"  # the paper's Table 1
 COARSELY = [
     sys.executable,
     "-c",
-    "from quietarm.ocp.floor import search; search.FIRST_INTERVALS = 24\n"
+    f"from quietarm.ocp.floor import search; search.FIRST_INTERVALS = {INTERVALS}\n"
     "from quietarm.studies.report import search_progress; search_progress.PLAIN_SECONDS = 0.1\n"
     "from quietarm.studies.cli import main; main()",
 ]
 """The command as a process, which says where a search is without delay, and finds coarser
-floors: how low these are is asked in tests/ocp/floor.
+floors.
 """
 
 

@@ -8,6 +8,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from floors import coarse_floors
 from lines import COARSELY
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
@@ -20,15 +21,12 @@ from quietarm.ocp import (
     non_dominated,
     plan_move,
 )
-from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
 
 
 @pytest.fixture(scope="module", autouse=True)
 def _coarse_floors():
-    """Floors begin on coarser grids: how low they are is asked in tests/ocp/floor."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(floor_search, "FIRST_INTERVALS", 24)
+    with coarse_floors():
         yield
 
 

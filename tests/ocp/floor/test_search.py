@@ -6,8 +6,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from floors import coarse_floors
 from moves import ARM
-from quietarm.ocp.floor import search
 from quietarm.ocp.floor.answer import Level
 
 import quietarm as qa
@@ -16,8 +16,7 @@ import quietarm as qa
 @cache
 def coarse_of(task, starts=1, **settings):
     """`energy_floor` from one start and on coarse grids, that solves nothing twice."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(search, "FIRST_INTERVALS", 24)
+    with coarse_floors():
         return qa.energy_floor(task, starts=starts, **settings)
 
 

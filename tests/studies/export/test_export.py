@@ -9,6 +9,7 @@ from math import pi
 import numpy as np
 import pytest
 import yaml
+from c_library import compiled, joint_by, needs_compiler
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidGaussians,
@@ -22,8 +23,6 @@ from quietarm.ocp import (
 )
 from quietarm.studies.export.formats import export_plan
 from scipy.io import loadmat
-
-from tests.helpers.c_library import compiled, joint_by, needs_compiler
 
 LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8, start=-0.2)
 PROFILES = {

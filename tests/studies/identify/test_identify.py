@@ -281,7 +281,7 @@ def test_a_real_link_has_its_frequency_and_no_damping():
         for data in [loadmat(path)]
     ]
     found = beam(*each)
-    # 1.78 to 1.87 Hz over 11 standstills by another fit; the hub moves under its controller
+    # how far the decays of 11 standstills scatter; the mean's interval is in docs/machine.md
     assert 1.78 < found.plant.omega / math.tau < 1.87
     assert "zeta" in found.not_identifiable
 

@@ -7,13 +7,12 @@ from ctypes import c_double
 import numpy as np
 import pytest
 import xarray as xr
+from c_library import compiled, joint_by, needs_compiler
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import FileFormatError, PointToPoint, plan_move
 from quietarm.studies.cli import main
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.library import MoveLibrary, plan_from
-
-from tests.helpers.c_library import compiled, joint_by, needs_compiler
 
 LINE = (
     "sweep single-link --target 20deg:60deg:5deg --duration 800ms:1.1s:50ms --quiet "

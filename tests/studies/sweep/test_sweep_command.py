@@ -59,7 +59,7 @@ def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, folde
     assert found.energy.attrs["units"] == "J"
     plan = plan_move(PointToPoint(SingleLinkManipulator(), math.pi / 3, 1.2))
     cell = found.isel(target=1, duration=1)
-    # by gradient from several starts and here from the cells beside: 1e-4, issue 28
+    # by gradient from several starts and here from the cells beside: docs/sweeps.md
     assert float(cell.energy) == pytest.approx(plan.energy, rel=1e-4)
     assert float(cell.residual) < 1e-7
     assert float(cell.peak_speed) == pytest.approx(plan.motion.peak_speed, rel=0.01)
@@ -69,7 +69,7 @@ def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, folde
     assert float(cell.residual_by_frequency) == pytest.approx(frequency.residual, rel=1e-3)
     assert float(cell.energy_by_frequency) == pytest.approx(frequency.energy, rel=1e-3)
     assert np.isfinite(found.cold_excess).sum() == 1
-    assert np.nanmax(found.cold_excess) < 1e-4  # issue 28
+    assert np.nanmax(found.cold_excess) < 1e-4  # docs/sweeps.md
     assert (folder / "few.png").read_bytes().startswith(b"\x89PNG")
     code, out, err = call(FEW.replace("30deg,60deg", "30deg,70deg"))
     assert (code, out, err.count("\n")) == (2, "", 1)

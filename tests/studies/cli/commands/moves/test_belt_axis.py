@@ -50,7 +50,7 @@ def test_a_belt_axis_is_identified_and_moved_to_rest(call, tmp_path, monkeypatch
     assert found.not_identifiable == {}
     assert [omega.parameter, zeta.parameter] == ["omega1", "zeta1"]
     assert omega.next_low < 2 * np.pi * 35 < omega.next_high
-    assert zeta.value == pytest.approx(0.05, rel=0.1)
+    assert zeta.value == pytest.approx(0.05, rel=1e-2)
     code, out, err = call(
         "plan belt.json --error measured --target 300mm --duration 0.3 --acceleration-limit 15 "
         "--quiet --output plan.json --output plan.csv"

@@ -1,0 +1,139 @@
+"""Tests, verdicts and ranks of a bench, against scipy and all permutations."""
+
+from dataclasses import replace
+from itertools import combinations
+from math import comb
+
+import numpy as np
+import pytest
+from bench_problems import NAME, OTHERS
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from quietarm.studies.bench.results import Results, Run, quartiles
+from quietarm.studies.bench.statistics import (
+    attainable_p,
+    moves_of,
+    pairs_on,
+    ranking_over,
+    say_power,
+    say_power_of,
+    verdict_on,
+)
+from scipy import stats
+
+import quietarm as qa
+
+
+def test_tests_are_exact_and_no_verdict_is_given_without_power(fronts):
+    results = Results.of_jobs(fronts)
+    table = pairs_on(results, NAME)
+    assert len(table) == 6
+    # five runs of each: the least p of a pair is 2 / C(10, 5)
+    assert table["p"].min() == pytest.approx(2 / comb(10, 5))
+    assert attainable_p(5, 5, 10) == pytest.approx(10 * 2 / 252)
+    assert "9 are needed" not in say_power(5, 4)
+    assert say_power(5, 5) == (
+        "with 5 runs and 10 pairs no p can fall below 0.05: 6 runs are needed for a verdict"
+    )
+    verdict = verdict_on(results, NAME)
+    assert "ends nearest" in verdict
+    assert "random search" not in verdict
+    few = Results.of_jobs({job: front for job, front in fronts.items() if job.seed < 3})
+    assert "no verdict: with 3 runs" in verdict_on(few, NAME)
+
+
+def results_with(one, other, front):
+    """Two methods whose energies within 1 mm have the order of these numbers; 0 is none."""
+    still = front.points[0]
+    runs = []
+    for method, numbers in (("one", one), ("other", other)):
+        for seed, number in enumerate(numbers):
+            point = replace(still, residual=0.0 if number else 1.0, energy=1.0 + number)
+            own = replace(front.restated(seed=seed), points=(point,))
+            runs.append(Run(qa.problem_of(NAME), method, own))
+    return Results(runs)
+
+
+samples = st.lists(st.integers(0, 4), min_size=2, max_size=5)
+
+
+@settings(max_examples=30)
+@given(one=samples, other=samples)
+def test_with_ties_p_is_that_of_all_permutations_and_never_below_the_least(fronts, one, other):
+    (pair,) = pairs_on(results_with(one, other, next(iter(fronts.values()))), NAME, "energy_1mm").p
+    ranks = stats.rankdata([number or 9 for number in (*one, *other)])
+    sums = [sum(subset) for subset in combinations(ranks, len(one))]
+    own = ranks[: len(one)].sum()
+    tails = np.mean(np.array(sums) <= own), np.mean(np.array(sums) >= own)
+    assert pair == pytest.approx(min(1.0, 2 * min(tails)))
+    assert pair >= attainable_p(len(one), len(other), 1) * (1 - 1e-12)
+
+
+@pytest.mark.parametrize(("mine", "theirs"), [(5, 5), (12, 12), (12, 20), (9, 6)])
+def test_without_ties_p_is_scipys_exact(fronts, mine, theirs):
+    numbers = 1 + np.random.default_rng(mine + theirs).permutation(mine + theirs)
+    one, other = np.split(numbers, [mine])
+    results = results_with(one.tolist(), other.tolist(), next(iter(fronts.values())))
+    wanted = stats.mannwhitneyu(one, other, method="exact").pvalue
+    assert pairs_on(results, NAME, "energy_1mm")["p"].tolist() == pytest.approx([wanted])
+
+
+def test_power_counts_what_is_imported():
+    own = [(NAME, method) for method in ("nsga2", "epsilon") for _ in range(5)]
+    assert say_power_of(own).startswith("with 5 runs of each of 2 methods (1 pair) the least p")
+    assert "5 runs of each of 3 methods (3 pairs)" in say_power_of([*own, *[(NAME, "my")] * 6])
+    assert say_power_of([*own, (NAME, "my")]) == say_power_of(own)  # too few runs for a test
+    assert say_power_of([(NAME, "nsga2"), (NAME, "my")]) == (
+        "with 1 run and 1 pair no p can fall below 0.05: 4 runs are needed for a verdict"
+    )
+
+
+def test_of_motions_that_nobody_found_there_is_no_verdict(fronts):
+    far = [(job.label, replace(front, points=front.points[-1:])) for job, front in fronts.items()]
+    results = Results([Run(qa.problem_of(NAME), *one) for one in far])
+    assert set(pairs_on(results, NAME, "energy_1mm")["p"]) == {1.0}
+    assert verdict_on(results, NAME, "energy_1mm") == "no method has such a motion in the median"
+
+
+def test_problems_of_one_move_count_once():
+    groups = moves_of([qa.problem_of(name) for name in (NAME, *OTHERS)])
+    assert sorted(len(group) for group in groups) == [1, 2]
+    sixteen = [one for one in qa.PROBLEMS.values() if not one.peak]
+    assert len(moves_of(sixteen)) == 7
+
+
+def test_a_tool_with_many_runs_on_one_problem_leaves_the_others_ranked(fronts):
+    names = [NAME, OTHERS[0], "dual-link-90deg-0.9s"]
+    done = [(job.label, front) for job, front in fronts.items()]
+    runs = [Run(qa.problem_of(name), *one) for name in names for one in done]
+    own = [done[0][1].restated(seed=seed) for seed in range(30)]
+    results = Results([*runs, *(Run(qa.problem_of(NAME), "my tool", one) for one in own)])
+    ranking = ranking_over(results)
+    assert len(ranking.methods) == 4
+    assert ranking.left_out == ("my tool (not on all problems, or too few runs)",)
+
+
+def test_missing_values_are_censored(fronts):
+    assert quartiles([1.0, 2.0, np.nan]) == (1.0, 2.0, np.inf)
+    results = Results.of_jobs(fronts)
+    assert np.isinf(results.hits(NAME, "random", [1e-9])).all()
+    assert np.isinf(results.expected_running_time(NAME, "random", 1e-9)).all()
+    assert ranking_over(results) is None  # one move
+
+
+@pytest.mark.parametrize("by", ["seconds", "evaluations"])
+@pytest.mark.parametrize("target", [0.9, 0.6, 0.4, 0.2])
+def test_the_expected_running_time_is_cocos_with_an_interval_about_it(fronts, by, target):
+    results, spent, reached = Results.of_jobs(fronts), [], []
+    for job, front in fronts.items():
+        if job.method == "nsga2":
+            costs = [getattr(mark, by) for mark in front.history]
+            shares = [mark.quality.hypervolume if mark.quality else 0 for mark in front.history]
+            until = [cost for cost, share in zip(costs, shares, strict=True) if 1 - share <= target]
+            spent.append(until[0] if until else costs[-1])
+            reached.append(bool(until))
+    time, low, high = results.expected_running_time(NAME, "nsga2(population=20)", target, by)
+    assert time == pytest.approx(sum(spent) / sum(reached) if any(reached) else np.inf)
+    assert low <= time <= high
+    row = results.running_times.query("method == 'nsga2(population=20)'").iloc[0]
+    assert (row["target"], row["runs"]) == (0.1, 5)
