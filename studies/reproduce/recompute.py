@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import astuple, dataclass, field, replace
 from functools import cached_property, partial
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from quietarm.metaheuristics import INERTIA_2002, search
 from quietarm.metaheuristics.parallel import side_by_side
@@ -30,9 +30,10 @@ from quietarm.ocp.record import versions
 from quietarm.ocp.robustness.measures import tolerated_residual
 from quietarm.studies.compare.judged import Judged, judge
 from quietarm.studies.compare.plans import compare_plans
+from quietarm.studies.registry.profiles import OTHERS
 from quietarm.studies.reproduce.paper import CONDITIONS, ROWS, SIX, STUDIED, Case, paper_plan
 from quietarm.studies.reproduce.searched import (
-    OTHERS,
+    OLD_CONSTANTS,
     SIX_TERMS,
     Input,
     Searched,
@@ -47,6 +48,25 @@ VEPSO_2002 = dict(zip(_CONSTANTS, astuple(INERTIA_2002), strict=True))
 """Settings with the constants of Parsopoulos and Vrahatis; the paper names none."""
 FREQUENCY_ERROR = {"frequency": 0.1}
 _SHAPERS = ("cycloid", "zv", "zvd", "ei")
+
+
+class Piece(NamedTuple):
+    """A piece of work: what is done of a case, with which input, from which seed."""
+
+    what: str
+    case: Case
+    which: Input | None = None
+    seed: int | None = None
+
+    @property
+    def name(self) -> str:
+        """All of it in a line."""
+        which = f"N = {self.which}" if isinstance(self.which, int) else self.which
+        seed = None if self.seed is None else f"seed = {self.seed}"
+        return f"{self.what}: {', '.join(filter(None, [self.case.name, which, seed]))}"
+
+
+Work = dict[Piece, Callable[[], Any]]
 
 
 @dataclass(frozen=True)
@@ -80,13 +100,13 @@ class Effort:
     systems: tuple[Case, ...] = CONDITIONS
 
     @property
-    def searched(self) -> list[tuple[Case, Input, bool]]:
-        """What is searched: the case, the input, and whether by the constants of 2002."""
-        chosen: dict[tuple[Case, Input], None] = {(row.condition, row.terms): None for row in ROWS}
+    def searched(self) -> list[tuple[Case, Input]]:
+        """What is searched, conditions and inputs: those that take long first."""
+        chosen: list[tuple[Case, Input]] = [(row.condition, row.terms) for row in ROWS]
         if self.full:
-            chosen |= dict.fromkeys((case, case.earlier[1]) for case in CONDITIONS)
-            chosen |= dict.fromkeys(product(STUDIED, BEYOND_SIX))
-        return [*((*of, False) for of in chosen), *[(CONDITIONS[0], SIX_TERMS, True)] * self.full]
+            chosen += [(case, case.earlier[1]) for case in CONDITIONS]
+            chosen += [*product(STUDIED, BEYOND_SIX), (CONDITIONS[0], OLD_CONSTANTS)]
+        return sorted(dict.fromkeys(chosen), key=lambda of: of[0].search)
 
 
 @dataclass(frozen=True)
@@ -95,8 +115,7 @@ class Reproduction:
 
     effort: Effort
     searched: Mapping[tuple[Case, Input], Searched]
-    by_constants_of_2002: Searched | None
-    answers: Mapping[Hashable, Any]
+    answers: Mapping[Piece, Any]
 
     def cycloid(self, case: Case) -> Plan:
         """The plain cycloid."""
@@ -104,51 +123,47 @@ class Reproduction:
 
     def in_box(self, case: Case, terms: int) -> Plan:
         """The gradient's plan in the paper's box."""
-        return self.answers["in box", case, terms]
+        return self.answers[Piece("gradient, in box", case, terms)]
 
     def free(self, case: Case, terms: int) -> Plan:
         """The gradient's plan without a box."""
-        return self.answers["no box", case, terms]
+        return self.answers[Piece("gradient, no box", case, terms)]
 
     def earlier(self, case: Case) -> Plan | None:
         """The gradient's plan with the earlier study's input; None where it was left out."""
-        return self.answers.get(("other", case, case.earlier[1]))
+        return self.answers.get(Piece("gradient", case, case.earlier[1]))
 
     def floor(self, case: Case) -> Floor:
         """The best motion found without a parametrisation."""
-        return self.answers["free motion", case]
+        return self.answers[Piece("free motion", case)]
 
     def check(self, case: Case) -> CrossCheck:
         """Its front by both solvers."""
-        return self.answers["both solvers", case]
+        return self.answers[Piece("both solvers", case)]
 
     @cached_property
     def systems(self) -> dict[Case, list[Judged]]:
         """Every system on the same moves, each judged alike; none without full effort."""
-        cases = self.effort.systems if self.effort.full else ()
-        return {case: list(self._judged(case)) for case in cases}
+        return {case: [*self._judged(case)] for case in self.effort.systems * self.effort.full}
 
-    def _judged(self, case: Case) -> list[Judged]:
-        printed = next(row.energy for row in SIX if row.condition == case)
-        middle = self.searched[case, SIX_TERMS].middle
+    def _judged(self, case: Case) -> Iterator[Judged]:
+        (printed,) = (row.energy for row in SIX if row.condition == case)
         moved: dict[str, Plan | Floor | str] = {
             "paper": paper_plan(case, SIX_TERMS, mended=False)
             or f"prints {printed:.4g} J, and no coefficients",
-            **{name: self.answers["other", case, name] for name in (case.earlier[1], "spline")},
-            case.search_label: middle or "the middle seed has no such small residual",
+            **{name: self.answers[Piece("gradient", case, name)]
+               for name in (case.earlier[1], "spline")},
+            case.search_label: self.searched[case, SIX_TERMS].middle
+            or "the middle seed has no such small residual",
             "gradient, in the box": self.in_box(case, SIX_TERMS),
             "gradient": self.free(case, SIX_TERMS),
-            "robust plan": self.answers["robust", case],
+            "robust plan": self.answers[Piece("robust", case)],
             "free motion": self.floor(case),
-        }
-        return [
-            *compare_plans({}, _SHAPERS, FREQUENCY_ERROR, 0, task=case.task),
-            *(
-                Judged(name, why=one) if isinstance(one, str)
-                else judge(name, one, FREQUENCY_ERROR, case.task)
-                for name, one in moved.items()
-            ),
-        ]  # fmt: skip
+        }  # fmt: skip
+        yield from compare_plans({}, _SHAPERS, FREQUENCY_ERROR, 0, task=case.task)
+        for name, one in moved.items():
+            yield (Judged(name, why=one) if isinstance(one, str)
+                   else judge(name, one, FREQUENCY_ERROR, case.task))  # fmt: skip
 
 
 def recompute_paper(
@@ -171,17 +186,18 @@ def recompute_paper(
         Where the fronts of the searches are kept, each as soon as it is done. Those that are there
         are not searched again.
     """
-    effort, answers = effort or Effort(), dict[Hashable, Any]()
-    for key, name, answer in side_by_side(_done, list(_work(effort, folder).items()), workers):
-        answers[key] = answer
-        report(name)
-    found = {
-        of: Searched(*of[:2], tuple(answers[*of, seed] for seed in range(effort.seeds)))
-        for of in effort.searched
+    effort, answers = effort or Effort(), dict[Piece, Any]()
+    for piece, answer in side_by_side(_done, list(_work(effort, folder).items()), workers):
+        answers[piece] = answer
+        report(piece.name)
+    seeds = range(effort.seeds)
+    searched = {
+        (case, of): Searched(
+            case, of, tuple(answers[Piece(case.search, case, of, k)] for k in seeds)
+        )
+        for case, of in effort.searched
     }
-    searched = {of[:2]: one for of, one in found.items() if not of[2]}
-    old = next((one for of, one in found.items() if of[2]), None)
-    return Reproduction(effort, searched, old, answers)
+    return Reproduction(effort, searched, answers)
 
 
 def number_of_pieces(effort: Effort) -> int:
@@ -189,60 +205,51 @@ def number_of_pieces(effort: Effort) -> int:
     return len(_work(effort, None))
 
 
-_Piece = tuple[str, Callable[[], Any]]
-"""A piece of work: its name, and what does it."""
+def _done(item: tuple[Piece, Callable[[], Any]]) -> tuple[Piece, Any]:
+    piece, call = item
+    return piece, call()
 
 
-def _done(item: tuple[Hashable, _Piece]) -> tuple[Hashable, str, Any]:
-    key, (name, call) = item
-    return key, name, call()
-
-
-def _work(effort: Effort, folder: Path | None) -> dict[Hashable, _Piece]:
+def _work(effort: Effort, folder: Path | None) -> Work:
     """All work; the long searches first, so that in the end no worker waits long for another."""
-    work: dict[Hashable, _Piece] = {}
-    ordered = sorted(effort.searched, key=lambda of: of[0].search)
-    for (case, which, old), seed in product(ordered, range(effort.seeds)):
-        given = effort.searches.get(case.search, {})
-        own = {"N": which, "constants": 2002, **given, "seed": seed}
-        words = [f"{name} = {value}" for name, value in own.items() if old or name != "constants"]
-        name = f"{case.search}: {', '.join([case.name, *words])}"
-        call = partial(
-            search, case.task, case.search, profile=profile_with(which), seed=seed,
-            bound=case.bound if isinstance(which, int) else None,  # others have their own
-            settings=VEPSO_2002 if old else {}, **given,
-        )  # fmt: skip
-        kept = folder and folder / f"{re.sub(r'[^a-z0-9.-]+', '-', name.lower())}.json"
-        work[case, which, old, seed] = name, partial(_kept, call, kept)
-    rows, starts = {(row.condition, row.terms) for row in ROWS}, effort.starts
+    work: Work = {}
+    for (case, which), seed in product(effort.searched, range(effort.seeds)):
+        piece = Piece(case.search, case, which, seed)
+        work[piece] = partial(_search, piece, effort.searches.get(piece.what, {}), folder)
+    rows = {(row.condition, row.terms) for row in ROWS}
+    solve = partial(plan_move, starts=effort.starts)
     for case, terms in product(CONDITIONS, TERMS):
-        for where, bound in (("in box", case.bound), ("no box", None)):
-            if effort.full or (case, terms) in rows:
-                profile = CycloidPolynomial(terms)
-                solve = partial(plan_move, case.task, profile, bound=bound, starts=starts)
-                work[where, case, terms] = f"gradient, {where}: {case.name}, N = {terms}", solve
-    others = [(case, case.earlier[1]) for case in (CONDITIONS if effort.full else STUDIED)]
-    compared = effort.systems if effort.full else ()
-    for case, name in [*others, *product(compared, ["spline"])]:
-        solve = partial(plan_move, case.task, OTHERS[name], starts=starts)
-        work["other", case, name] = f"gradient: {case.name}, {name}", solve
-    for case in CONDITIONS if effort.full else ():
-        pieces = {
-            "free motion": partial(energy_floor, case.task, **effort.free_motion),
-            "both solvers": partial(_checked, case, effort.points),
-            **({"robust": partial(_robust, case, starts)} if case in compared else {}),
-        }
-        work |= {(what, case): (f"{what}: {case.name}", call) for what, call in pieces.items()}
+        if effort.full or (case, terms) in rows:
+            free = partial(solve, case.task, CycloidPolynomial(terms))
+            work[Piece("gradient, in box", case, terms)] = partial(free, bound=case.bound)
+            work[Piece("gradient, no box", case, terms)] = free
+    compared = effort.systems * effort.full
+    for case in CONDITIONS if effort.full else STUDIED:
+        for name in (case.earlier[1], *["spline"] * (case in compared)):
+            work[Piece("gradient", case, name)] = partial(solve, case.task, OTHERS[name])
+    for case in CONDITIONS * effort.full:
+        work[Piece("free motion", case)] = partial(energy_floor, case.task, **effort.free_motion)
+        work[Piece("both solvers", case)] = partial(_checked, case, effort.points)
+    for case in compared:
+        work[Piece("robust", case)] = partial(_robust, case, effort.starts)
     return work
 
 
-def _kept(call: Callable[[], Front], path: Path | None) -> Front:
-    """A front that is kept already, if it is by the same versions, or found now and kept."""
+def _search(piece: Piece, settings: Mapping[str, Any], folder: Path | None) -> Front:
+    """A front of the paper's search; one that is kept already, if it is by the same versions."""
+    case, which = piece.case, piece.which
+    assert which is not None
+    path = folder and folder / f"{re.sub(r'[^a-z0-9.-]+', '-', piece.name.lower())}.json"
     if path is not None and path.exists():
         front = Front.load(path)
-        if front.record.versions.items() >= versions().items():
+        same = front.record.settings.items() >= settings.items()
+        if same and front.record.versions.items() >= versions().items():
             return front
-    front = call()
+    front = search(
+        case.task, piece.what, profile=profile_with(which), seed=piece.seed,
+        bound=None if which in OTHERS else case.bound,  # others have their own
+        settings=VEPSO_2002 if which == OLD_CONSTANTS else {}, **settings,
+    )  # fmt: skip
     if path is not None:
         path.parent.mkdir(parents=True, exist_ok=True)
         front.save(path)

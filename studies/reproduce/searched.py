@@ -7,30 +7,22 @@ from functools import cached_property
 
 import numpy as np
 from quietarm.metaheuristics.spread import Spread, energies_at
-from quietarm.ocp import (
-    CycloidGaussians,
-    CycloidNetwork,
-    CycloidPolynomial,
-    CycloidSpline,
-    Front,
-    JointProfile,
-    Plan,
-    evaluate_coefficients,
-)
+from quietarm.ocp import CycloidPolynomial, Front, JointProfile, Plan, evaluate_coefficients
+from quietarm.studies.registry.profiles import OTHERS
 from quietarm.studies.reproduce.paper import Case, residual_level
 
 SIX_TERMS = 6
 """Terms of the polynomial: the paper's choice."""
+OLD_CONSTANTS = "N = 6, constants of 2002"
+"""Six terms, searched by VEPSO with other constants than the paper's searches here."""
 Input = int | str
 """Input of the cycloid: a polynomial by its number of terms, or one of `OTHERS`."""
-OTHERS: dict[str, JointProfile] = {
-    "network": CycloidNetwork(), "Gaussians": CycloidGaussians(), "spline": CycloidSpline()
-}  # fmt: skip
 
 
 def profile_with(which: Input) -> JointProfile:
     """The cycloid with this input."""
-    return OTHERS[which] if isinstance(which, str) else CycloidPolynomial(which)
+    terms = which if isinstance(which, int) else SIX_TERMS
+    return OTHERS.get(str(which)) or CycloidPolynomial(terms)
 
 
 @dataclass(frozen=True)
@@ -47,8 +39,8 @@ class Searched:
     @cached_property
     def level(self) -> float:
         """That residual."""
-        terms = min(self.which, SIX_TERMS) if isinstance(self.which, int) else SIX_TERMS
-        return residual_level(self.case, terms)
+        terms = self.which if isinstance(self.which, int) else SIX_TERMS
+        return residual_level(self.case, min(terms, SIX_TERMS))
 
     @property
     def energies(self) -> Spread:
