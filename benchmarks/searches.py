@@ -21,7 +21,7 @@ import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.metaheuristics import PRESETS, PopulationObjective, search
 from quietarm.metaheuristics.parallel import side_by_side
-from quietarm.metaheuristics.spread import energies_at, energy_at
+from quietarm.metaheuristics.spread import energies_at
 from quietarm.ocp import Front, evaluate_coefficients
 from quietarm.studies.reproduce.paper import (
     ARM_HALF,
@@ -106,7 +106,7 @@ def energies(seeds: int, workers: int) -> Table:
             condition = row.condition
             one = partial(searched, condition, method)
             fronts = list(side_by_side(one, range(seeds), workers))
-            found = np.array([energy_at(front, level) for front in fronts])
+            found = np.array([front.least_energy(level) for front in fronts])
             spread = energies_at(fronts, level)
             table.add_row(
                 f"{method}, {condition.label}",

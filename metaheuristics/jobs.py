@@ -174,9 +174,10 @@ class LostJobsError(QuietarmError):
     def __init__(self, failures: Mapping[str, str], fronts: Mapping[Job, Front]) -> None:
         self.fronts = fronts
         (name, why), more = next(iter(failures.items())), len(failures) - 1
+        done = "1 job is" if len(fronts) == 1 else f"{len(fronts)} jobs are"
         super().__init__(
-            f"{name}: {why}{f'; and {more} more' if more else ''}; {len(fronts)} jobs are done, "
-            "run the others again, with fewer workers where memory ran short"
+            f"{name}: {why}{f'; and {more} more' if more else ''}; {done} done, run "
+            "the others again, with fewer workers where memory ran short"
         )
 
 

@@ -44,8 +44,3 @@ def hypervolumes(fronts: Sequence[Front]) -> Spread:
 def energies_at(fronts: Sequence[Front], residual_limit: float = SEARCH_RESIDUAL) -> Spread:
     """Quartiles of the least energy [J] with a residual within the limit [m]."""
     return Spread.of([front.least_energy(residual_limit) for front in fronts])
-
-
-def energy_at(front: Front, residual_limit: float = SEARCH_RESIDUAL) -> float:
-    """Least energy [J] of a front with a residual within the limit [m]; NaN where none is."""
-    return front.least_energy(residual_limit)

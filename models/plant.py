@@ -107,11 +107,16 @@ class Plant(ABC):
         """The plant's parameters by name, in SI units."""
         return {entry.name: getattr(self, entry.name) for entry in fields(self)}
 
+    @classmethod
+    def units(cls) -> dict[str, str]:
+        """The parameters' units by name, "-" where there is none."""
+        return {entry.name: entry.metadata.get("unit", "-") for entry in fields(cls)}
+
     @property
     def measured(self) -> dict[str, float]:
         """The parameters that may have relative errors: all but counts."""
-        counts = [entry.name for entry in fields(self) if entry.metadata.get("unit") == COUNT]
-        return {name: value for name, value in self.parameters.items() if name not in counts}
+        units = self.units()
+        return {name: value for name, value in self.parameters.items() if units[name] != COUNT}
 
     @property
     def tips(self) -> int:

@@ -40,14 +40,12 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
     pairs = pd.concat([
         pd.DataFrame({"problem": name, "measure": measure} | dict(pairs_on(results, name, measure)))
         for name in problems for measure in _TESTED
-    ])  # fmt: skip
+    ], ignore_index=True)  # fmt: skip
     tables = {
         "summary": summary_table(results),
         **{f"problem_{name}": problem_table(results, name) for name in problems},
         "runs": _with_labels(results.table, "method"),
-        "pairs": _with_labels(
-            pairs.set_index(["problem", "measure"]).reset_index(), "one", "other"
-        ),
+        "pairs": _with_labels(pairs, "one", "other"),
         "running_times": _with_labels(results.running_times, "method"),
     }
     figures: Any = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -190,7 +190,8 @@ class Results:
 def imported_runs(fronts: Sequence[Front], problems: Sequence[NamedProblem]) -> list[Run]:
     """Recorded runs of other libraries on the problems that they name.
 
-    ValueError when a front is of none of the problems, or of another move or a wider box.
+    ValueError when a front is of none of the problems, of another move, or has points beyond the
+    box. One that searched a wider box counts at its end alone: marks on the way know no box.
     """
     by_name, runs = {problem.name: problem for problem in problems}, list[Run]()
     for front in fronts:
@@ -205,6 +206,7 @@ def imported_runs(fronts: Sequence[Front], problems: Sequence[NamedProblem]) -> 
             raise ValueError(f"a run of {method} is of another move than {name}")
         if front.record.bound != problem.bound:
             _refuse_beyond(front, problem)
+            front = replace(front, history=front.history[-1:])
         runs.append(Run(problem, method, measured(front, problem.reference())))
     return runs
 
@@ -274,11 +276,9 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     for name, quality in (("", last.quality), ("_between", last.between)):
         row[f"igd_plus{name}"] = np.nan if quality is None else quality.igd_plus
         row[f"epsilon{name}"] = np.nan if quality is None else quality.epsilon
-    residuals, energies = front.residuals, front.energies
     for level, least in zip(LEVELS, best, strict=True):
-        own = energies[residuals <= level].min(initial=np.inf)
-        row[f"energy_{1e3 * level:g}mm"] = own / least - 1 if np.isfinite(own) else np.nan
-    row["at_rest"] = bool((residuals <= AT_REST).any())
+        row[f"energy_{1e3 * level:g}mm"] = front.least_energy(level) / least - 1
+    row["at_rest"] = bool((front.residuals <= AT_REST).any())
     return row | {
         "evaluations": last.evaluations, "gradients": last.gradients, "hessians": last.hessians,
         "seconds": last.seconds, "all_seconds": front.record.seconds,

@@ -11,7 +11,7 @@ from contextlib import suppress
 from importlib import import_module
 
 import click
-from quietarm.ocp import FileFormatError, QuietarmError
+from quietarm.ocp import QuietarmError
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.interrupts import STOPS
 from quietarm.studies.cli.options import COMMON_HELP
@@ -56,7 +56,7 @@ class LazyGroup(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """The name and the command that was asked for, and the other words."""
-        if args[0] in HEIRS and args[0] not in COMMANDS:
+        if args[0] in HEIRS:
             raise ValueError(f"quietarm {args[0]} is gone; give quietarm {HEIRS[args[0]]}")
         if not args[0].startswith("-") and args[0] not in COMMANDS:
             raise ValueError(unknown("command", args[0], COMMANDS))
@@ -146,7 +146,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _complain(message, BAD_INPUT)
     except click.ClickException as error:
         return _complain(error.format_message(), BAD_INPUT)
-    except (FileFormatError, ValueError) as error:
+    except ValueError as error:
         return _complain(str(error), BAD_INPUT)
     except QuietarmError as error:
         return _complain(str(error), NOT_SOLVED)

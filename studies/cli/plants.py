@@ -77,7 +77,7 @@ def units_of_plant(plant: Plant | type[Plant], names: Iterable[str]) -> dict[str
             its = [other for other, of in known.items() if name in of.get("meaning", "")]
             meant = f"; the {name} is {' or '.join(its)}" if its else ""
             raise ValueError(has_no(plant.name, "parameter", name, known) + meant)
-    return {name: known[name].get("unit", "-") for name in names}
+    return {name: plant.units()[name] for name in names}
 
 
 def values_of_plant(

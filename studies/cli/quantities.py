@@ -174,9 +174,10 @@ def parse_weights(text: str) -> tuple[float, float]:
 
 def parse_share_of_work(text: str) -> tuple[int, int]:
     """Read a part of the work: ``2/8``."""
-    number, of = _two(text, "/", int, int, "part; give the second of eight as 2/8")
+    otherwise = "part; give the second of eight as 2/8"
+    number, of = _two(text, "/", int, int, otherwise)
     if not 1 <= number <= of:
-        raise ValueError(f"{text!r} is no part; give the second of eight as 2/8")
+        raise ValueError(f"{text!r} is no {otherwise}")
     return number, of
 
 
@@ -191,14 +192,12 @@ def parse_interval(text: str) -> tuple[float, float]:
 
 def parse_units(text: str) -> dict[str, str]:
     """Read units of a recording's quantities: ``time:ms,angle:deg``."""
-    units: dict[str, str] = {}
-    for one in text.split(","):
-        quantity, _, unit = (part.strip() for part in one.partition(":"))
-        known = _of_column(quantity)
-        if normal(unit) not in known:
-            raise ValueError(unknown(f"unit of {quantity}", unit, known))
-        units[quantity] = unit
-    return units
+    units = [tuple(map(str.strip, one.partition(":")[::2])) for one in text.split(",")]
+    for quantity, unit in units:
+        factors = _of_column(quantity)
+        if normal(unit) not in factors:
+            raise ValueError(unknown(f"unit of {quantity}", unit, factors))
+    return once(units, "the unit of ")
 
 
 def parse_scale(text: str) -> tuple[str, float]:

@@ -1,6 +1,6 @@
 """Answers compared: plans of one move beside baselines and under errors, fronts of one task.
 
-May import `figures`, `report` and `display`.
+May import `figures`, `report`, `reading` and `registry`.
 """
 
 import lazy_loader

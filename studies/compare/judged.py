@@ -21,6 +21,9 @@ from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.robustness.perturbed import worst_case, worst_of
 
+SAMPLES = 2000
+"""Random plants for the percentiles."""
+
 
 @dataclass(frozen=True)
 class Judged:

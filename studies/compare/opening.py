@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from quietarm.ocp import FileFormatError, Front, Plan
-from quietarm.studies.reading.saved import load_front, load_plans
+from quietarm.studies.reading.saved import format_of, load_front, load_plans
 
 _FRONT, _PLAN = (f"quietarm-{one.kind}" for one in (Front, Plan))
 
@@ -44,12 +43,3 @@ def _files(path: Path) -> Iterator[Path]:
     if not fronts:
         raise FileFormatError(f"{path} holds no fronts; give a folder of a bench, or files")
     yield from fronts
-
-
-def format_of(path: Path) -> str:
-    """The format that a file names; empty where it names none."""
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):  # said when it is loaded
-        return ""
-    return str(document.get("format", "")) if isinstance(document, dict) else ""

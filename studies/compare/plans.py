@@ -11,11 +11,16 @@ from quietarm.ocp import Plan, PointToPoint, QuietarmError
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies import figures
 from quietarm.studies.compare.baselines import baseline
-from quietarm.studies.compare.judged import Judged, judge, merged_ranges, refuse_other_moves
+from quietarm.studies.compare.judged import (
+    SAMPLES,
+    Judged,
+    judge,
+    merged_ranges,
+    refuse_other_moves,
+)
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import title_of
 
-SAMPLES = 2000
 _TURNED = 1e-4
 """A joint that goes back by more [rad] is said to."""
 

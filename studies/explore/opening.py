@@ -9,9 +9,8 @@ from pathlib import Path
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, evaluate_coefficients
-from quietarm.studies.compare.opening import format_of
 from quietarm.studies.explore.move import Explored
-from quietarm.studies.reading.saved import load_front, load_plans
+from quietarm.studies.reading.saved import format_of, load_front, load_plans
 from quietarm.studies.report.words import plant_words
 from quietarm.studies.sweep.library import MoveLibrary
 

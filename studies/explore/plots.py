@@ -147,8 +147,7 @@ def _film(line: Line) -> dict[str, Rows]:
     end = plan.task.duration + plan.task.residual_window
     times = np.arange(0.0, end, 1 / FRAMES)
     (one,) = structures_of([line], times, end)
-    scale = "to scale" if one.scale == 1 else f"deflection x {one.scale:g}"
-    words = f"{plan.energy:.4g} J, {residual_words(plan.residual)}; {scale}"
+    words = f"{plan.energy:.4g} J, {residual_words(plan.residual)}; {one.scale_words}"
     parts = [(*_along(part.points), part.colour, part.width, len(times), words)
              for part in one.bent]  # fmt: skip
     return {"film": parts, "corners": _plain(one.corners), "paths": [*map(_along, one.paths)]}

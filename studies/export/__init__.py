@@ -1,6 +1,6 @@
 """Moves in the forms that controllers read, and films of them.
 
-May import `sweep`, `figures` and `display`.
+May import `sweep`, `figures` and `report`.
 """
 
 import lazy_loader

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import write_whole
-from quietarm.studies.export.formats import FORMATS, FRAMES, format_of
+from quietarm.studies.export.formats import FORMATS, FRAMES, WIDTHS, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
 from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
 from quietarm.studies.figures.structure import Structure, structures_of
@@ -34,7 +34,6 @@ from quietarm.studies.report.words import move_of, moved, residual_words, title_
 
 _MOST_MOTIONS, _MOST_FRAMES = 6, 500
 """More could not be seen side by side, or would take minutes."""
-_LEAST_WIDTH, _MOST_WIDTH = 200, 2000
 _LEAST_A_SECOND, _MOST_A_SECOND = 1, 50
 _ROUNDING = 1e-6
 """Of a frame: one that is this close to the end belongs to it."""
@@ -150,7 +149,7 @@ def animate(
     """
     lines = lines_of(motions)
     whole("number of motions", len(lines), 1, _MOST_MOTIONS, "more are too small side by side")
-    width = whole("width", width, _LEAST_WIDTH, _MOST_WIDTH, "more pixels make a huge file")
+    width = whole("width", width, *WIDTHS, "more pixels make a huge file")
     if deflection_scale is not None:
         positive("deflection scale", deflection_scale)
     end = max(line.plan.task.duration + line.plan.task.residual_window for line in lines)
@@ -230,9 +229,8 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
 def _title(one: Structure, same: bool, room: int) -> list[str]:
     """The lines above a panel."""
     plan, task = one.line.plan, one.line.plan.task
-    scale = "to scale" if one.scale == 1 else f"deflection x {one.scale:g}"
     lines = [
-        f"{one.line.label}, {scale}",
+        f"{one.line.label}, {one.scale_words}",
         *([] if same else [f"{moved(task)}, {move_of(task)}"]),
         f"energy {plan.energy:.3g} J, residual {residual_words(plan.residual)}",
     ]

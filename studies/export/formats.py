@@ -12,6 +12,8 @@ from quietarm.ocp.files import write_whole
 from quietarm.studies.export.tables import columns_of, csv_text, mat_bytes, ros_text, table
 
 COLUMNS, RATE, FRAMES, JOINT = "time,angle,speed,acceleration", 1000.0, 25.0, "joint"
+WIDTHS = 200, 2000
+"""Least and largest width of a film [pixels]."""
 _FILM = ("speed", "deflection_scale", "width", "rate")
 
 

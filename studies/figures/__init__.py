@@ -3,7 +3,7 @@
 Every ``draw_...`` draws on the matplotlib axes that it is given, or on new ones, and returns them;
 every ``..._figure`` puts several together as the commands do. No picture is known to pyplot, so
 none opens a window: save one with ``ax.figure.savefig("name.png")``. Each is loaded when it is
-asked for. May import `comparison`, `paper`, `registry` and `display`.
+asked for.
 """
 
 import lazy_loader

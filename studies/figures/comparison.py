@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -28,7 +29,7 @@ from quietarm.studies.report.words import title_of
 if TYPE_CHECKING:
     from quietarm.studies.compare.fronts import Comparison, Group
 
-_LEAST, _ASIDE = 1e-6, 0.9
+_ASIDE = 0.9
 """A logarithmic axis begins at this residual [m], or at this multiple of the least of all."""
 _END = 5.0
 """The end of small residuals reaches at least to this multiple of the least of all."""
@@ -185,7 +186,7 @@ def _up_to(points: Array, right: float) -> Array:
 
 
 def _left(comparison: Comparison) -> float:
-    return max(_LEAST, _ASIDE * float(comparison.best_front[0, 0]))
+    return max(REST, _ASIDE * float(comparison.best_front[0, 0]))
 
 
 def _right(comparison: Comparison) -> float:

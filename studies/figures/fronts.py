@@ -8,9 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
+from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from quietarm.ocp import Front, Polish
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
+from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -21,7 +22,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.looks import BLUE, RED, look
 from quietarm.studies.registry.methods import Kind, method_of
-from quietarm.studies.report.words import REST, millimetres, title_of
+from quietarm.studies.report.words import millimetres, spread_words, title_of
 
 _MOST_NAMED = 10
 """More fronts than this are drawn without a name."""
@@ -120,17 +121,14 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     residual, energy = fronts[0].reference
     length = min(len(front.history) for front in fronts)
     evaluations = [mark.evaluations for mark in fronts[0].history[:length]]
-    table = [[mark.hypervolume for mark in front.history[:length]] for front in fronts]
-    low, middle, high = np.quantile(table, [0.25, 0.5, 0.75], axis=0, method="inverted_cdf")
-    ax.plot(evaluations, middle, color=BLUE, marker=".", label="median")
-    spread = hypervolumes(fronts)
-    words = f"hypervolume: {spread.median:.4f}"
+    spreads = [Spread.of([f.history[k].hypervolume for f in fronts]) for k in range(length)]
+    ax.plot(evaluations, [one.median for one in spreads], color=BLUE, marker=".", label="median")
     if len(fronts) > 1:
-        words += f" ({spread.lower:.4f} to {spread.upper:.4f})"
+        low, high = [one.lower for one in spreads], [one.upper for one in spreads]
         ax.fill_between(evaluations, low, high, color=BLUE, alpha=0.3, linewidth=0,
                         label="quartiles")  # fmt: skip
         ax.legend(fontsize=8, loc="lower right")
-    ax.set_title(words, **TITLE)
+    ax.set_title(f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')}", **TITLE)
     ax.set_xlabel("candidates evaluated")
     ax.set_ylabel(f"share of the box\nup to {millimetres(residual)} and {energy:.4g} J")
     ax.xaxis.set_major_locator(MaxNLocator(5, integer=True))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
 from math import pi
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from quietarm.studies.figures.axes import new_figure
 from quietarm.studies.figures.looks import BLUE, GREY, RED
 from quietarm.studies.identify import Identified, Part, Recording
 from quietarm.studies.identify.diagnosis import spectrum_of
@@ -38,9 +38,7 @@ def identification_figure(found: Identified, recordings: Sequence[Recording]) ->
     """
     drawn = found.parts[:_MOST]
     several = len(found.parts) > 1 and found.estimates
-    figure = Figure(
-        figsize=(9.0, 2.5 * len(drawn) + 2.6 * bool(several) + 0.3), layout="constrained"
-    )
+    figure = new_figure(9.0, 2.5 * len(drawn) + 2.6 * bool(several) + 0.3)
     rows = figure.subfigures(len(drawn) + bool(several), 1, squeeze=False)[:, 0]
     for row, part in zip(rows, drawn, strict=False):
         _draw_part(row, found, part, recordings)
@@ -94,18 +92,14 @@ def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Rec
 
 
 def _frequencies(found: Identified, part: Part) -> list[float]:
-    units = _units(found)
+    units = found.plant.units()
     return [value / (2 * pi) for name, value in part.values.items() if units[name] == "rad/s"]
-
-
-def _units(found: Identified) -> dict[str, str]:
-    return {one.name: one.metadata.get("unit", "") for one in fields(found.plant)}
 
 
 def _over_parts(row: Any, found: Identified) -> None:
     """The identified parameters of every part, with both intervals."""
     axes = row.subplots(1, len(found.estimates[:2]), squeeze=False)[0]
-    units = _units(found)
+    units = found.plant.units()
     number = np.arange(1, len(found.parts) + 1)
     for ax, one in zip(axes, found.estimates, strict=False):
         hertz = units[one.parameter] == "rad/s"

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from quietarm.ocp import Robustness
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
+from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
     axes_or_new,
     legend_of,
@@ -17,7 +18,6 @@ from quietarm.studies.figures.axes import (
     side_by_side,
 )
 from quietarm.studies.figures.looks import look
-from quietarm.studies.report.words import REST
 
 if TYPE_CHECKING:
     from quietarm.studies.compare.judged import Judged

@@ -68,6 +68,11 @@ class Structure:
         return np.array([every.min(axis=0), every.max(axis=0)])
 
     @property
+    def scale_words(self) -> str:
+        """How much larger deflections are drawn."""
+        return "to scale" if self.scale == 1 else f"deflection x {self.scale:g}"
+
+    @property
     def largest_share(self) -> float:
         """The largest displacement of a tip as a share of the structure's size."""
         first = np.vstack([part.points[0] for part in self.unbent])

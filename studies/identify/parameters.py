@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +16,7 @@ _MOST_DAMPING = 0.9
 
 def is_frequency(plant: Plant, name: str) -> bool:
     """Whether a parameter is the frequency of a mode, by its unit."""
-    return (
-        next(one.metadata.get("unit", "") for one in fields(plant) if one.name == name) == "rad/s"
-    )
+    return plant.units()[name] == "rad/s"
 
 
 def is_modal(plant: Plant, name: str) -> bool:

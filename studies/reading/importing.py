@@ -20,9 +20,8 @@ Array = NDArray[np.float64]
 
 _MOST_ROWS = 1_000_000
 _NEAR = 1e-3
-"""Motions that another beats by more than this share are not evaluated a second time."""
-_NEAR_REST = 1e-6
-"""They leave more than it does by this much [m] as well: near rest a share says little."""
+"""Motions that another beats by more than this share are not evaluated a second time; where
+residuals are near rest, and a share says little, by `REST` as well."""
 
 
 class Claim(NamedTuple):
@@ -103,7 +102,7 @@ def _not_beaten(F: Array) -> NDArray[np.bool_]:
     if not len(F):
         return np.zeros(0, dtype=bool)
     best = F[moocore.is_nondominated(F)]
-    best = best[np.argsort(best[:, 0])] * (1 + _NEAR) + np.array([_NEAR_REST, 0.0])
+    best = best[np.argsort(best[:, 0])] * (1 + _NEAR) + np.array([REST, 0.0])
     # energies fall along the front: the last point within a residual has the least
     last = np.searchsorted(best[:, 0], F[:, 0], side="right") - 1
     return (last < 0) | (F[:, 1] < best[np.maximum(last, 0), 1])

@@ -38,8 +38,8 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
     table, label = read_table(path), joint_label("angle", joint)
-    name = table.first(label)
-    time, angle = table.in_si(table.first("time"), "time"), table.in_si(name, label)
+    name, begin = (table.first(one, "name it so in its heading") for one in (label, "time"))
+    time, angle = table.in_si(begin, "time"), table.in_si(name, label)
     _check(path, time, angle, joint)
     largest = np.abs(angle).max()
     if joint == ROTARY and largest > 2 * np.pi and not table.find(name).written:

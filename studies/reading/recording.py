@@ -24,11 +24,13 @@ def read_recording(
     not end in one; a scale is what one count is in SI units.
     """
     table = read_table(path)
-    named = {**columns, "time": columns.get("time") or [table.first("time")]}
-    of_scale = scales or {}
+    time = columns.get("time") or [table.first("time", "name it by --time")]
+    named, of_scale = {**columns, "time": time}, scales or {}
     signals = {
         quantity: np.column_stack([
-            table.in_si(one, quantity, units.get(quantity, ""), of_scale.get(quantity))
+            table.in_si(
+                one, quantity, units.get(quantity, ""), of_scale.get(quantity), by_options=True
+            )
             for one in names
         ])
         for quantity, names in named.items()

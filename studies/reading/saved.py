@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from quietarm.metaheuristics.objective.claims import check_figures, check_plan
 from quietarm.ocp import FileFormatError, Front, Plan
+
+
+def format_of(path: Path) -> str:
+    """The format that a file states; empty where it states none, for its reader to refuse."""
+    with suppress(OSError, ValueError, AttributeError):
+        return str(json.loads(path.read_text(encoding="utf-8")).get("format", ""))
+    return ""
 
 
 def load_front(path: Path) -> Front:

@@ -20,6 +20,8 @@ from quietarm.studies.reading.units import UNITS, normal, split_name
 Array = NDArray[np.float64]
 ARRAYS = (".npy", ".npz", ".mat")
 """Endings of files of arrays; any other is a text."""
+TABLES = (".csv", ".txt", ".dat", *ARRAYS)
+"""Endings by which a table is told from numbers."""
 _SHOWN = 12
 _CALLED = {
     "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds"},
@@ -69,20 +71,34 @@ class Table:
             f"{self.path} has no column {name!r}{near}; its columns, from 0, are {listed}"
         )
 
-    def first(self, quantity: str) -> str:
-        """The first column that is called as a time, an angle or a position is."""
+    def first(self, quantity: str, remedy: str) -> str:
+        """The first column that is called as a time, an angle or a position is.
+
+        FileFormatError with the remedy where none is.
+        """
         for one in self.columns:
             names = (one.name, split_name(one.name)[0])
             if {name.strip().lower() for name in names} & _CALLED[quantity]:
                 return one.name
         names = ", ".join(one.name for one in self.columns[:_SHOWN])
         raise FileFormatError(
-            f"{self.path} has no column called {quantity}; name it by --{quantity} (its columns, "
-            f"from 0: {names})"
+            f"{self.path} has no column called {quantity}; {remedy} (its columns, from 0: {names})"
         )
 
-    def in_si(self, name: str, quantity: str, unit: str = "", scale: float | None = None) -> Array:
-        """A column in SI units: by a scale, a unit, that of its name, or as it is."""
+    def in_si(
+        self,
+        name: str,
+        quantity: str,
+        unit: str = "",
+        scale: float | None = None,
+        *,
+        by_options: bool = False,
+    ) -> Array:
+        """A column in SI units: by a scale, a unit, that of its name, or as it is.
+
+        FileFormatError where its name ends in what may be a unit or not; it names the options of a
+        command that has some for it.
+        """
         column, known = self.find(name), UNITS[quantity]
         if scale is not None:
             return column.values * scale
@@ -93,9 +109,12 @@ class Table:
                 f"{unit} as given; leave the unit out, or rename the column"
             )
         if written and not unit and written not in known:
+            usual = next(iter(known))
+            how = f"name the column {quantity}_{usual}"
+            if by_options:
+                how = f"give the {quantity}'s by --units {quantity}:{usual}, or by --scale"
             raise FileFormatError(
-                f"{self.path}: is {column.written!r} of column {column.name} a unit? give the "
-                f"{quantity}'s by --units {quantity}:{next(iter(known))}, or by --scale"
+                f"{self.path}: is {column.written!r} of column {column.name} a unit? {how}"
             )
         return column.values * known.get(normal(unit) or written, 1.0)
 

@@ -8,7 +8,6 @@ from pkgutil import iter_modules
 
 from quietarm.ocp import JointProfile, PointToPoint, profiles, shaped_cycloid
 from quietarm.ocp.profiles.cycloid import Cycloid
-from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 
 POLYNOMIAL = "polynomial"
 
@@ -29,13 +28,6 @@ def _families() -> dict[str, type[Cycloid]]:
 
 FAMILIES: Mapping[str, type[Cycloid]] = _families()
 """Profiles with coefficients to choose; each takes a number of terms and has one by default."""
-PROFILES = (*FAMILIES, *SHAPERS)
-OTHERS: Mapping[str, Cycloid] = {
-    "network": FAMILIES["network"](),
-    "Gaussians": FAMILIES["gaussians"](),
-    "spline": FAMILIES["spline"](),
-}
-"""What stands beside the polynomial in comparisons, by what tables call it, in its default size."""
 
 
 def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> JointProfile:

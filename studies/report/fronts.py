@@ -6,12 +6,7 @@ from collections.abc import Sequence
 from math import isfinite
 
 import numpy as np
-from quietarm.metaheuristics.spread import (
-    SEARCH_RESIDUAL,
-    energies_at,
-    energy_at,
-    hypervolumes,
-)
+from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
 from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
@@ -31,7 +26,7 @@ _ROWS = 10
 
 def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> str:
     """A front by the gradient, of which so many points were asked for."""
-    levels, record = {level: energy_at(front, level) for level in LEVELS}, front.record
+    levels, record = {level: front.least_energy(level) for level in LEVELS}, front.record
     return "\n".join([
         *energy_words(front.task),
         f"{record.method}: {counted(len(front.points), 'point')}, "

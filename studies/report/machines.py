@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
 from math import floor, log10, pi
 from typing import Any
 
@@ -114,23 +113,19 @@ def _part(plant: Plant, part: Part) -> str:
 
 
 def _short(plant: Plant, name: str, value: float) -> str:
-    if _unit(plant, name) == "rad/s":
+    if plant.units()[name] == "rad/s":
         return f"{value / (2 * pi):.5g} Hz"
     return f"{name} {value:.3g}"
 
 
 def _with_unit(plant: Plant, name: str) -> str:
-    unit = _unit(plant, name)
+    unit = plant.units()[name]
     return f"{name} {getattr(plant, name):.4g}{'' if unit == '-' else f' {unit}'}"
-
-
-def _unit(plant: Plant, name: str) -> str:
-    return next(one.metadata.get("unit", "-") for one in fields(plant) if one.name == name)
 
 
 def _estimate(plant: Plant, one: Estimate) -> list[str]:
     """The value with the mean's interval, and below it the next swing's."""
-    unit = _unit(plant, one.parameter)
+    unit = plant.units()[one.parameter]
     size, words = 1.0, "" if unit == "-" else f" {unit}"
     if unit == "rad/s":
         size, words = 2 * pi, " Hz"

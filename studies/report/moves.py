@@ -15,8 +15,8 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.planning.terms import CHOSEN, OF_SIX
-from quietarm.ocp.record import AGREEMENT
-from quietarm.studies.report.words import REST, millimetres, move_of, moved, state_words
+from quietarm.ocp.record import AGREEMENT, REST
+from quietarm.studies.report.words import millimetres, move_of, moved, state_words
 
 if TYPE_CHECKING:
     from quietarm.studies.reading.path import RecordedPath
@@ -204,7 +204,8 @@ def _peak(name: str, task: PointToPoint, motion: Motion, remedy: str) -> str:
             "deflections count as small; its equations are less exact there)"
         )
     words = f"{peak:.4g} {unit}"
-    cycloid = 2 * math.pi * abs(task.span) / task.duration**2  # of eq (1) with U = t / TE
+    plain = CycloidPolynomial(0).path([], task.start, task.target, task.duration)
+    cycloid = abs(float(plain(task.duration / 4, order=2)))  # its peak
     near = any(one.peak_of(motion) > _FAR * one.size for one in task.limits)
     if name == "acceleration" and not near and peak > _HARD * cycloid:
         words += f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {remedy})"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from quietarm.studies.report.words import print_lines
 from rich.console import Console
@@ -81,16 +81,16 @@ def count(
 
 @dataclass
 class Lines:
-    """Plain lines where there is no terminal, one every few seconds of each kind."""
+    """Plain lines where there is no terminal, one every few seconds."""
 
     console: Console
     quiet: bool
-    said: dict[object, float] = field(default_factory=dict)
+    said: float = -PLAIN_SECONDS
 
-    def say(self, line: str, *, last: bool = False, of: object = None) -> None:
+    def say(self, line: str, *, last: bool = False) -> None:
         """Print a line if it is the last, or time for one."""
         now = time.monotonic()
-        due = last or now - self.said.get(of, -PLAIN_SECONDS) >= PLAIN_SECONDS
+        due = last or now - self.said >= PLAIN_SECONDS
         if due and not (self.quiet or self.console.is_terminal):
-            self.said[of] = now
+            self.said = now
             print_lines(self.console, line)

@@ -76,10 +76,10 @@ class Report:
             for name, table in self.tables.items()
         )  # fmt: skip
 
-    def files(self, folder: Path, name: str = "report.md") -> list[File]:
+    def files(self, folder: Path) -> list[File]:
         """The text, a CSV file for each table, and the pictures; none without a folder."""
         writes: dict[str, Callable[[Path], object]] = {
-            name: lambda path: write_whole(path, self.markdown())
+            "report.md": lambda path: write_whole(path, self.markdown())
         }
         for key, table in self.tables.items():
             writes[f"{key}.csv"] = lambda path, table=table: write_whole(

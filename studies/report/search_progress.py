@@ -11,7 +11,7 @@ from quietarm.ocp import Front
 from quietarm.studies.report.progress import WORDS, Lines, bars
 from quietarm.studies.report.words import millimetres, print_lines
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TimeRemainingColumn
 
 
 @contextmanager
@@ -23,24 +23,22 @@ def search_display(console: Console, *, quiet: bool = False) -> Iterator[SearchD
 
 
 class SearchDisplay:
-    """Called with every generation, and with every search that ends: a bar or lines for each."""
+    """Called with every generation of one search, and with every search that ends."""
 
     def __init__(self, shown: Progress, lines: Lines) -> None:
         self._bars, self._lines = shown, lines
-        self._tasks: dict[int | None, TaskID] = {}
+        self._task = shown.add_task("", visible=False)
 
-    def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
-        """Show where a search is; the seed tells one of several."""
-        if seed not in self._tasks:
-            self._tasks[seed] = self._bars.add_task("", total=progress.generations)
-        words, last = _brief(progress, seed), progress.generation == progress.generations
-        self._bars.update(self._tasks[seed], completed=progress.generation, description=words)
-        self._lines.say(_figures(progress, seed), last=last, of=seed)
+    def __call__(self, progress: SearchProgress) -> None:
+        """Show where the only search is."""
+        done, total = progress.generation, progress.generations
+        self._bars.update(
+            self._task, completed=done, total=total, description=_brief(progress), visible=True
+        )
+        self._lines.say(_figures(progress), last=done == total)
 
     def finish(self, front: Front) -> None:
-        """Show what one of several searches found."""
-        if front.record.seed in self._tasks:
-            self._bars.remove_task(self._tasks.pop(front.record.seed))
+        """Show what a search found."""
         if not self._lines.quiet:
             print_lines(self._lines.console, _found(front))
 
@@ -52,8 +50,7 @@ def _found(front: Front) -> str:
     )
 
 
-def _figures(progress: SearchProgress, seed: int | None) -> str:
-    which = "" if seed is None else f"seed {seed}, "
+def _figures(progress: SearchProgress) -> str:
     done, total = progress.generation, progress.generations
     left = progress.seconds * (total - done) / max(done, 1)
     share = progress.infeasible / max(progress.evaluations, 1)
@@ -61,16 +58,15 @@ def _figures(progress: SearchProgress, seed: int | None) -> str:
     best = "nothing found yet" if isnan(progress.residual) else best
     broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""
     return (
-        f"{which}generation {done}/{total}, {best}, hypervolume {progress.hypervolume:.4f}, "
+        f"generation {done}/{total}, {best}, hypervolume {progress.hypervolume:.4f}, "
         f"{_speed(progress):.0f} candidates/s{broken}, {left:.0f} s left"
     )
 
 
-def _brief(progress: SearchProgress, seed: int | None) -> str:
+def _brief(progress: SearchProgress) -> str:
     """The same for a bar, which has little room."""
-    which = "" if seed is None else f"seed {seed} "
     return (
-        f"{which}{progress.generation}/{progress.generations} {progress.residual * 1e3:.2g} mm "
+        f"{progress.generation}/{progress.generations} {progress.residual * 1e3:.2g} mm "
         f"{progress.energy:.3g} J hv {progress.hypervolume:.3f} {_speed(progress):.0f}/s"
     )
 

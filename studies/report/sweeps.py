@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from quietarm.ocp import SolveStatus
-from quietarm.studies.report.words import REST, moved
+from quietarm.ocp.record import REST
+from quietarm.studies.report.words import moved
 from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
 

@@ -15,10 +15,13 @@ _LEAST_VALUE = 30
 
 
 def show(console: Console, report: Report) -> None:
-    """Print a report without its pictures."""
+    """Print a report without its pictures; in a pipe its tables are as wide as they need."""
     from rich.markdown import Markdown  # not at the top: it takes long to load
 
     lines = [line for line in report.markdown().splitlines() if not line.startswith("![")]
+    if not console.is_terminal:
+        widest = max((len(line) for line in lines if line.startswith("|")), default=0)
+        console = Console(file=console.file, width=max(console.width, widest))
     console.print(Markdown("\n".join(lines)))
 
 

@@ -10,6 +10,7 @@ from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
+from quietarm.ocp.record import REST
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -46,10 +47,6 @@ def spread_words(spread: Spread, form: str, unit: str = "") -> str:
     return f"{middle}{unit} ({low} to {high}{some})"
 
 
-REST = 1e-6
-"""Residuals below this [m] count as rest in words."""
-
-
 def millimetres(length: float) -> str:
     """A length [m] in millimetres."""
     return f"{length * 1e3:.3g} mm"
@@ -63,8 +60,9 @@ def residual_words(residual: float) -> str:
 def plant_words(plant: Plant) -> str:
     """A plant's name, with the parameters that differ from those of its class, of its own."""
     changed: list[str] = []
+    units = plant.units()
     for entry in fields(plant):
-        value, unit = plant.parameters[entry.name], entry.metadata.get("unit", "-")
+        value, unit = plant.parameters[entry.name], units[entry.name]
         if value != entry.default:
             changed.append(f"{entry.name} = {value:.6g}{'' if unit == '-' else f' {unit}'}")
     return f"{plant.name} with {', '.join(changed)}" if changed else plant.name

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -73,7 +72,7 @@ def sweep(
     QuietarmError
         When a worker died or the scheduler is gone; finished chunks are kept.
     """
-    units = {entry.name: entry.metadata.get("unit", "-") for entry in fields(task.plant)}
+    units = task.plant.units()
     units |= {name: joint_unit(unit, task.plant.joint) for name, unit in OF_MOVES.items()}
     for name in axes:
         if name not in units:

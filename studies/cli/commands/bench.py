@@ -8,6 +8,7 @@ import click
 from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.options import (
     command,
+    counting,
     option,
     part_option,
     quiet,
@@ -76,7 +77,6 @@ def bench(
     from quietarm.studies.bench.results import Results, imported_runs
     from quietarm.studies.bench.statistics import say_power_of
     from quietarm.studies.report import show
-    from quietarm.studies.report.progress import progress
     from quietarm.studies.report.words import print_lines
 
     known = {spelling(name): name for name in (*PRESETS, *GRADIENT)}
@@ -97,21 +97,22 @@ def bench(
         print_lines(errors, *left_out, say_power_of(planned))
     write_references(chosen, output)
     trouble: QuietarmError | None = None
-    with progress(len(jobs), errors, quiet=quiet()) as begin:
+    with counting(len(jobs), "jobs") as progress:
         try:
             fronts = run_jobs(
                 jobs, output, workers=workers, scheduler=scheduler, part=part,
-                report=lambda job, front, done, total: begin(job.name),
+                report=lambda job, front, done, total: progress(done, total),
             )  # fmt: skip
         except LostJobsError as error:
             fronts, trouble = dict(error.fronts), error
     if not fronts and trouble is not None:
         raise trouble
-    report = bench_report(Results.of_jobs(fronts, given), typed_line())
+    results = Results.of_jobs(fronts, given)
+    report = bench_report(results, typed_line())
     files = report.files(output)
     for path, write in files:
         write(path)
-    show(Console(), brief_report(Results.of_jobs(fronts, given)))
+    show(Console(), brief_report(results))
     click.echo(f"wrote report.md and {len(files) - 1} tables and pictures to {output}")
     if trouble is not None:
         raise trouble

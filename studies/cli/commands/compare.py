@@ -13,7 +13,9 @@ from quietarm.studies.cli.options import busy, command, option, refuse_typed
 from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.task import error_option
 from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.studies.compare.judged import SAMPLES
 from quietarm.studies.report import Report
+from quietarm.studies.report.words import print_lines
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -39,7 +41,7 @@ def _names(text: str) -> tuple[str, ...]:
 @option("--baselines", type=Parsed("names", _names),
         help="Plans: add these for the same move, as zvd,ruckig; or all.")  # fmt: skip
 @error_option
-@option("--samples", default=2000, help="Plans: random plants for the percentiles.")
+@option("--samples", default=SAMPLES, help="Plans: random plants for the percentiles.")
 @option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one.")
 @option("--free-motion/--no-free-motion", "free", default=True,
         help="Fronts: find the best free motion as well.")  # fmt: skip
@@ -84,7 +86,7 @@ def compare(
 
 
 def _ranges(plans: Mapping[str, Plan], errors: Sequence[tuple[str, float]]) -> dict[str, float]:
-    """Ranges of the parameter errors; `measured` are those that the plans have."""
+    """Ranges of the parameter errors; `measured` are those that the plans are made for."""
     from quietarm.studies.compare.judged import merged_ranges
 
     ranges = once(errors, "--error ")
@@ -93,8 +95,8 @@ def _ranges(plans: Mapping[str, Plan], errors: Sequence[tuple[str, float]]) -> d
     measured = merged_ranges(one.task for one in plans.values())
     if not measured:
         raise ValueError(
-            "--error measured is for plans with measured errors, and these have none; give errors "
-            "as frequency=10%"
+            "--error measured takes the ranges that the plans are made for, and these have none; "
+            "give errors as frequency=10%"
         )
     return {**measured, **ranges}
 
@@ -140,5 +142,5 @@ def _with_floor(comparison: Comparison) -> Comparison:
     try:
         return replace(comparison, floor=energy_floor(comparison.task).energy)
     except QuietarmError as error:
-        Console(stderr=True).print(f"no free motion: {error}", highlight=False, soft_wrap=True)
+        print_lines(Console(stderr=True), f"no free motion: {error}")
         return comparison

@@ -25,17 +25,17 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.studies.reading.table import TABLES
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.moves import path_rows
 
-_TABLES = (".csv", ".txt", ".dat", ".npy", ".npz", ".mat")
 _OF_TABLES = ("bound", "evaluations")
 _NOT_OF_PATHS = ("coefficients", "profile", "terms", "sensitivities", "output", *_OF_TABLES)
 
 
 def _coefficients(text: str) -> list[float] | Path:
-    return Path(text) if Path(text).suffix in _TABLES else parse_coefficients(text)
+    return Path(text) if Path(text).suffix.lower() in TABLES else parse_coefficients(text)
 
 
 @command()

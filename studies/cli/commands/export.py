@@ -16,6 +16,7 @@ from quietarm.studies.export.formats import (
     FRAMES,
     JOINT,
     RATE,
+    WIDTHS,
     export_moves,
     export_plan,
     format_of,
@@ -36,7 +37,7 @@ from quietarm.studies.reading.saved import load_plans
 @option("--speed", type=SHARE, default="100%", help="Of a film's clock; 25% is slow motion.")
 @option("--deflection-scale", type=float, help="Draw deflections so many times larger. [default: "
         "the largest becomes up to a fifth of the structure]")  # fmt: skip
-@option("--width", type=click.IntRange(200, 2000), default=800, help="Of a film, in pixels.")
+@option("--width", type=click.IntRange(*WIDTHS), default=800, help="Of a film, in pixels.")
 def export(plans: tuple[Path, ...], output: Path, **settings: Any) -> None:
     """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB) or as a film (gif, mp4, html).
 

@@ -13,7 +13,7 @@ from quietarm.studies import identify as identification
 from quietarm.studies.cli.files import PICTURE, files_of, finish, output_option
 from quietarm.studies.cli.options import busy, command, option, plant_file
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
-from quietarm.studies.cli.quantities import parse_interval, parse_scale, parse_units
+from quietarm.studies.cli.quantities import once, parse_interval, parse_scale, parse_units
 from quietarm.studies.cli.task import set_option
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.reading.recording import read_recording
@@ -85,8 +85,9 @@ def identify(
         raise click.UsageError("give a RECORDING before PLANT")
     known = chosen_plant(kind, plant_file(), parameters)
     short = len({path.name for path in paths}) == len(paths)
+    of_scale = once(scales, "--scale ")
     read = [
-        read_recording(path, columns, units or {}, path.name if short else str(path), dict(scales))
+        read_recording(path, columns, units or {}, path.name if short else str(path), of_scale)
         for path in paths
     ]
     if check:

@@ -95,7 +95,7 @@ def test_a_job_that_fails_stops_no_other(tmp_path):
         raise ValueError("it broke")
 
     jobs = [Job(NAME, broken, 0, 50), Job(NAME, "random", 0, 100)]
-    with pytest.raises(qa.LostJobsError, match="it broke; 1 jobs are done") as caught:
+    with pytest.raises(qa.LostJobsError, match="it broke; 1 job is done") as caught:
         run_jobs(jobs, tmp_path)
     assert list(caught.value.fronts) == [jobs[1]]
     assert len(list(tmp_path.rglob("*.json"))) == 1

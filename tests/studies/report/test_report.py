@@ -56,6 +56,15 @@ def test_files_keep_every_digit(example, tmp_path):
     assert (tmp_path / "out" / "report.md").read_text() == example.markdown()
 
 
+def test_in_a_pipe_a_table_is_as_wide_as_it_needs(tmp_path):
+    wide = pd.DataFrame([{f"the figure {k} [J]": f"within {k} mm" for k in range(12)}])
+    (tmp_path / "wide.md").write_text("# Wide\n\n{{ tables.wide | table }}\n")
+    console = Console(width=80, file=StringIO())
+    show(console, Report(tmp_path / "wide.md", tables={"wide": wide}))
+    header = next(line for line in console.file.getvalue().splitlines() if "figure 0" in line)
+    assert [f"the figure {k} [J]" in header for k in range(12)] == [True] * 12
+
+
 def test_terminal_shows_the_table_without_pictures(example):
     console = Console(width=60, file=StringIO())
     show(console, example)
