@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,9 +10,17 @@ from typing import Any
 from quietarm.metaheuristics import PRESETS, PROBLEMS, Job, NamedProblem, problem_of
 from quietarm.metaheuristics.gradient import GRADIENT
 from quietarm.ocp import Front
-from quietarm.ocp.checks import whole
+from quietarm.ocp.checks import spelling, whole
 
 ALL = "all"
+
+_SPELT = {spelling(name): name for name in (*PRESETS, *GRADIENT)}
+
+
+def spell_method(typed: str) -> str:
+    """A method's name, however it was spelt, and what follows: NSGA-II+polish is nsga2+polish."""
+    name, *rest = re.split(r"(?=[+.])", typed.strip(), maxsplit=1)
+    return "".join([_SPELT.get(spelling(name), name), *rest])
 
 
 def problems_of(given: Sequence[str]) -> list[NamedProblem]:

@@ -6,9 +6,10 @@ import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
-from quietarm.ocp import Front, QuietarmError
+import click
+from quietarm.ocp import QuietarmError
 from quietarm.ocp.files import check_writable, unwritable, write_whole
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies.cli.options import busy, option
@@ -23,17 +24,18 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from quietarm.studies.report import Report
 
-F = TypeVar("F", bound=Callable[..., Any])
 PICTURE, FOLDER, DATASET = SUFFIXES[0], "", ".zarr"
 _SAME = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv"}
 """Endings that mean the same as another."""
+_NAMES = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
 
 
-def output_option(kinds: Mapping[str, str], *, required: bool = False) -> Callable[[F], F]:
+def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.Option:
     """--output, which may be repeated, and what the files of each ending hold.
 
     A command whose answers go to standard output as well has the ending .json.
     """
+    listed = "; ".join(f"{_NAMES.get(kind, kind)} for {words}" for kind, words in kinds.items())
 
     def check(text: str) -> Path:
         path, kind = Path(text), ending_of(Path(text))
@@ -45,12 +47,15 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> Callab
             return path
         return check_folder(path) if kind in (FOLDER, DATASET) else check_writable(path)
 
-    names = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
-    listed = "; ".join(f"{names.get(kind, kind)} for {words}" for kind, words in kinds.items())
     return option(
         "--output", type=Parsed("file", check), multiple=True, required=required,
         help=f"File to write, by its ending: {listed}. May be repeated.",
     )  # fmt: skip
+
+
+REPORT_OPTION = output_option(
+    {FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"}
+)
 
 
 def check_folder(path: str | Path) -> Path:
@@ -67,20 +72,19 @@ def ending_of(path: Path) -> str:
     return ".json" if path == STDOUT else _SAME.get(path.suffix.lower(), path.suffix.lower())
 
 
-def files_of(output: Sequence[Path], writes: Mapping[str, Callable[..., Any]]) -> list[File]:
-    """The files that were asked for, and what writes each by its ending, or draws a picture."""
-    ways = {**writes, **({PICTURE: drawing(writes[PICTURE])} if PICTURE in writes else {})}
+def answer_files(
+    output: Sequence[Path], draw: Callable[[], Figure], answer: Any = None
+) -> list[File]:
+    """An answer as JSON, as a table where it has one, and as a picture, as the endings say."""
+    ways = {PICTURE: drawing(draw)}
+    for ending, save in {".json": "save", ".csv": "save_csv"}.items():
+        ways[ending] = getattr(answer, save, None)
     return [(path, ways[ending_of(path)]) for path in output]
 
 
-def front_files(output: Sequence[Path], front: Front, draw: Callable[[], Figure]) -> list[File]:
-    """A front as JSON, its points as a table, and a picture."""
-    return files_of(output, {".json": front.save, ".csv": front.save_csv, PICTURE: draw})
-
-
 def report_files(output: Sequence[Path], report: Report) -> list[File]:
-    """A report as a folder, a page, Markdown or LaTeX, as the endings say."""
-    writes = {".html": report.html, ".md": report.markdown, ".tex": report.latex}
+    """A report as a folder, a page or LaTeX, as the endings say."""
+    writes = {".html": report.html, ".tex": report.latex}
     found = list[File]()
     for path in output:
         if text := writes.get(ending_of(path)):
@@ -105,37 +109,35 @@ def finish(
         for path, write in files:
             try:
                 _save(path, write)
-                if path != STDOUT:
-                    written.append(str(path))
             except OSError as error:  # the system's own may leave the name out
                 failures.append(unwritable(path, error))
             except Exception as error:  # of any kind: the next file may be saved all the same
                 failures.append(error)
-    try:
-        console = Console(stderr=any(path == STDOUT for path, _ in files))
-        for part in filter(None, shown):
-            if isinstance(part, str):
-                print_lines(console, part)
-            elif isinstance(part, Sequence):
-                show_facts(console, part)
             else:
-                show(console, part)
-        for name in written:
-            print_lines(console, f"wrote {name}")
-    except KeyboardInterrupt:
-        came.append(0)
+                written += [] if path == STDOUT else [str(path)]
+    console = Console(stderr=any(path == STDOUT for path, _ in files))
+    for part in filter(None, shown):
+        if isinstance(part, str):
+            print_lines(console, part)
+        elif isinstance(part, Sequence):
+            show_facts(console, part)
+        else:
+            show(console, part)
+    for name in written:
+        print_lines(console, f"wrote {name}")
     if came and trouble is None:
-        if not (written or failures):
-            raise KeyboardInterrupt
         names = ", ".join(written)
         trouble = QuietarmError(f"interrupted; {f'wrote {names}' if names else 'nothing written'}")
-    for error in failures:
-        if not isinstance(error, ValueError | QuietarmError):
+    _raise([*([trouble] if trouble else []), *failures])
+
+
+def _raise(errors: Sequence[Exception]) -> None:
+    """Raise an error that has no words for the user, or the only one, or the words of all."""
+    for error in errors:
+        if not isinstance(error, ValueError | QuietarmError) or len(errors) == 1:
             raise error
-    if failures:
-        raise ValueError("; ".join(map(str, filter(None, [trouble, *failures]))))
-    if trouble is not None:
-        raise trouble
+    if errors:
+        raise ValueError("; ".join(map(str, errors)))
 
 
 def _save(path: Path, write: Callable[[Path], object]) -> None:

@@ -1,77 +1,64 @@
-"""The options that commands share, and how they were typed."""
+"""Commands, and the options that several have, each an object that commands list."""
 
 from __future__ import annotations
 
 import os
-import shlex
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
-from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
-from click.core import ParameterSource
-from quietarm.models import Plant, load_plant_file
+from quietarm.models import load_plant_file
+from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
-from quietarm.studies.cli.quantities import literal, once, parse_share_of_work
-from quietarm.studies.cli.types import LENGTH, SETTING, Named, Parsed
+from quietarm.studies.cli.given import FASTEST, Given
+from quietarm.studies.cli.plants import parse_plant
+from quietarm.studies.cli.quantities import (
+    parse_energy,
+    parse_error,
+    parse_part,
+    parse_state,
+    parse_torque_speed,
+)
+from quietarm.studies.cli.types import LENGTH, SETTING, TIME, Named, Parsed
+from quietarm.studies.registry.methods import METHODS, Kind
 from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
+from quietarm.studies.sweep.grid import axis_values
 from rich.console import Console
 
-F = TypeVar("F", bound=Callable[..., Any])
-_PLANTS, _QUIET = "quietarm.plants", "quietarm.quiet"
 
-
-def _keep(name: str) -> Callable[[click.Context, click.Parameter, Any], None]:
-    def keep(context: click.Context, _: click.Parameter, value: Any) -> None:
-        context.meta[name] = value
-
-    return keep
+def option(*names: str, **settings: Any) -> click.Option:
+    """An option, whose help ends with its default."""
+    return click.Option(names, show_default=True, **settings)
 
 
 COMMON: list[click.Parameter] = [
-    click.Option(
-        ["--plant-file"], type=Parsed("file", load_plant_file), is_eager=True,
-        expose_value=False, hidden=True, callback=_keep(_PLANTS),
-        # eager: the plants in it are then known by name
-    ),
-    click.Option(
-        ["--quiet"], is_flag=True, expose_value=False, hidden=True, callback=_keep(_QUIET)
-    ),
-]  # fmt: skip
+    # eager: the plants in it are then known by name
+    option("--plant-file", type=Parsed("file", load_plant_file), is_eager=True, hidden=True),
+    option("--quiet", is_flag=True, hidden=True),
+]
 COMMON_HELP = (
     "Every command takes --plant-file FILE for a plant of your own (a file in Python, which is "
     "run), --quiet for no progress, and --help."
 )
 
 
-def _refuse_same_file(values: Iterable[object]) -> None:
-    """Refuse a line that names one file twice, so that nothing that is read is written over."""
-    every = [one for value in values for one in (value if isinstance(value, tuple) else (value,))]
-    known = set[str]()
-    for path in every:
-        if isinstance(path, Path) and path != STDOUT:
-            place = os.path.realpath(path)  # of a link, too
-            if place in known:
-                raise ValueError(f"{path} is given twice; give it once, or another name")
-            known.add(place)
-
-
 class Command(click.Command):
-    """A command with the options that all have."""
+    """A command with the options that all have; its function takes what was `Given`."""
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
         """Its own options and those of all commands."""
         return [*COMMON, *super().get_params(ctx)]
 
-    def invoke(self, ctx: click.Context) -> Any:
+    def invoke(self, ctx: click.Context) -> None:
         """Run it, unless one file is named twice."""
         _refuse_same_file(ctx.params.values())
-        return super().invoke(ctx)
+        if self.callback is not None:
+            self.callback(Given(ctx))
 
     def get_help_option(self, ctx: click.Context) -> click.Option | None:
         """--help, which is not repeated in every list."""
@@ -86,18 +73,26 @@ class Command(click.Command):
         formatter.write_text(COMMON_HELP)
 
 
-command = partial(click.command, cls=Command)
-"""The decorator of every command."""
+def command(*params: click.Parameter) -> Callable[[Callable[[Given], None]], click.Command]:
+    """The decorator of every command, with its arguments and options."""
+    return click.command(cls=Command, params=list(params))
 
 
-def plant_file() -> Mapping[str, type[Plant]] | None:
-    """The plants of the file that --plant-file names, by their names."""
-    return click.get_current_context().meta.get(_PLANTS)
+def _refuse_same_file(values: Iterable[object]) -> None:
+    """Refuse a line that names one file twice, so that nothing that is read is written over."""
+    every = [one for value in values for one in (value if isinstance(value, tuple) else (value,))]
+    known = set[str]()
+    for path in every:
+        if isinstance(path, Path) and path != STDOUT:
+            place = os.path.realpath(path)  # of a link, too
+            if place in known:
+                raise ValueError(f"{path} is given twice; give it once, or another name")
+            known.add(place)
 
 
 def quiet() -> bool:
     """Whether no progress is shown."""
-    return bool(click.get_current_context().meta.get(_QUIET))
+    return click.get_current_context().params["quiet"]
 
 
 def busy(what: str) -> AbstractContextManager[None]:
@@ -110,115 +105,103 @@ def counting(total: int, what: str) -> AbstractContextManager[Callable[[int, int
     return count(total, what, Console(stderr=True), quiet=quiet())
 
 
-option = partial(click.option, show_default=True)
-"""The decorator of every option, whose help ends with its default."""
+def _times(text: str) -> tuple[float, ...] | str:
+    return FASTEST if text == FASTEST else axis_values(text, TIME.parse)
 
 
-def options(*several: Callable[[F], F]) -> Callable[[F], F]:
-    """Several options as one decorator."""
+SET = option(
+    "--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
+    help="Set a parameter of the plant, as omega=3.2Hz or length=600mm; may be repeated.",
+)  # fmt: skip
+ERROR = option(
+    "--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
+    help="Range of the error of frequency, damping or a parameter, as frequency=8%; the "
+    "residual is then that of the worst case. `measured`: as it was identified. May be repeated.",
+)  # fmt: skip
+TASK = (
+    click.Argument(["plant"], type=Parsed("plant", parse_plant), required=False, metavar="[PLANT]"),
+    SET,
+    option("--start", default="0", metavar="ANGLE", help="Joint angle at the start."),
+    option("--target", metavar="ANGLE",
+           help="Joint angle at the end; of a linear axis a length, as 300mm."),
+    option("--duration", type=Parsed("time", _times), help="Travelling time; quietarm plan also "
+           "takes `fastest`, the shortest within the limits."),
+    *(
+        option(f"--{one.name}-limit", metavar=f"[{one.unit}]",
+               help=f"Largest {one.label} during the move; by direction as LEAST:LARGEST.")
+        for one in QUANTITIES.values()
+    ),
+    option("--torque-speed", type=Parsed("torque@speed", parse_torque_speed),
+           help="Torque limit by speed, as points: 1.5Nm@0,0.8Nm@190rpm."),
+    option("--residual-window", type=TIME, default="1",
+           help="Time after arrival in which the residual is measured."),
+    option("--initial", type=Parsed("W:W'", parse_state), help="Vibration at the start, modal "
+           "amplitudes W [m] and rates W' [m/s]: 5mm:-0.3, or of two modes 5mm,0:0,0.1."),
+    option("--final", type=Parsed("W:W'", parse_state),
+           help="Vibration wanted on arrival, likewise; none by default."),
+    option("--energy", type=Parsed("energy", parse_energy), default="absolute",
+           help="What counts as energy: absolute or positive power, copper loss by the motor "
+           "constant [N m/W^0.5] as copper:0.12, or a sum as 0.5*absolute+copper:0.12."),
+    ERROR,
+)  # fmt: skip
+"""What describes a task: a command with these has `Given.read_task`."""
+BOUND = option("--bound", type=float, help="Largest size of a coefficient. [default: none; a "
+               "search of polynomials needs one]")  # fmt: skip
+RESIDUAL_LIMIT = option(
+    "--residual-limit", type=LENGTH,
+    help="Largest tip displacement after arrival. [default: at rest; with --error 5 % of the "
+    "plain cycloid's largest deflection, or less]",
+)  # fmt: skip
+SEED = option("--seed", default=0, help="Seed of the random numbers; the first of several.")
+STARTS = option("--starts", default=4, help="Starts of the solver.")
+SOLVER = option("--solver", type=Named("solver", SOLVERS), default=SOLVERS[0],
+                help="Sequential quadratic programs (quietarm's own, fast), or IPOPT.")  # fmt: skip
+SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "
+                       "change with each parameter of the plant.")  # fmt: skip
+METHOD_SETTING = option(
+    "--setting", "settings", type=SETTING, multiple=True, metavar="NAME=VALUE",
+    help="Set another setting of a method, as crossover=0.7, in a bench nsga2.crossover=0.7; may "
+    "be repeated. quietarm list METHOD has them.",
+)  # fmt: skip
+WORKERS = option("--workers", type=int, default=1,
+                 help="Processes of this machine that share the work.")  # fmt: skip
+SCHEDULER = option(
+    "--scheduler", metavar="ADDRESS",
+    help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.",
+)  # fmt: skip
+PART = option("--part", type=Parsed("i/n", parse_part), default="1/1", help="Do every n-th piece "
+              "of the work alone, as 2/8 in a queue's array job.")  # fmt: skip
 
-    def add(command: F) -> F:
-        for option in reversed(several):
-            command = option(command)
-        return command
 
-    return add
-
-
-def typed(option: str) -> bool:
-    """Whether the command's option of this name was typed."""
-    source = click.get_current_context().get_parameter_source(option)
-    return source is ParameterSource.COMMANDLINE
-
-
-def typed_line() -> str:
-    """The whole line that was typed."""
-    return shlex.join(["quietarm", *click.get_current_context().obj])
-
-
-def refuse_typed(names: Collection[str], why: str) -> None:
-    """Refuse options that were typed where they have no meaning."""
-    for one in click.get_current_context().command.params:
-        if one.name in names and typed(one.name):
-            name = one.opts[0] if isinstance(one, click.Option) else one.name.upper()
-            raise ValueError(f"{name} {why}")
-
-
-_CYCLOIDS = (
-    "How the joint moves: a cycloid of a polynomial, of Gaussians, of a neural network or of a "
-    "spline"
-)
-_OF_SHAPERS = (
-    "{0} is an input shaper: it has one motion for a move, and therefore no front; give one of "
-    f"{', '.join(FAMILIES)}, or quietarm plan"
-)
-
-
-def profile_options(*others: str, words: str = "") -> Callable[[F], F]:
+def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.Option]:
     """--profile and --terms; `others` are profiles without coefficients."""
-    none = {} if others else {name: _OF_SHAPERS.format(name) for name in SHAPERS}
+    no_front = (
+        "{0} is an input shaper: it has one motion for a move, and therefore no front; give one of "
+        f"{', '.join(FAMILIES)}, or quietarm plan"
+    )
+    none = {} if others else {name: no_front.format(name) for name in SHAPERS}
     sizes = ", ".join(f"{family().terms} for {name}" for name, family in FAMILIES.items())
-    named = Named("profile", [*FAMILIES, *others], none)
-    return options(
-        option("--profile", type=named, default=POLYNOMIAL, help=f"{_CYCLOIDS}{words}."),
+    return (
+        option("--profile", type=Named("profile", [*FAMILIES, *others], none), default=POLYNOMIAL,
+               help="How the joint moves: a cycloid of a polynomial, of Gaussians, of a neural "
+               f"network or of a spline{words}."),
         option("--terms", type=int, help="Terms of the polynomial, Gaussians, hidden nodes or "
                f"control points. [default: {sizes}]"),
     )  # fmt: skip
 
 
-bound_option = option(
-    "--bound", type=float,
-    help="Largest size of a coefficient. [default: none; a search of polynomials needs one]",
-)  # fmt: skip
-residual_limit_option = option(
-    "--residual-limit", type=LENGTH,
-    help="Largest tip displacement after arrival. [default: at rest; with --error 5 % of the "
-    "plain cycloid's largest deflection, or less]",
-)  # fmt: skip
-seed_option = option("--seed", default=0, help="Seed of the random numbers; the first of several.")
-starts_option = option("--starts", default=4, help="Starts of the solver.")
-solver_option = option(
-    "--solver", type=Named("solver", SOLVERS), default=SOLVERS[0],
-    help="Sequential quadratic programs (quietarm's own, fast), or IPOPT.",
-)  # fmt: skip
-sensitivities_option = option(
-    "--sensitivities", is_flag=True,
-    help="List by how much residual and energy change with each parameter of the plant.",
-)  # fmt: skip
-setting_option = option(
-    "--setting", type=SETTING, multiple=True, metavar="NAME=VALUE",
-    help="Set another setting of a method, as crossover=0.7, in a bench nsga2.crossover=0.7; may "
-    "be repeated. quietarm list METHOD has them.",
-)  # fmt: skip
-workers_option = option(
-    "--workers", type=int, default=1, help="Processes of this machine that share the work."
-)
-scheduler_option = option(
-    "--scheduler", metavar="ADDRESS",
-    help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.",
-)  # fmt: skip
-part_option = option(
-    "--part", type=Parsed("i/n", parse_share_of_work), default="1/1",
-    help="Do every n-th piece of the work alone, as 2/8 in a queue's array job.",
-)  # fmt: skip
+_FOUND_BY = {
+    Kind.GRADIENT: ("by the gradient", "front"), Kind.METAHEURISTIC: ("a metaheuristic", "search"),
+}  # fmt: skip
 
 
-def settings_given(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | bool | str]:
-    """Settings as they were typed."""
-    return {name: literal(text) for name, text in once(pairs, "setting ").items()}
-
-
-def settings_by_method(
-    pairs: Iterable[tuple[str, str]], methods: Collection[str]
-) -> dict[str, dict[str, float | int | bool | str]]:
-    """Settings of several methods, each typed as ``method.name=value``, by method."""
-    found: dict[str, dict[str, float | int | bool | str]] = {}
-    for name, value in settings_given(pairs).items():
-        method, dot, own = name.partition(".")
-        if not dot or method not in methods:
-            raise ValueError(
-                f"setting {name} names no method that runs; begin it with one of these and a dot: "
-                f"{', '.join(methods)}"
-            )
-        found.setdefault(method, {})[own] = value
-    return found
+def method_option(what: str, kind: Kind, default: str, help: str) -> click.Option:  # noqa: A002
+    """--method of one kind; an error says which command has those of the other."""
+    own, others = list[str](), dict[str, str]()
+    for name, method in METHODS.items():
+        way, other = _FOUND_BY[method.kind]
+        if method.kind is kind:
+            own.append(name)
+        else:
+            others[name] = f"{name} is {way}; give quietarm {other} --method {name}"
+    return option("--method", type=Named(what, own, others), default=default, help=help)

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import MISSING, fields, replace
+from functools import partial
 from math import tau
 
 from quietarm.models import FlexibleBeam, Plant, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import has_no, unknown
-from quietarm.studies.cli.quantities import MEASURED, once, parse_quantity, parse_share
+from quietarm.studies.cli.quantities import MEASURED, once, parse_parameter
 from quietarm.studies.identify import Identified
 from quietarm.studies.report.words import print_lines
+from quietarm.studies.sweep.grid import axis_values
 from rich.console import Console
 
-Kind = type[Plant] | Identified | None
-"""What PLANT names: a class of plants, an identified machine, or nothing."""
+Kind = type[Plant] | Identified
+"""What PLANT names: a class of plants, or an identified machine."""
 
 
-def parse_plant(name: str) -> type[Plant] | Identified:
+def parse_plant(name: str) -> Kind:
     """A class of plants by its name, or an identified machine by its file."""
     if name.endswith(".json"):
         return Identified.load(name)
@@ -29,8 +31,58 @@ def parse_plant(name: str) -> type[Plant] | Identified:
     return plants[name]
 
 
-def uncertainty_of(errors: Iterable[tuple[str, float]], kind: Kind) -> Uncertainty | None:
-    """The uncertainty by these errors; None without any."""
+def choose_kind(named: Kind | None, own: Mapping[str, type[Plant]] | None) -> Kind:
+    """What PLANT names, or else the only plant of a plant file."""
+    if isinstance(named, Identified) or (named and own is None):
+        return named
+    if not own:
+        raise ValueError(
+            "missing argument PLANT; give one, as single-link, or a file by --plant-file"
+        )
+    its = f"the plant file defines {' and '.join(own)}"
+    if named is None and len(own) > 1:
+        raise ValueError(f"{its}; name one as PLANT")
+    if named and named not in own.values():
+        raise ValueError(f"{its}, not {named.name}; leave {named.name} or --plant-file out")
+    return named or next(iter(own.values()))
+
+
+def read_parameters(
+    kind: Kind | Plant, pairs: Iterable[tuple[str, str]]
+) -> dict[str, tuple[float, ...]]:
+    """The values that parameters are set to, several for an axis of a sweep."""
+    plant = kind.plant if isinstance(kind, Identified) else kind
+    texts, known = once(pairs, "--set "), {entry.name: entry.metadata for entry in fields(plant)}
+    for name in texts:
+        if name not in known:
+            its = [other for other, of in known.items() if name in of.get("meaning", "")]
+            meant = f"; the {name} is {' or '.join(its)}" if its else ""
+            raise ValueError(has_no(plant.name, "parameter", name, known) + meant)
+    return {
+        name: axis_values(text, partial(parse_parameter, unit=plant.units()[name], name=name))
+        for name, text in texts.items()
+    }
+
+
+def build_plant(kind: Kind, values: Mapping[str, float]) -> Plant:
+    """The plant with these values; of an identified machine it keeps the others."""
+    if isinstance(kind, Identified):
+        return replace(kind.plant, **values)
+    for entry in fields(kind):
+        if entry.default is entry.default_factory is MISSING and entry.name not in values:
+            raise ValueError(
+                f"{kind.name} has no value for {entry.name}; give --set {entry.name}=..."
+            )
+    return kind(**values)
+
+
+def build_uncertainty(
+    kind: Kind, errors: Iterable[tuple[str, float]], changed: Collection[str]
+) -> Uncertainty | None:
+    """The uncertainty by these errors; None without any.
+
+    ValueError where `MEASURED` is of no machine, or rests on parameters that are changed.
+    """
     ranges = once(errors, "--error ")
     if ranges.pop(MEASURED, None) is not None:
         if not isinstance(kind, Identified):
@@ -38,85 +90,27 @@ def uncertainty_of(errors: Iterable[tuple[str, float]], kind: Kind) -> Uncertain
                 "--error measured is for an identified machine; give its file as PLANT, or errors "
                 "as frequency=10%"
             )
+        kind.check_unchanged(changed)
         ranges = {**kind.errors, **ranges}
     return Uncertainty(ranges) if ranges else None
 
 
-def check_machine(
-    kind: Kind, settings: Iterable[tuple[str, str]], errors: Iterable[tuple[str, float]]
-) -> None:
-    """Hold what is set of an identified machine against what was measured of it.
+def warn_of_payload(kind: Kind, plant: Plant, changed: Collection[str]) -> None:
+    """Say that an identified beam with another tip mass keeps its measured frequency.
 
-    ValueError where --error measured rests on it. A beam with another tip mass keeps its measured
-    frequency, and standard error says so: it may have been weighed anew, or carry another payload.
+    It may have been weighed anew, or carry another payload.
     """
-    if not isinstance(kind, Identified):
+    if not isinstance(kind, Identified) or "omega" in changed:
         return
-    given = values_of_plant(kind.plant, settings)
-    if any(name == MEASURED for name, _ in errors):
-        kind.check_unchanged(given)
     beam = kind.plant
-    if isinstance(beam, FlexibleBeam) and "omega" not in given:
-        mass = given.get("tip_mass", beam.tip_mass)
-        if mass >= 0 and mass != beam.tip_mass:
-            loaded = beam.carrying(mass).omega / tau
-            print_lines(
-                Console(stderr=True),
-                f"warning: tip_mass is {mass:.4g} kg, and was {beam.tip_mass:.4g} kg when the "
-                f"frequency of {beam.omega / tau:.4g} Hz was measured, which is kept; if the "
-                f"payload has changed, give --set omega={loaded:.4g}Hz, by the beam's equation, or "
-                "record it anew",
-            )
-
-
-def units_of_plant(plant: Plant | type[Plant], names: Iterable[str]) -> dict[str, str]:
-    """Units of parameters; ValueError where there is no such parameter."""
-    known = {entry.name: entry.metadata for entry in fields(plant)}
-    for name in names:
-        if name not in known:
-            its = [other for other, of in known.items() if name in of.get("meaning", "")]
-            meant = f"; the {name} is {' or '.join(its)}" if its else ""
-            raise ValueError(has_no(plant.name, "parameter", name, known) + meant)
-    return {name: plant.units()[name] for name in names}
-
-
-def values_of_plant(
-    plant: Plant | type[Plant], settings: Iterable[tuple[str, str]]
-) -> dict[str, float]:
-    """What parameters are set to."""
-    texts = once(settings, "--set ")
-    units = units_of_plant(plant, texts)
-    return {
-        name: parse_share(text, name)
-        if name.startswith(("zeta", "damping"))
-        else parse_quantity(text, units[name], f"a value of {name}")
-        for name, text in texts.items()
-    }
-
-
-def chosen_plant(
-    kind: Kind, own: Mapping[str, type[Plant]] | None, settings: Iterable[tuple[str, str]]
-) -> Plant:
-    """The plant that was asked for."""
-    if kind is None:
-        if not own:
-            raise ValueError(
-                "missing argument PLANT; give one, as single-link, or a file by --plant-file"
-            )
-        if len(own) > 1:
-            raise ValueError(f"the plant file defines {' and '.join(own)}; name one as PLANT")
-        (kind,) = own.values()
-    if isinstance(kind, Identified):
-        return replace(kind.plant, **values_of_plant(kind.plant, settings))
-    if own is not None and kind not in own.values():
-        raise ValueError(
-            f"the plant file defines {' and '.join(own)}, not {kind.name}; leave {kind.name} or "
-            "--plant-file out"
+    if isinstance(beam, FlexibleBeam) and isinstance(plant, FlexibleBeam):
+        if plant.tip_mass == beam.tip_mass:
+            return
+        loaded = beam.carrying(plant.tip_mass).omega / tau
+        print_lines(
+            Console(stderr=True),
+            f"warning: tip_mass is {plant.tip_mass:.4g} kg, and was {beam.tip_mass:.4g} kg when "
+            f"the frequency of {beam.omega / tau:.4g} Hz was measured, which is kept; if the "
+            f"payload has changed, give --set omega={loaded:.4g}Hz, by the beam's equation, or "
+            "record it anew",
         )
-    given = values_of_plant(kind, settings)
-    for entry in fields(kind):
-        if entry.default is entry.default_factory is MISSING and entry.name not in given:
-            raise ValueError(
-                f"{kind.name} has no value for {entry.name}; give --set {entry.name}=..."
-            )
-    return kind(**given)

@@ -8,16 +8,20 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import fields
 from functools import partial, reduce
-from operator import add
+from operator import add, lt
 from typing import Any, TypeVar
 
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, known, unknown
 from quietarm.ocp.energy import Energy, Mix
+from quietarm.ocp.limits import quantities_of
 from quietarm.studies.reading.units import UNITS as OF_COLUMNS
 from quietarm.studies.reading.units import normal
+from quietarm.studies.sweep.grid import OF_MOVES, axis_values
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -106,6 +110,31 @@ def parse_share(text: str, name: str) -> float:
     return value
 
 
+def parse_parameter(text: str, unit: str, name: str) -> float:
+    """Read a plant's parameter; dampings are shares."""
+    if name.startswith(("zeta", "damping")):
+        return parse_share(text, name)
+    return parse_quantity(text, unit, f"a value of {name}")
+
+
+def parse_of_joint(name: str, text: str, joint: str) -> Any:
+    """Read an end of a move, or a limit, in the units of a kind of joint.
+
+    Ends have one value or several; a limit is a number, or one for each direction: ``-30:40``.
+    """
+    if name in OF_MOVES:
+        end = ("rad", "an angle") if joint == ROTARY else ("m", "a position")
+        return axis_values(text, partial(parse_usual, *end))
+    limited, sides = quantities_of(joint)[name.removesuffix("_limit")], text.split(":")
+    what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
+    values = [parse_usual(limited.unit, what, side) for side in sides]
+    if len(values) > 2:
+        raise ValueError(f"{text!r} is no limit; give one number, or one for each side as -30:40")
+    if len({is_number(side) for side in sides}) > 1:
+        raise ValueError(f"{text!r} has a unit on one side alone; give it on both, or on none")
+    return tuple(values) if len(values) == 2 else values[0]
+
+
 def is_number(text: str) -> bool:
     """Whether a text is a number alone, without a unit."""
     try:
@@ -115,15 +144,62 @@ def is_number(text: str) -> bool:
     return True
 
 
-def _two(
-    text: str, mark: str, one: Callable[[str], S], two: Callable[[str], T], otherwise: str
-) -> tuple[S, T]:
-    """Two values with a mark between them; `otherwise` says what it is not, and how it is given."""
-    try:
-        first, second = text.split(mark)
-        return one(first), two(second)
-    except ValueError:
-        raise ValueError(f"{text!r} is no {otherwise}") from None
+def two(
+    mark: str,
+    first: Callable[[str], S],
+    second: Callable[[str], T],
+    otherwise: str,
+    fits: Callable[[S, T], bool] = lambda one, other: True,
+) -> Callable[[str], tuple[S, T]]:
+    """What reads two values with a mark between them that fit each other.
+
+    `otherwise` says what a text is not, and how it is given.
+    """
+
+    def parse(text: str) -> tuple[S, T]:
+        with suppress(ValueError):
+            one, other = text.split(mark)
+            found = first(one), second(other)
+            if fits(*found):
+                return found
+        raise ValueError(f"{text!r} is no {otherwise}")
+
+    return parse
+
+
+def _lengths(text: str) -> tuple[float, ...]:
+    lengths = (one.removesuffix("/s") for one in text.split(","))
+    return tuple(parse_quantity(one, "m", "a length") for one in lengths)
+
+
+parse_weights = two(
+    ":", float, float, "pair of weights; give those of residual and energy as in 1:3"
+)
+"""Read the weights of residual and energy: ``1:3``."""
+parse_part = two(
+    "/", int, int, "part; give the second of eight as 2/8", lambda number, of: 1 <= number <= of
+)
+"""Read a part of the work: ``2/8``."""
+parse_interval = two(":", float, float, "part; give its begin and end in seconds, as 3.2:7.3", lt)
+"""Read begin and end of a part of a recording [s]: ``3.2:7.3``."""
+_state = two(
+    ":", _lengths, _lengths,
+    "state; give W [m] of each mode, a colon, and W' [m/s] of each, as 5mm:-0.3 or 0,0:0.1,0",
+)  # fmt: skip
+_torque_at_speed = two(
+    "@", *(partial(parse_quantity, unit=unit, what="a number") for unit in ("N m", "rad/s")),
+    "torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with speeds in rad/s, or as 190rpm",
+)  # fmt: skip
+
+
+def parse_state(text: str) -> ModalState:
+    """Read amplitudes W and rates W' of the modes: ``5mm:-0.3`` or, of two modes, ``0,0:1,0``."""
+    return ModalState(*_state(text))
+
+
+def parse_torque_speed(text: str) -> tuple[tuple[float, float], ...]:
+    """Read what a drive gives, torques at speeds: ``1.5Nm@0,0.8Nm@20`` or ``0.8Nm@190rpm``."""
+    return tuple(map(_torque_at_speed, text.split(",")))
 
 
 def parse_pair(text: str, what: str, example: str) -> tuple[str, str]:
@@ -140,54 +216,6 @@ def parse_error(text: str) -> tuple[str, float]:
         return MEASURED, 0.0
     name, share = parse_pair(text, "an error", "frequency=10%")
     return name.replace("-", "_"), parse_share(share, name)
-
-
-def parse_state(text: str) -> ModalState:
-    """Read amplitudes W and rates W' of the modes: ``5mm:-0.3`` or, of two modes, ``0,0:1,0``."""
-
-    def lengths(of: str) -> tuple[float, ...]:
-        return tuple(
-            parse_quantity(one.removesuffix("/s"), "m", "a length") for one in of.split(",")
-        )
-
-    W, rates = _two(text, ":", lengths, lengths, "state; give W [m] of each mode, a colon, and W' "
-                    "[m/s] of each, as 5mm:-0.3 or 0,0:0.1,0")  # fmt: skip
-    return ModalState(W, rates)
-
-
-def parse_torque_speed(text: str) -> tuple[tuple[float, float], ...]:
-    """Read what a drive gives, torques at speeds: ``1.5Nm@0,0.8Nm@20`` or ``0.8Nm@190rpm``."""
-    torque = partial(parse_quantity, unit="N m", what="a torque")
-    speed = partial(parse_quantity, unit="rad/s", what="a speed")
-    otherwise = (
-        "torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with speeds in rad/s, or as "
-        "190rpm"
-    )
-    return tuple(_two(point, "@", torque, speed, otherwise) for point in text.split(","))
-
-
-def parse_weights(text: str) -> tuple[float, float]:
-    """Read the weights of residual and energy: ``1:3``."""
-    otherwise = "pair of weights; give those of residual and energy as in 1:3"
-    return _two(text, ":", float, float, otherwise)
-
-
-def parse_share_of_work(text: str) -> tuple[int, int]:
-    """Read a part of the work: ``2/8``."""
-    otherwise = "part; give the second of eight as 2/8"
-    number, of = _two(text, "/", int, int, otherwise)
-    if not 1 <= number <= of:
-        raise ValueError(f"{text!r} is no {otherwise}")
-    return number, of
-
-
-def parse_interval(text: str) -> tuple[float, float]:
-    """Read begin and end of a part of a recording [s]: ``3.2:7.3``."""
-    otherwise = "part; give its begin and end in seconds, as 3.2:7.3"
-    begin, end = _two(text, ":", float, float, otherwise)
-    if not begin < end:
-        raise ValueError(f"{text!r} is no {otherwise}")
-    return begin, end
 
 
 def parse_units(text: str) -> dict[str, str]:
@@ -261,7 +289,12 @@ def once(pairs: Iterable[tuple[str, T]], what: str) -> dict[str, T]:
     return values
 
 
-def literal(text: str) -> float | int | bool | str:
+def read_settings(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | bool | str]:
+    """Settings of methods by their names."""
+    return {name: _literal(text) for name, text in once(pairs, "setting ").items()}
+
+
+def _literal(text: str) -> float | int | bool | str:
     """Read a value of any kind: true or false, a number, or else a word."""
     if text.lower() in ("true", "false"):
         return text.lower() == "true"

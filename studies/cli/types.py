@@ -8,11 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp.checks import spelling, unknown
-from quietarm.ocp.limits import quantities_of
-from quietarm.studies.cli.quantities import is_number, parse_pair, parse_usual
-from quietarm.studies.sweep.grid import axis_values
+from quietarm.studies.cli.quantities import parse_pair, parse_usual
 
 
 class Parsed(click.ParamType):
@@ -49,24 +46,6 @@ class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
             known = unknown(self._what, value, self.choices)
             self.fail(self._none.get(spelling(value), known), param, ctx)
         return same[0]
-
-
-def parse_of_joint(name: str, text: str, joint: str) -> Any:
-    """Read an end of a move, or a limit, in the units of a kind of joint.
-
-    Ends have one value or several; a limit is a number, or one for each direction: ``-30:40``.
-    """
-    if name in ("start", "target"):
-        end = ("rad", "an angle") if joint == ROTARY else ("m", "a position")
-        return axis_values(text, partial(parse_usual, *end))
-    limited, sides = quantities_of(joint)[name.removesuffix("_limit")], text.split(":")
-    what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
-    values = [parse_usual(limited.unit, what, side) for side in sides]
-    if len(values) > 2:
-        raise ValueError(f"{text!r} is no limit; give one number, or one for each side as -30:40")
-    if len({is_number(side) for side in sides}) > 1:
-        raise ValueError(f"{text!r} has a unit on one side alone; give it on both, or on none")
-    return tuple(values) if len(values) == 2 else values[0]
 
 
 LENGTH, TIME, SHARE = (

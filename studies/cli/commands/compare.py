@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from quietarm.studies.cli.files import FOLDER, finish, output_option, report_files
-from quietarm.studies.cli.options import busy, command, option, refuse_typed
+from quietarm.studies.cli.files import REPORT_OPTION, finish, report_files
+from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import ERROR, busy, command, option
 from quietarm.studies.cli.quantities import MEASURED, once
-from quietarm.studies.cli.task import error_option
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.compare.judged import SAMPLES
 from quietarm.studies.report import Report
@@ -21,8 +20,6 @@ from rich.console import Console
 if TYPE_CHECKING:
     from quietarm.ocp import Front, Plan
     from quietarm.studies.compare.fronts import Comparison
-
-_OF_PLANS, _OF_FRONTS = ("baselines", "errors", "samples"), ("reference", "free")
 
 
 def _names(text: str) -> tuple[str, ...]:
@@ -36,25 +33,18 @@ def _names(text: str) -> tuple[str, ...]:
     return names
 
 
-@command()
-@click.argument("files", nargs=-1, type=INPUT, metavar="FILE...")
-@option("--baselines", type=Parsed("names", _names),
-        help="Plans: add these for the same move, as zvd,ruckig; or all.")  # fmt: skip
-@error_option
-@option("--samples", default=SAMPLES, help="Plans: random plants for the percentiles.")
-@option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one.")
-@option("--free-motion/--no-free-motion", "free", default=True,
-        help="Fronts: find the best free motion as well.")  # fmt: skip
-@output_option({FOLDER: "Markdown, CSV and pictures", ".html": "a page", ".tex": "the tables"})
-def compare(
-    files: tuple[Path, ...],
-    baselines: tuple[str, ...] | None,
-    errors: tuple[tuple[str, float], ...],
-    samples: int,
-    reference: Path | None,
-    free: bool,
-    output: Sequence[Path],
-) -> None:
+@command(
+    click.Argument(["files"], nargs=-1, type=INPUT, metavar="FILE..."),
+    option("--baselines", type=Parsed("names", _names),
+           help="Plans: add these for the same move, as zvd,ruckig; or all."),
+    ERROR,
+    option("--samples", default=SAMPLES, help="Plans: random plants for the percentiles."),
+    option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one."),
+    option("--free-motion/--no-free-motion", "free", default=True,
+           help="Fronts: find the best free motion as well."),
+    REPORT_OPTION,
+)  # fmt: skip
+def compare(given: Given) -> None:
     """Compare fronts of one task, or plans of one move.
 
     Fronts, found by any methods, or a folder of a bench: energies within residuals, hypervolume,
@@ -73,66 +63,53 @@ def compare(
     from quietarm.studies.compare.opening import open_answers
 
     with busy("comparing"):
-        answers = open_answers(files)
+        answers = open_answers(given.files)
         plans = {name: one for name, one in answers.items() if isinstance(one, Plan)}
         fronts = {name: one for name, one in answers.items() if isinstance(one, Front)}
         if plans:
-            refuse_typed(_OF_FRONTS, "is for fronts; leave it out")
-            report = _of_plans(plans, baselines or (), _ranges(plans, errors), samples)
+            given.refuse(["reference", "free"], "is for fronts")
+            report = _of_plans(given, plans)
         else:
-            refuse_typed(_OF_PLANS, "is for plans; leave it out")
-            report = _of_fronts(fronts, reference, free)
-    finish(report_files(output, report), report)
+            given.refuse(["baselines", "errors", "samples"], "is for plans")
+            report = _of_fronts(given, fronts)
+    finish(report_files(given.output, report), report)
 
 
-def _ranges(plans: Mapping[str, Plan], errors: Sequence[tuple[str, float]]) -> dict[str, float]:
-    """Ranges of the parameter errors; `measured` are those that the plans are made for."""
+def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
+    """Plans and baselines; `measured` errors are those that the plans are made for."""
     from quietarm.studies.compare.judged import merged_ranges
-
-    ranges = once(errors, "--error ")
-    if ranges.pop(MEASURED, None) is None:
-        return ranges
-    measured = merged_ranges(one.task for one in plans.values())
-    if not measured:
-        raise ValueError(
-            "--error measured takes the ranges that the plans are made for, and these have none; "
-            "give errors as frequency=10%"
-        )
-    return {**measured, **ranges}
-
-
-def _of_plans(
-    plans: Mapping[str, Plan], baselines: Sequence[str], ranges: Mapping[str, float], samples: int
-) -> Report:
     from quietarm.studies.compare.plans import compare_plans, plans_report
 
-    judged = compare_plans(plans, baselines, ranges, samples)
+    ranges = once(given.errors, "--error ")
+    if ranges.pop(MEASURED, None) is not None:
+        measured = merged_ranges(one.task for one in plans.values())
+        if not measured:
+            raise ValueError(
+                "--error measured takes the ranges that the plans are made for, and these have "
+                "none; give errors as frequency=10%"
+            )
+        ranges = {**measured, **ranges}
+    judged = compare_plans(plans, given.baselines or (), ranges, given.samples)
     return plans_report(next(iter(plans.values())).task, judged)
 
 
-def _of_fronts(fronts: dict[str, Front], reference: Path | None, free: bool) -> Report:
+def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
     from quietarm.studies.compare.front_report import by_task, fronts_report
     from quietarm.studies.compare.fronts import compare_fronts
     from quietarm.studies.reading.saved import load_front
     from quietarm.studies.reproduce.paper import paper_points
 
-    tasks = by_task(fronts)
-    if reference is not None and len(tasks) > 1:
-        raise ValueError(
-            "--reference is for fronts of one task; these are of several: leave it out"
-        )
-    named = None if reference is None else load_front(reference)
-    found = [
-        compare_fronts(
-            list(one.values()), list(one), reference=named, reference_name=str(reference)
-        )
-        for one in tasks
-    ]
-    found = list(map(_with_floor, found)) if free else found
-    terms = [{run.front.profile.size for run in one.runs} for one in found]
-    return fronts_report(
-        found, [paper_points(one.task, sizes) for one, sizes in zip(found, terms, strict=True)]
-    )
+    tasks, named = by_task(fronts), {}
+    if given.reference is not None:
+        if len(tasks) > 1:
+            raise ValueError(
+                "--reference is for fronts of one task; these are of several: leave it out"
+            )
+        named = {"reference": load_front(given.reference), "reference_name": str(given.reference)}
+    found = [compare_fronts(list(one.values()), list(one), **named) for one in tasks]
+    found = list(map(_with_floor, found)) if given.free else found
+    known = [paper_points(one.task, {run.front.profile.size for run in one.runs}) for one in found]
+    return fronts_report(found, known)
 
 
 def _with_floor(comparison: Comparison) -> Comparison:

@@ -2,68 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import click
 from quietarm.ocp import PointToPoint, evaluate_coefficients
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
-from quietarm.studies.cli.commands.plan import plan_files, shown_plan
-from quietarm.studies.cli.files import PICTURE, finish, front_files, output_option
+from quietarm.studies.cli.commands.plan import finish_plan
+from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_option
+from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
-    bound_option,
+    BOUND,
+    SENSITIVITIES,
+    TASK,
     busy,
     command,
     option,
     profile_options,
-    refuse_typed,
-    sensitivities_option,
 )
 from quietarm.studies.cli.quantities import parse_coefficients
-from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.reading.table import TABLES
-from quietarm.studies.registry.profiles import FAMILIES, profile_of
+from quietarm.studies.registry.profiles import FAMILIES
 from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.moves import path_rows
-
-_OF_TABLES = ("bound", "evaluations")
-_NOT_OF_PATHS = ("coefficients", "profile", "terms", "sensitivities", "output", *_OF_TABLES)
 
 
 def _coefficients(text: str) -> list[float] | Path:
     return Path(text) if Path(text).suffix.lower() in TABLES else parse_coefficients(text)
 
 
-@command()
-@task_options
-@profile_options(*SHAPERS, words="; or the plain cycloid through an input shaper")
-@option(
-    "--coefficients", type=Parsed("numbers", _coefficients), metavar="NUMBERS|FILE",
-    help="Those of the profile, as --coefficients=-0.0019,-0.14; or a file with a row a motion "
-    "(.csv, .txt, .npy, .npz, .mat), which gives a front.",
+@command(
+    *TASK, *profile_options(*SHAPERS, words="; or the plain cycloid through an input shaper"),
+    option("--coefficients", type=Parsed("numbers", _coefficients), metavar="NUMBERS|FILE",
+           help="Those of the profile, as --coefficients=-0.0019,-0.14; or a file with a row a "
+           "motion (.csv, .txt, .npy, .npz, .mat), which gives a front."),
+    option("--path", type=INPUT, help="A CSV file with columns such as time_s and angle_deg, in "
+           "place of start, target and duration."),
+    BOUND,
+    option("--evaluations", type=int, help="Candidates that it took to find a file's rows."),
+    SENSITIVITIES,
+    output_option({".json": "the plan or front", ".csv": "the path at 1 kHz or the front",
+                   PICTURE: "a picture"}),
 )  # fmt: skip
-@option("--path", type=INPUT, help="A CSV file with columns such as time_s and angle_deg, in place "
-        "of start, target and duration.")  # fmt: skip
-@bound_option
-@option("--evaluations", type=int, help="Candidates that it took to find a file's rows.")
-@sensitivities_option
-@output_option({
-    ".json": "the plan or front", ".csv": "the path at 1 kHz or the front", PICTURE: "a picture",
-})  # fmt: skip
-def evaluate(
-    move: TypedMove,
-    profile: str,
-    terms: int | None,
-    coefficients: Sequence[float] | Path | None,
-    path: Path | None,
-    sensitivities: bool,
-    output: Sequence[Path],
-    **of_table: Any,
-) -> None:
+def evaluate(given: Given) -> None:
     """Compute residual, energy and peaks of coefficients, an input shaper, a path or a table.
 
     A --path is followed as a cubic spline through its points, at rest at both ends. The columns of
@@ -78,65 +61,58 @@ def evaluate(
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients results.csv \\
           --output front.json --output front.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    if path is not None:
-        refuse_typed(_NOT_OF_PATHS, "is not for a --path; leave it out")
-        return _evaluate_path(move, path)
-    task = move.task()
-    if isinstance(coefficients, Path):
-        refuse_typed(["sensitivities"], "is not for a table; leave it out")
-        return _evaluate_table(task, coefficients, profile, terms, output, **of_table)
-    refuse_typed(_OF_TABLES, "is for a table of results; leave it out")
-    if profile in SHAPERS:
-        refuse_typed(["coefficients", "terms"], f"is not for {profile}; leave it out")
-        motions = profile_of(profile, task)
-    elif coefficients is None:
+    if given.path is not None:
+        return _evaluate_path(given)
+    task = given.read_task()
+    if isinstance(given.coefficients, Path):
+        given.refuse(["sensitivities"], "is not for a table")
+        return _evaluate_table(given, task)
+    given.refuse(["bound", "evaluations"], "is for a table of results")
+    if given.profile in SHAPERS:
+        given.refuse(["coefficients", "terms"], f"is not for {given.profile}")
+        motions = given.read_profile(task)
+    elif given.coefficients is None:
         raise click.UsageError("Missing option '--coefficients'.")
     else:
-        motions = FAMILIES[profile].of_size(len(coefficients))
+        motions = FAMILIES[given.profile].of_size(len(given.coefficients))
     with busy("integrating"):
-        found = evaluate_coefficients(task, coefficients or [], profile=motions)
-    return finish(plan_files(output, found), *shown_plan(found, sensitivities))
+        found = evaluate_coefficients(task, given.coefficients or [], profile=motions)
+    return finish_plan(given, found)
 
 
-def _evaluate_path(move: TypedMove, path: Path) -> None:
+def _evaluate_path(given: Given) -> None:
     from quietarm.studies.reading.path import read_path
 
-    refuse_typed(["start", "target", "duration"], "is in the file of --path; leave it out")
-    recorded = read_path(path, move.plant().joint)
-    task = move.task(start=recorded.start, target=recorded.target, duration=recorded.duration)
+    given.refuse(["start", "target", "duration"], "is in the file of --path")
+    given.refuse_others({"path", *(one.name for one in TASK)}, "is not for a --path")
+    recorded = read_path(given.path, given.read_plant(given.plant).joint)
+    task = given.read_task(start=recorded.start, target=recorded.target, duration=recorded.duration)
     with busy("integrating"):
         rows = path_rows(task, recorded)
     finish([], rows)
 
 
-def _evaluate_table(
-    task: PointToPoint,
-    file: Path,
-    profile: str,
-    terms: int | None,
-    output: Sequence[Path],
-    bound: float | None,
-    evaluations: int | None,
-) -> None:
+def _evaluate_table(given: Given, task: PointToPoint) -> None:
     """A front of coefficients that another program found, beside what it states of them."""
     from quietarm.studies.reading.foreign import read_found
     from quietarm.studies.reading.importing import import_front
 
+    file, profile, terms = given.coefficients, given.profile, given.terms
     if profile in SHAPERS:
         raise ValueError(f"{profile} has no coefficients; give one of {', '.join(FAMILIES)}")
     found = read_found(file)
     columns = found.coefficients.shape[1]
-    if terms is not None and FAMILIES[profile](terms).size != columns:
+    if terms is not None and (size := FAMILIES[profile](terms).size) != columns:
         raise ValueError(
             f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
-            f"{FAMILIES[profile](terms).size}; leave --terms out, or transpose the table"
+            f"{size}; leave --terms out, or transpose the table"
         )
     with busy("evaluating"):
         try:
-            motions = FAMILIES[profile].of_size(columns)
             front, claims = import_front(
-                task, motions, found, file.stem, {"imported": file.name}, bound, evaluations
-            )
+                task, FAMILIES[profile].of_size(columns), found, file.stem,
+                {"imported": file.name}, given.bound, given.evaluations,
+            )  # fmt: skip
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
     notes = [claim.words for claim in claims] or [
@@ -144,5 +120,5 @@ def _evaluate_table(
     ]
     if found.ignored:
         notes.append(f"ignored: {', '.join(found.ignored)[:200]}")
-    draw = partial(figures.front_figure, [front])
-    finish(front_files(output, front, draw), search_lines([front], notes))
+    files = answer_files(given.output, partial(figures.front_figure, [front]), front)
+    finish(files, search_lines([front], notes))

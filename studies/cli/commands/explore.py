@@ -6,19 +6,20 @@ from pathlib import Path
 
 import click
 from quietarm.ocp.checks import install
-from quietarm.studies.cli.options import command, option, plant_file
-from quietarm.studies.cli.plants import chosen_plant, parse_plant
-from quietarm.studies.cli.task import set_option
+from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import SET, command, option
+from quietarm.studies.cli.plants import parse_plant
 
 _USUAL = "single-link"
 """The plant where none is given."""
 
 
-@command()
-@click.argument("what", required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]")
-@set_option
-@option("--no-browser", is_flag=True, help="Print the page's address alone.")
-def explore(what: str | None, parameters: tuple[tuple[str, str], ...], no_browser: bool) -> None:
+@command(
+    click.Argument(["what"], required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]"),
+    SET,
+    option("--no-browser", is_flag=True, help="Print the page's address alone."),
+)
+def explore(given: Given) -> None:
     """Show a page on which a move is changed by hand, and its figures and motion at once.
 
     It begins with the plain cycloid of a PLANT, single-link by default, with a saved plan or front,
@@ -37,11 +38,13 @@ def explore(what: str | None, parameters: tuple[tuple[str, str], ...], no_browse
     except ImportError:
         raise ValueError(f"the page needs bokeh; {install('explore')}") from None
 
+    what = given.what
     if what is not None and is_file(what):
-        if parameters:
+        if given.parameters:
             raise ValueError(f"--set is for a PLANT, and {what} has its own; leave it out")
         explored = open_file(Path(what))
     else:
-        kind = parse_plant(what or _USUAL) if what or plant_file() is None else None
-        explored = open_plant(chosen_plant(kind, plant_file(), parameters))
-    serve(explored, click.echo, not no_browser)
+        usual = _USUAL if given.plant_file is None else None
+        kind = parse_plant(what or usual) if what or usual else None
+        explored = open_plant(given.read_plant(kind))
+    serve(explored, click.echo, not given.no_browser)

@@ -8,7 +8,8 @@ from typing import Any
 import click
 from quietarm.ocp.files import check_writable
 from quietarm.studies.cli.files import finish
-from quietarm.studies.cli.options import command, counting, option, refuse_typed
+from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import command, counting, option
 from quietarm.studies.cli.types import INPUT, SHARE, Parsed
 from quietarm.studies.export.formats import (
     COLUMNS,
@@ -25,20 +26,21 @@ from quietarm.studies.figures.motion import Line
 from quietarm.studies.reading.saved import load_plans
 
 
-@command()
-@click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
-@option("--output", type=Parsed("file", check_writable), required=True,
-        help="The file, whose ending is the format; move.c has move.h beside it.")  # fmt: skip
-@option("--columns", default=COLUMNS, help="Of csv and mat, with units: time:ms,angle:deg,speed,"
-        "acceleration,jerk,tip:mm,torque,power.")  # fmt: skip
-@option("--rate", type=float, help="Rows, points or frames in a second [Hz]. [default: "
-        f"{RATE:g}, {FRAMES:g} of a film]")  # fmt: skip
-@option("--joint", default=JOINT, help="The joint's name, for ROS.")
-@option("--speed", type=SHARE, default="100%", help="Of a film's clock; 25% is slow motion.")
-@option("--deflection-scale", type=float, help="Draw deflections so many times larger. [default: "
-        "the largest becomes up to a fifth of the structure]")  # fmt: skip
-@option("--width", type=click.IntRange(*WIDTHS), default=800, help="Of a film, in pixels.")
-def export(plans: tuple[Path, ...], output: Path, **settings: Any) -> None:
+@command(
+    click.Argument(["plans"], nargs=-1, type=INPUT, metavar="PLAN ..."),
+    option("--output", type=Parsed("file", check_writable), required=True,
+           help="The file, whose ending is the format; move.c has move.h beside it."),
+    option("--columns", default=COLUMNS, help="Of csv and mat, with units: time:ms,angle:deg,"
+           "speed,acceleration,jerk,tip:mm,torque,power."),
+    option("--rate", type=float, help="Rows, points or frames in a second [Hz]. [default: "
+           f"{RATE:g}, {FRAMES:g} of a film]"),
+    option("--joint", default=JOINT, help="The joint's name, for ROS."),
+    option("--speed", type=SHARE, default="100%", help="Of a film's clock; 25% is slow motion."),
+    option("--deflection-scale", type=float, help="Draw deflections so many times larger. "
+           "[default: the largest becomes up to a fifth of the structure]"),
+    option("--width", type=click.IntRange(*WIDTHS), default=800, help="Of a film, in pixels."),
+)  # fmt: skip
+def export(given: Given) -> None:
     """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB) or as a film (gif, mp4, html).
 
     The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
@@ -57,25 +59,25 @@ def export(plans: tuple[Path, ...], output: Path, **settings: Any) -> None:
       quietarm export moves.zarr --output moves.c
       quietarm export plan.json zvd.json --output move.gif --speed 25%
     """  # noqa: D301  # \b is click's: do not rewrap
-    name = format_of(output)
+    plans, output, name = given.plans, given.output, format_of(given.output)
     known = FORMATS[name]
-    for setting in settings:
-        if setting not in known.takes:
-            takers = ", ".join(one for one, each in FORMATS.items() if setting in each.takes)
-            refuse_typed([setting], f"is for {takers}, not for {name}; leave it out")
-    settings = {one: settings[one] for one in known.takes if settings[one] is not None}
+    for setting in {one for form in FORMATS.values() for one in form.takes} - {*known.takes}:
+        takers = ", ".join(one for one, form in FORMATS.items() if setting in form.takes)
+        given.refuse([setting], f"is for {takers}, not for {name}")
+    settings = {one: value for one, value in given.pick(*known.takes).items() if value is not None}
     if not known.is_film and len(plans) > 1:
         raise ValueError(f"{name} is of one plan, and {len(plans)} are given; give one")
+    written, notes = [output], list[str]()
     if len(plans) == 1 and plans[0].is_dir():
         if name != "c":
             raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
-        written, size = export_moves(plans[0], output), []
+        written = export_moves(plans[0], output)
     elif known.is_film:
-        written, size = [output], [_write_film(plans, output, name, settings)]
+        notes = [_write_film(plans, output, name, settings)]
     else:
         (plan,) = load_plans(plans).values()
-        written, size = export_plan(plan, output, name, **settings), []
-    finish([], *size, *(f"wrote {path}" for path in written))
+        written = export_plan(plan, output, name, **settings)
+    finish([], *notes, *(f"wrote {path}" for path in written))
 
 
 def _write_film(plans: tuple[Path, ...], output: Path, form: str, settings: dict[str, Any]) -> str:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, Field, fields
-from itertools import chain
-from pathlib import Path
 from typing import Any
 
 import click
@@ -15,7 +13,8 @@ from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant, known_plants
 from quietarm.ocp.checks import unknown
 from quietarm.studies.cli.files import FOLDER, finish, output_option
-from quietarm.studies.cli.options import command, plant_file
+from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import command
 from quietarm.studies.registry.methods import METHODS
 from quietarm.studies.report.words import counted, error_words
 
@@ -23,10 +22,11 @@ Row = tuple[str, str]
 KINDS = ("plants", "problems", "methods")
 
 
-@command()
-@click.argument("names", nargs=-1, metavar="[plants|problems|methods|NAME]...")
-@output_option({FOLDER: "the reference fronts of the problems"})
-def list_(names: Sequence[str], output: Sequence[Path]) -> None:
+@command(
+    click.Argument(["names"], nargs=-1, metavar="[plants|problems|methods|NAME]..."),
+    output_option({FOLDER: "the reference fronts of the problems"}),
+)
+def list_(given: Given) -> None:
     """List plants, problems and methods; or one of them by its name.
 
     A plant comes with the value, unit, meaning and source of its parameters, a problem with its
@@ -40,30 +40,30 @@ def list_(names: Sequence[str], output: Sequence[Path]) -> None:
       quietarm list single-link-30deg-0.8s --output fronts
       quietarm list nsga2
     """  # noqa: D301  # \b is click's: do not rewrap
-    own = plant_file()
-    plants = known_plants() if own is None else own
+    names: Sequence[str] = given.names or KINDS
+    plants = known_plants() if given.plant_file is None else given.plant_file
     known = [*KINDS, *plants, *PROBLEMS, *METHODS]
     for name in names:
         if name not in known:
             raise ValueError(unknown("name", name, known))
     shown = list[str | list[Row]]()
-    for name in names or KINDS:
+    for name in names:
         title, rows = _table(name, plants)
         shown += [f"{title}:", [(f"  {one}", words) for one, words in rows]]
-    problems = [PROBLEMS[name] for name in names if name in PROBLEMS]
-    if not names or "problems" in names:
-        problems = list(PROBLEMS.values())
-    wrote = list[str]()
-    for folder in output:
-        if not problems:
-            raise ValueError("--output is for the reference fronts of problems; name one")
-        fronts = [zip(one.tasks(), one.fronts(), strict=True) for one in problems]
-        found = dict(chain.from_iterable(fronts))
+    problems = PROBLEMS if "problems" in names else [name for name in names if name in PROBLEMS]
+    if given.output and not problems:
+        raise ValueError("--output is for the reference fronts of problems; name one")
+    for folder in given.output:
+        found = {
+            name: front
+            for problem in map(PROBLEMS.__getitem__, problems)
+            for name, front in zip(problem.tasks(), problem.fronts(), strict=True)
+        }
         folder.mkdir(exist_ok=True)
         for name, front in found.items():
             front.save(folder / f"{name}.json")
-        wrote.append(f"wrote {counted(len(found), 'front')} to {folder}")
-    finish([], *shown, *wrote)
+        shown.append(f"wrote {counted(len(found), 'front')} to {folder}")
+    finish([], *shown)
 
 
 def _table(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, list[Row]]:

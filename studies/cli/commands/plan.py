@@ -5,39 +5,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
-from pathlib import Path
-from typing import Any
 
-from quietarm.ocp import (
-    Plan,
-    SolverFailedError,
-    energy_floor,
-    fastest_move,
-    plan_move,
-)
+from quietarm.ocp import Plan, SolverFailedError, energy_floor, fastest_move, plan_move
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
-from quietarm.studies.cli.files import PICTURE, ending_of, files_of, finish, output_option
+from quietarm.studies.cli.files import PICTURE, answer_files, ending_of, finish, output_option
+from quietarm.studies.cli.given import FASTEST, Given, single_values
 from quietarm.studies.cli.options import (
-    bound_option,
+    BOUND,
+    RESIDUAL_LIMIT,
+    SEED,
+    SENSITIVITIES,
+    SOLVER,
+    STARTS,
+    TASK,
     busy,
     command,
     option,
     profile_options,
-    refuse_typed,
-    residual_limit_option,
-    seed_option,
-    sensitivities_option,
-    solver_option,
-    starts_option,
-    typed,
 )
-from quietarm.studies.cli.plants import values_of_plant
-from quietarm.studies.cli.task import NAMES, TypedMove, task_options
+from quietarm.studies.cli.plants import read_parameters
 from quietarm.studies.cli.types import INPUT
-from quietarm.studies.registry.profiles import FAMILIES, chooses_terms, profile_of
+from quietarm.studies.registry.profiles import FAMILIES, chooses_terms
 from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
-from quietarm.studies.report.saving import File
 from quietarm.studies.sweep.grid import OF_MOVES
 
 FREE = {"free": False, "free-smooth": True}
@@ -46,31 +36,20 @@ _OF_COEFFICIENTS = ("terms", "bound", "residual_limit", "solver", "sensitivities
 _OF_SOLVERS = ("starts", "seed")
 
 
-@command()
-@task_options
-@profile_options(
-    *SHAPERS, *FREE,
-    words="; a plain cycloid through an input shaper for the plant's frequencies at the target; or "
-    "without a parametrisation (free), its acceleration continuous (free-smooth)",
+@command(
+    *TASK,
+    *profile_options(
+        *SHAPERS, *FREE,
+        words="; a plain cycloid through an input shaper for the plant's frequencies at the "
+        "target; or without a parametrisation (free), its acceleration continuous (free-smooth)",
+    ),
+    BOUND, RESIDUAL_LIMIT, STARTS, SEED, SOLVER,
+    option("--from", "dataset", type=INPUT, help="Take the move from this dataset of quietarm "
+           "sweep, between its cells, without solving."),
+    SENSITIVITIES,
+    output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"}),
 )  # fmt: skip
-@bound_option
-@residual_limit_option
-@starts_option
-@seed_option
-@solver_option
-@option("--from", "dataset", type=INPUT, help="Take the move from this dataset of quietarm sweep, "
-        "between its cells, without solving.")  # fmt: skip
-@sensitivities_option
-@output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"})
-def plan(
-    move: TypedMove,
-    profile: str,
-    terms: int | None,
-    dataset: Path | None,
-    sensitivities: bool,
-    output: Sequence[Path],
-    **asked: Any,
-) -> None:
+def plan(given: Given) -> None:
     """Find the move of least energy whose residual vibration is within a limit.
 
     An input shaper has nothing to choose: its motion is evaluated.
@@ -86,73 +65,69 @@ def plan(
       quietarm plan single-link --target 30deg --duration 0.8 --profile free
       quietarm plan --from moves.zarr --target 37deg --duration 930ms --output plan.json
     """  # noqa: D301  # \b is click's: do not rewrap
-    if dataset is not None:
-        idle = (*_OF_COEFFICIENTS, *_OF_SOLVERS, "profile")
-        refuse_typed(idle, "is not for --from; leave it out")
-        return _look_up(move, dataset, output)
-    if profile not in FAMILIES:
-        idle = _OF_COEFFICIENTS if profile in FREE else (*_OF_COEFFICIENTS[:-1], *_OF_SOLVERS)
-        why = f"is not for {profile}, only for profiles with coefficients"
-        refuse_typed(idle, f"{why}; leave it out")
-        if move.fastest:
+    if given.dataset is not None:
+        return _look_up(given)
+    fastest = given.duration == FASTEST
+    if given.profile not in FAMILIES:
+        free = given.profile in FREE
+        why = f"is not for {given.profile}, only for profiles with coefficients"
+        given.refuse(_OF_COEFFICIENTS if free else (*_OF_COEFFICIENTS[:-1], *_OF_SOLVERS), why)
+        if fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
-    if profile in FREE:
-        return _plan_freely(move, FREE[profile], asked["starts"], asked["seed"], output)
-    task, notes = move.task(), list[str]()
-    motions = None if chooses_terms(profile, terms) else profile_of(profile, task, terms)
-    if move.fastest:
-        refuse_typed(["starts"], "is not for --duration fastest; leave it out")
-        del asked["starts"]
+        if free:
+            return _plan_freely(given)
+    task, notes = given.read_task(), list[str]()
+    motions = None if chooses_terms(given.profile, given.terms) else given.read_profile(task)
+    asked = given.pick("bound", "residual_limit", "seed", "solver")
+    if fastest:
+        given.refuse(["starts"], "is not for --duration fastest")
         with busy("looking for the shortest duration"):
             shortest = fastest_move(task, motions, **asked)
         found = shortest.plan
         notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
     else:
         with busy("solving"):
-            found = plan_move(task, motions, **asked)
-    return finish(plan_files(output, found), *shown_plan(found, sensitivities), *notes)
+            found = plan_move(task, motions, starts=given.starts, **asked)
+    return finish_plan(given, found, *notes)
 
 
-def shown_plan(found: Plan, sensitivities: bool) -> Sequence[Sequence[tuple[str, str]] | str]:
-    """The figures of a plan, and how they change with the parameters of the plant."""
-    if not sensitivities:
-        return [plan_rows(found)]
-    title = "\nwhat a parameter that is 1 % larger adds to residual and energy:"
-    return [plan_rows(found), title, sensitivity_rows(found)]
+def finish_plan(given: Given, found: Plan, *notes: str, trouble: Exception | None = None) -> None:
+    """Save a plan; show its figures, and how they change with the parameters of the plant."""
+    shown: list[Sequence[tuple[str, str]] | str] = [plan_rows(found)]
+    if given.sensitivities:
+        shown.append("\nwhat a parameter that is 1 % larger adds to residual and energy:")
+        shown.append(sensitivity_rows(found))
+    files = answer_files(given.output, partial(figures.motion_figure, found), found)
+    finish(files, *shown, *notes, trouble=trouble)
 
 
-def plan_files(output: Sequence[Path], plan: Plan) -> list[File]:
-    """A plan as JSON, its path as CSV, and its picture."""
-    draw = partial(figures.motion_figure, plan)
-    return files_of(output, {".json": plan.save, ".csv": plan.save_csv, PICTURE: draw})
-
-
-def _plan_freely(
-    move: TypedMove, smooth: bool, starts: int, seed: int, output: Sequence[Path]
-) -> None:
+def _plan_freely(given: Given) -> None:
     """The best motion without a parametrisation, beside the plan of a polynomial."""
-    task, beside = move.task(), None
-    if any(ending_of(path) == ".csv" for path in output):
+    task, beside = given.read_task(), None
+    if any(ending_of(path) == ".csv" for path in given.output):
         raise ValueError("a free motion is written as .json or as a picture, not as .csv")
     with busy("refining the grid"):
-        found = energy_floor(task, smooth=smooth, starts=starts, seed=seed)
+        asked = given.pick("starts", "seed")
+        found = energy_floor(task, smooth=FREE[given.profile], **asked)
         with suppress(SolverFailedError):
             beside = plan_move(task)
     draw = partial(figures.floor_figure, found, beside)
-    finish(files_of(output, {".json": found.save, PICTURE: draw}), floor_rows(found, beside))
+    finish(answer_files(given.output, draw, found), floor_rows(found, beside))
 
 
-def _look_up(move: TypedMove, dataset: Path, output: Sequence[Path]) -> None:
+def _look_up(given: Given) -> None:
     """A move between the cells of a sweep; one that breaks a limit is written, with status 1."""
     from quietarm.studies.sweep.library import plan_from
     from quietarm.studies.sweep.store import Store
 
-    kept = [name for name in NAMES if name not in ("parameters", *OF_MOVES)]
-    refuse_typed(kept, "is in the dataset of --from; leave it out")
+    taken = {"parameters", *OF_MOVES}
+    given.refuse({one.name for one in TASK} - taken, "is in the dataset of --from")
+    given.refuse_others({*taken, "dataset", "output"}, "is not for --from")
     with busy("interpolating between the cells"):
-        plant = Store(dataset).definition.grid.task.plant
-        at = values_of_plant(plant, move.given["parameters"])
-        ends = {name: move.read(name, plant.joint) for name in ("start", "target")}
-        at |= {name: {**move.given, **ends}[name][0] for name in OF_MOVES if typed(name)}
-        found, between, trouble = plan_from(dataset, **at)
-    finish(plan_files(output, found), plan_rows(found), between.words, trouble=trouble)
+        plant = Store(given.dataset).definition.grid.task.plant
+        moves = {name: given.read_of_joint(name, plant.joint) for name in ("start", "target")}
+        moves["duration"] = given.duration
+        at = read_parameters(plant, given.parameters)
+        at |= {name: moves[name] for name in OF_MOVES if given.typed(name)}
+        found, between, trouble = plan_from(given.dataset, **single_values(at))
+    finish_plan(given, found, between.words, trouble=trouble)

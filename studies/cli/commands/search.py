@@ -12,60 +12,46 @@ from quietarm.metaheuristics.algorithms.presets import PAPER_BOX
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
-from quietarm.studies.cli.files import PICTURE, ending_of, finish, front_files, output_option
+from quietarm.studies.cli.files import PICTURE, answer_files, ending_of, finish, output_option
+from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
-    bound_option,
+    BOUND,
+    METHOD_SETTING,
+    SEED,
+    TASK,
+    WORKERS,
     command,
+    method_option,
     option,
     profile_options,
     quiet,
-    seed_option,
-    setting_option,
-    settings_given,
-    workers_option,
 )
-from quietarm.studies.cli.task import TypedMove, task_options
-from quietarm.studies.cli.types import INPUT, Named
+from quietarm.studies.cli.quantities import read_settings
+from quietarm.studies.cli.types import INPUT
 from quietarm.studies.reading.saved import load_front
-from quietarm.studies.registry.methods import NSGA2, Kind, methods_of
-from quietarm.studies.registry.profiles import profile_of
+from quietarm.studies.registry.methods import NSGA2, Kind
 from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.saving import STDOUT, File
 from quietarm.studies.report.search_progress import search_display
 from rich.console import Console
 
-_SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
-_GRADIENT = {
-    method.name: f"{method.name} is by the gradient; give quietarm front --method {method.name}"
-    for method in methods_of(Kind.GRADIENT)
-}
 
-
-@command()
-@task_options
-@option("--method", type=Named("metaheuristic", _SEARCHES, _GRADIENT), default=NSGA2.name,
-        help="The metaheuristic; quietarm list methods has them.")  # fmt: skip
-@profile_options()
-@bound_option
-@option("--population", type=int, help="Individuals, or particles in a swarm.")
-@option("--generations", type=int, help="Generations.")
-@setting_option
-@seed_option
-@option("--runs", default=1, help="Seeds, from --seed on; each has a file, as front-seed0.json.")
-@option("--from", "given", type=INPUT, help="A front to begin with, in the first population.")
-@workers_option
-@output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"})
-def search(
-    move: TypedMove,
-    method: str,
-    profile: str,
-    terms: int | None,
-    setting: Sequence[tuple[str, str]],
-    runs: int,
-    given: Path | None,
-    output: Sequence[Path],
-    **settings: Any,
-) -> None:
+@command(
+    *TASK,
+    method_option("metaheuristic", Kind.METAHEURISTIC, NSGA2.name,
+                  "The metaheuristic; quietarm list methods has them."),
+    *profile_options(), BOUND,
+    option("--population", type=int, help="Individuals, or particles in a swarm."),
+    option("--generations", type=int, help="Generations."),
+    METHOD_SETTING, SEED,
+    option("--runs", default=1,
+           help="Seeds, from --seed on; each has a file, as front-seed0.json."),
+    option("--from", "start_front", type=INPUT,
+           help="A front to begin with, in the first population."),
+    WORKERS,
+    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"}),
+)  # fmt: skip
+def search(given: Given) -> None:
     """Find the trade-off of residual and energy with a metaheuristic, without derivatives.
 
     \b
@@ -77,48 +63,48 @@ def search(
       quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
           --population 100 --generations 200 --setting crossover=0.7
     """  # noqa: D301  # \b is click's: do not rewrap
-    several = runs > 1
-    if several and STDOUT in output:
+    several = given.runs > 1
+    if several and STDOUT in given.output:
         raise ValueError("--output - is for one run; with --runs give the name of a file")
     # not at the top: --help needs it not
     from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 
-    task = move.task()
-    settings["profile"] = profile_of(profile, task, terms)
-    settings["settings"] = settings_given(setting)
-    if settings["bound"] is None and settings["profile"].default_bound is None:
+    task = given.read_task()
+    asked = given.pick("bound", "population", "generations") | {
+        "profile": given.read_profile(task), "settings": read_settings(given.settings),
+    }  # fmt: skip
+    if given.bound is None and asked["profile"].default_bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )
-    seed, workers = settings.pop("seed"), whole("workers", settings.pop("workers"), 1)
-    seeds = range(whole("seed", seed, 0), seed + whole("runs", runs, 1, 10_000))
-    if given is not None:
-        settings["start"] = load_front(given)
+    workers, first = whole("workers", given.workers, 1), whole("seed", given.seed, 0)
+    seeds = range(first, first + whole("runs", given.runs, 1, 10_000))
+    if given.start_front is not None:
+        asked["start"] = load_front(given.start_front)
     fronts, trouble = list[Front](), None
-
     with search_display(Console(stderr=True), quiet=quiet()) as display:
         if not several and workers == 1:
-            settings["report"] = display
+            asked["report"] = display
         try:
-            for front in side_by_side(partial(_search, task, method, settings), seeds, workers):
+            for front in side_by_side(partial(_search, task, given.method, asked), seeds, workers):
                 fronts.append(front)
                 display.finish(front)
         except (KeyboardInterrupt, LostWorkersError) as error:
             if not fronts:
                 raise
             why = "interrupted" if isinstance(error, KeyboardInterrupt) else error
-            trouble = QuietarmError(f"{why}: {len(fronts)} of {runs} seeds are done and kept")
+            trouble = QuietarmError(f"{why}: {len(fronts)} of {given.runs} seeds are done and kept")
     fronts.sort(key=lambda front: front.record.seed or 0)
     if not any(front.points for front in fronts):
-        raise trouble or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
-    finish(_files(output, fronts, several), search_lines(fronts), trouble=trouble)
+        raise trouble or SolverFailedError(f"{given.method}: {fronts[0].why_empty()}")
+    finish(_files(given.output, fronts, several), search_lines(fronts), trouble=trouble)
 
 
-def _search(task: PointToPoint, method: str, settings: dict[str, Any], seed: int) -> Front:
+def _search(task: PointToPoint, method: str, asked: dict[str, Any], seed: int) -> Front:
     from quietarm.metaheuristics import search
 
-    return search(task, method, seed=seed, **settings)
+    return search(task, method, seed=seed, **asked)
 
 
 def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> list[File]:
@@ -128,5 +114,5 @@ def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> li
     draw, found = partial(figures.front_figure, fronts), list[File]()
     for front in fronts:
         names = [path.with_stem(f"{path.stem}-seed{front.record.seed}") for path in others]
-        found += front_files(names if several else others, front, draw)
-    return [*found, *front_files(pictures, fronts[0], draw)]
+        found += answer_files(names if several else others, draw, front)
+    return [*found, *answer_files(pictures, draw)]

@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 from quietarm.ocp import QuietarmError, SolveSettings
 from quietarm.ocp.planning.terms import choose_profile
-from quietarm.studies.cli.files import DATASET, PICTURE, ending_of, files_of, finish, output_option
+from quietarm.studies.cli.files import (
+    DATASET,
+    PICTURE,
+    answer_files,
+    ending_of,
+    finish,
+    output_option,
+)
+from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
-    bound_option,
+    BOUND,
+    PART,
+    RESIDUAL_LIMIT,
+    SCHEDULER,
+    TASK,
+    WORKERS,
     command,
     counting,
     option,
-    part_option,
     profile_options,
-    residual_limit_option,
-    scheduler_option,
-    workers_option,
 )
-from quietarm.studies.cli.task import TypedMove, task_options
 from quietarm.studies.cli.types import SHARE
-from quietarm.studies.registry.profiles import chooses_terms, profile_of
+from quietarm.studies.registry.profiles import chooses_terms
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,37 +39,19 @@ _HOURS_OF_MANY = 1.4
 _MOST_POINTS = 1000
 
 
-@command()
-@task_options
-@profile_options()
-@bound_option
-@residual_limit_option
-@option("--limit-margin", "margin", type=SHARE, default="0%", help="Share of each limit that plans "
-        "leave unused, so that moves between the cells keep it.")  # fmt: skip
-@option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
-        help="Find a front of so many points for every move as well.")  # fmt: skip
-@part_option
-@option("--yes", is_flag=True, help="Do more than a million cells.")
-@workers_option
-@scheduler_option
-@output_option(
-    {DATASET: "the moves; the same line goes on where one was stopped", PICTURE: "a picture"},
-    required=True,
-)
-def sweep(
-    move: TypedMove,
-    profile: str,
-    terms: int | None,
-    margin: float,
-    front: int | None,
-    part: tuple[int, int],
-    yes: bool,
-    output: Sequence[Path],
-    residual_limit: float | None,
-    workers: int,
-    scheduler: str | None,
-    **settings: Any,
-) -> None:
+@command(
+    *TASK, *profile_options(), BOUND, RESIDUAL_LIMIT,
+    option("--limit-margin", "margin", type=SHARE, default="0%", help="Share of each limit that "
+           "plans leave unused, so that moves between the cells keep it."),
+    option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
+           help="Find a front of so many points for every move as well."),
+    PART,
+    option("--yes", is_flag=True, help="Do more than a million cells."),
+    WORKERS, SCHEDULER,
+    output_option({DATASET: "the moves; the same line goes on where one was stopped",
+                   PICTURE: "a picture"}, required=True),
+)  # fmt: skip
+def sweep(given: Given) -> None:
     """Plan every move of a grid: axes over start, target, duration and parameters of the plant.
 
     An axis is from:to:step or a list with commas. The dataset is read by xarray.open_zarr. It needs
@@ -81,31 +69,30 @@ def sweep(
     from quietarm.studies.sweep.run import run_sweep
     from quietarm.studies.sweep.store import Store
 
-    grid = move.grid()
+    grid = given.read_grid()
     if not grid.axes:
         raise click.UsageError(
             "no axis is given; give one as --target 10deg:90deg:5deg, or quietarm plan"
         )
-    datasets = [path for path in output if ending_of(path) == DATASET]
+    datasets = [path for path in given.output if ending_of(path) == DATASET]
     if len(datasets) != 1:
         raise click.UsageError("give one dataset by --output, a folder as moves.zarr")
-    if grid.cells > _MANY and not yes:
+    if grid.cells > _MANY and not given.yes:
         hours = _HOURS_OF_MANY * grid.cells / _MANY
         raise ValueError(
             f"the grid has {grid.cells} cells, some {hours:.0f} hours on a core; give wider steps, "
             "or --yes"
         )
-    motions = profile_of(profile, grid.task, terms)
-    if chooses_terms(profile, terms):
-        motions = choose_profile(grid.task)
-    solve = SolveSettings(residual_limit=residual_limit or 0.0, starts=1, **settings)
-    store = Store.of(datasets[0], Definition(grid, motions, solve, front or 0, margin))
-    missing, trouble = len(store.missing(part)), None
+    chooses = chooses_terms(given.profile, given.terms)
+    motions = choose_profile(grid.task) if chooses else given.read_profile(grid.task)
+    solve = SolveSettings(given.residual_limit or 0.0, given.bound, starts=1)
+    store = Store.of(datasets[0], Definition(grid, motions, solve, given.front or 0, given.margin))
+    missing, trouble = len(store.missing(given.part)), None
     try:
         with counting(missing, "chunks") as report:
-            run_sweep(store, part, workers=workers, scheduler=scheduler, report=report)
+            run_sweep(store, given.part, report=report, **given.pick("workers", "scheduler"))
     except KeyboardInterrupt:
-        done = missing - len(store.missing(part))
+        done = missing - len(store.missing(given.part))
         trouble = QuietarmError(
             f"interrupted: {done} of {missing} chunks are done; give the same line again to go on"
         )
@@ -113,8 +100,7 @@ def sweep(
     def picture() -> Figure:
         from quietarm.studies.figures.grid import fronts_figure, grid_figure
 
-        return fronts_figure(store) if front else grid_figure(store)
+        return fronts_figure(store) if given.front else grid_figure(store)
 
-    pictures = [path for path in output if path not in datasets]
-    files = files_of(pictures, {PICTURE: picture})
+    files = answer_files([path for path in given.output if path not in datasets], picture)
     finish(files, sweep_rows(store), cells_along(store), trouble=trouble)

@@ -1,0 +1,130 @@
+"""What was typed of a command, and the plant, the task or the grid of tasks that it describes."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+import click
+from click.core import ParameterSource
+from quietarm.models import Plant
+from quietarm.models.joint_motion import ROTARY, joint_unit
+from quietarm.ocp import JointProfile, PointToPoint
+from quietarm.ocp.limits import QUANTITIES
+from quietarm.studies.cli.plants import (
+    Kind,
+    build_plant,
+    build_uncertainty,
+    choose_kind,
+    read_parameters,
+    warn_of_payload,
+)
+from quietarm.studies.cli.quantities import parse_of_joint
+from quietarm.studies.registry.profiles import profile_of
+from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
+
+FASTEST = "fastest"
+"""In the place of a duration: the shortest within the limits."""
+_BEGIN = 1.0
+"""Duration [s] from which the shortest one is looked for."""
+OF_JOINT = ("start", "target", *(quantity.limit for quantity in QUANTITIES.values()))
+"""Options that are read once the plant is known: in radians, or in metres of a linear axis."""
+_OTHERS = ("duration", "residual_window", "initial", "final", "energy", "torque_speed")
+_NEEDED = {"target": "30deg", "duration": "0.8"}
+
+
+class Given:
+    """The options of a command by their names, as `given.terms`."""
+
+    def __init__(self, context: click.Context) -> None:
+        self._context = context
+
+    def __getattr__(self, name: str) -> Any:
+        return self._context.params[name]
+
+    def pick(self, *names: str) -> dict[str, Any]:
+        """Some options, by name."""
+        return {name: self._context.params[name] for name in names}
+
+    def typed(self, name: str) -> bool:
+        """Whether an option was typed."""
+        return self._context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+
+    @property
+    def line(self) -> str:
+        """The whole line that was typed."""
+        return shlex.join(["quietarm", *self._context.obj])
+
+    def refuse(self, names: Collection[str], why: str) -> None:
+        """Refuse options that were typed where they have no meaning."""
+        for one in self._context.command.params:
+            if one.name in names and self.typed(one.name):
+                name = one.opts[0] if isinstance(one, click.Option) else one.name.upper()
+                raise ValueError(f"{name} {why}; leave it out")
+
+    def refuse_others(self, than: Collection[str], why: str) -> None:
+        """Refuse all options that were typed but some."""
+        self.refuse({one.name for one in self._context.command.params if one.name} - {*than}, why)
+
+    def read_of_joint(self, name: str, joint: str) -> Any:
+        """What an option says that is in the units of the joint; None where it was not typed."""
+        text = self._context.params[name]
+        try:
+            return None if text is None else parse_of_joint(name, text, joint)
+        except ValueError as error:
+            hint = f"'--{name.replace('_', '-')}'"
+            raise click.BadParameter(str(error), param_hint=hint) from None
+
+    def read_plant(self, named: Kind | None) -> Plant:
+        """The plant, with the parameters that were typed."""
+        kind = choose_kind(named, self.plant_file)
+        return build_plant(kind, single_values(read_parameters(kind, self.parameters)))
+
+    def read_profile(self, task: PointToPoint) -> JointProfile:
+        """The joint profile."""
+        return profile_of(self.profile, task, self.terms)
+
+    def read_task(self, **known: float) -> PointToPoint:
+        """The task, with what is `known` in the place of options."""
+        grid = self.read_grid(**known)
+        single_values({axis.name: axis.values for axis in grid.axes})
+        return grid.task
+
+    def read_grid(self, **known: float) -> Grid:
+        """The task, and axes over what has several values."""
+        kind = choose_kind(self.plant, self.plant_file)
+        parameters = read_parameters(kind, self.parameters)
+        plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
+        uncertainty = build_uncertainty(kind, self.errors, parameters)
+        given = {name: self.read_of_joint(name, plant.joint) for name in OF_JOINT}
+        given |= self.pick(*_OTHERS) | {name: (value,) for name, value in known.items()}
+        if plant.joint != ROTARY and given["torque_speed"] is not None:
+            raise ValueError("--torque-speed is for a joint that turns; give --torque-limit in N")
+        for name, example in _NEEDED.items():
+            if given[name] is None:
+                raise click.UsageError(f"Missing option '--{name}'. Give it as --{name} {example}")
+        if given["duration"] == FASTEST:
+            given["duration"] = (_BEGIN,)
+        moves = {name: given.pop(name) for name in OF_MOVES}
+        units = {name: joint_unit(unit, plant.joint) for name, unit in OF_MOVES.items()}
+        axes = [
+            Axis(name, values, (plant.units() | units)[name])
+            for name, values in {**parameters, **moves}.items()
+            if len(values) > 1
+        ]
+        first = {name: max(values, key=abs) for name, values in moves.items()}  # one that moves
+        task = PointToPoint(plant, **first, **given, uncertainty=uncertainty)
+        warn_of_payload(kind, plant, parameters)
+        return Grid(task, tuple(axes))
+
+
+def single_values(given: Mapping[str, Sequence[float]]) -> dict[str, float]:
+    """Values by name; a click error where there are several of one."""
+    for name, values in given.items():
+        if len(values) > 1:
+            raise click.UsageError(
+                f"{name} has {len(values)} values here; give one (a number has a decimal point), "
+                "or quietarm sweep for all"
+            )
+    return {name: values[0] for name, values in given.items()}
