@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from quietarm.metaheuristics import PRESETS, PROBLEMS, Job, NamedProblem, problem_of
 from quietarm.metaheuristics.gradient import GRADIENT
 from quietarm.ocp import Front
 from quietarm.ocp.checks import spelling, whole
+from quietarm.ocp.record import Setting
 
 ALL = "all"
 
@@ -48,16 +48,29 @@ def jobs_of(
     runs: int,
     evaluations: int,
     seed: int = 0,
-    settings: Mapping[str, Mapping[str, Any]] | None = None,
+    settings: Mapping[str, Setting] | None = None,
 ) -> tuple[list[Job], list[str]]:
     """The jobs, each method on each problem from one seed before the next; and what is left out.
 
-    Methods that know no limits are left out where a problem has some.
+    Settings are named with their method, as ``nsga2.crossover``. Methods that know no limits are
+    left out where a problem has some.
     """
+    given = settings or {}
+    for name in given:
+        if name.rpartition(".")[0] not in methods:
+            raise ValueError(
+                f"setting {name} names no method that runs; begin it with one of these and a dot: "
+                f"{', '.join(methods)}"
+            )
     for name in methods:
         if methods.count(name) > 1:
             raise ValueError(f"the method {name} is given twice; give it once")
-    runs, given = whole("runs", runs, 1, 10_000), settings or {}
+    runs = whole("runs", runs, 1, 10_000)
+    of_method = {
+        method: {name.rpartition(".")[2]: given[name] for name in given
+                 if name.rpartition(".")[0] == method}
+        for method in methods
+    }  # fmt: skip
     jobs, left_out = list[Job](), dict[str, None]()
     for one in range(seed, seed + runs):
         for problem in problems:
@@ -67,7 +80,7 @@ def jobs_of(
                     left_out[f"{name} knows no limits: left out on {problem.name}"] = None
                     continue
                 budget = None if name in GRADIENT else evaluations
-                jobs.append(Job(problem, name, one, budget, given.get(name)))
+                jobs.append(Job(problem, name, one, budget, of_method[name]))
     return jobs, list(left_out)
 
 

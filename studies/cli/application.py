@@ -14,7 +14,6 @@ import click
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.interrupts import STOPS
-from quietarm.studies.cli.options import COMMON_HELP
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
@@ -54,16 +53,14 @@ class LazyGroup(click.Group):
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
+    ) -> tuple[str, click.Command, list[str]]:
         """The name and the command that was asked for, and the other words."""
-        if args[0] in HEIRS:
-            raise ValueError(f"quietarm {args[0]} is gone; give quietarm {HEIRS[args[0]]}")
-        if not args[0].startswith("-") and args[0] not in COMMANDS:
-            raise ValueError(unknown("command", args[0], COMMANDS))
-        name, command, others = super().resolve_command(ctx, args)
-        if name is not None:
-            command = command_of(name)
-        return name, command, others
+        name, *others = args
+        if name in HEIRS:
+            raise ValueError(f"quietarm {name} is gone; give quietarm {HEIRS[name]}")
+        if name not in COMMANDS:
+            raise ValueError(unknown("command", name, COMMANDS))
+        return name, command_of(name), others
 
 
 def command_of(name: str) -> click.Command:
@@ -77,7 +74,6 @@ def command_of(name: str) -> click.Command:
     commands=[click.Command(name, short_help=does) for name, does in COMMANDS.items()],
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     no_args_is_help=True,
-    epilog=COMMON_HELP,
 )
 @click.version_option(package_name="quietarm")
 def quietarm() -> None:
@@ -86,6 +82,9 @@ def quietarm() -> None:
     PLANT is single-link, arm-on-flexible-link, dual-link or flexible-beam, one of --plant-file, or
     the file of an identified machine. Angles are radians, or 30deg, pi/6, -pi/2; speeds rad/s, or
     60deg/s; lengths metres, or 1mm; times seconds, or 800ms.
+
+    Every command takes --plant-file FILE for a plant of your own (a file in Python, which is run),
+    --quiet for no progress, and --help.
 
     \b
     Examples:
@@ -104,7 +103,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         os.environ["MPLBACKEND"] = "agg"
         warnings.filterwarnings("ignore", ".* more than a turn")  # they had a unit
         sys.unraisablehook = _unless_ctrl_c
-        _take_as_ctrl_c("SIGTERM", "SIGHUP")
+        _take_ends_as_ctrl_c()
     if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
         del os.environ["COLUMNS"]
     status = NOT_SOLVED
@@ -116,10 +115,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     sys.exit(status)
 
 
-def _take_as_ctrl_c(*names: str) -> None:
-    """Let signals stop the command as Ctrl-C does, unless they are handled or ignored."""
+def _take_ends_as_ctrl_c() -> None:
+    """Let what ends a process stop the command as Ctrl-C does, unless it is handled or ignored."""
     for one in signal.Signals:
-        if one.name in names and signal.getsignal(one) is signal.SIG_DFL:
+        if one.name in ("SIGTERM", "SIGHUP") and signal.getsignal(one) is signal.SIG_DFL:
             signal.signal(one, signal.default_int_handler)
             STOPS.append(one)
 

@@ -36,15 +36,12 @@ def option(*names: str, **settings: Any) -> click.Option:
     return click.Option(names, show_default=True, **settings)
 
 
-COMMON: list[click.Parameter] = [
+COMMON = (
     # eager: the plants in it are then known by name
-    option("--plant-file", type=Parsed("file", load_plant_file), is_eager=True, hidden=True),
-    option("--quiet", is_flag=True, hidden=True),
-]
-COMMON_HELP = (
-    "Every command takes --plant-file FILE for a plant of your own (a file in Python, which is "
-    "run), --quiet for no progress, and --help."
-)
+    option("--plant-file", type=Parsed("file", load_plant_file), is_eager=True,
+           help="Plants of your own: a file in Python, which is run."),
+    option("--quiet", is_flag=True, help="Show no progress."),
+)  # fmt: skip
 
 
 class Command(click.Command):
@@ -52,25 +49,14 @@ class Command(click.Command):
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
         """Its own options and those of all commands."""
-        return [*COMMON, *super().get_params(ctx)]
+        *own, its_help = super().get_params(ctx)
+        return [*own, *COMMON, its_help]
 
     def invoke(self, ctx: click.Context) -> None:
         """Run it, unless one file is named twice."""
         _refuse_same_file(ctx.params.values())
         if self.callback is not None:
             self.callback(Given(ctx))
-
-    def get_help_option(self, ctx: click.Context) -> click.Option | None:
-        """--help, which is not repeated in every list."""
-        option = super().get_help_option(ctx)
-        if option is not None:
-            option.hidden = True
-        return option
-
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Say which options all commands have."""
-        formatter.write_paragraph()
-        formatter.write_text(COMMON_HELP)
 
 
 def command(*params: click.Parameter) -> Callable[[Callable[[Given], None]], click.Command]:
@@ -90,19 +76,19 @@ def _refuse_same_file(values: Iterable[object]) -> None:
             known.add(place)
 
 
-def quiet() -> bool:
-    """Whether no progress is shown."""
-    return click.get_current_context().params["quiet"]
+def progress_console() -> Console:
+    """Standard error, unless --quiet."""
+    return Console(stderr=True, quiet=click.get_current_context().params["quiet"])
 
 
 def busy(what: str) -> AbstractContextManager[None]:
     """Show that work goes on."""
-    return working(what, Console(stderr=True), quiet=quiet())
+    return working(what, progress_console())
 
 
 def counting(total: int, what: str) -> AbstractContextManager[Callable[[int, int], None]]:
     """Show how many of many small pieces are done."""
-    return count(total, what, Console(stderr=True), quiet=quiet())
+    return count(total, what, progress_console())
 
 
 def _times(text: str) -> tuple[float, ...] | str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,9 @@ from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import refuse_beyond_box
-from quietarm.ocp.record import REST, Setting
-from quietarm.studies.reading.foreign import Found
+from quietarm.ocp.profiles.cycloid import Cycloid
+from quietarm.ocp.record import REST
+from quietarm.studies.reading.foreign import Found, read_found
 
 Array = NDArray[np.float64]
 
@@ -24,23 +25,43 @@ _NEAR = 1e-3
 residuals are near rest, and a share says little, by `REST` as well."""
 
 
-class Claim(NamedTuple):
-    """How what a file states of one figure compares with what its coefficients give."""
-
-    differs: bool
-    words: str
-
-
 def import_front(
+    file: Path,
+    task: PointToPoint,
+    family: type[Cycloid],
+    terms: int | None = None,
+    bound: float | None = None,
+    evaluations: int | None = None,
+) -> tuple[Front, list[str]]:
+    """The front of a file's coefficients, and how what it states compares, in sentences."""
+    found = read_found(file)
+    columns = found.coefficients.shape[1]
+    if terms is not None and family(terms).size != columns:
+        raise ValueError(
+            f"{file} has {columns} coefficients a motion, and a {family(terms).label} takes "
+            f"{family(terms).size}; leave --terms out, or transpose the table"
+        )
+    try:
+        front, notes = _evaluated(file, task, family.of_size(columns), found, bound, evaluations)
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
+    if not notes:
+        notes.append("the file states neither residual nor energy in numbers: nothing to compare "
+                     "with")  # fmt: skip
+    if found.ignored:
+        notes.append(f"ignored: {', '.join(found.ignored)[:200]}")
+    return front, notes
+
+
+def _evaluated(
+    file: Path,
     task: PointToPoint,
     profile: JointProfile,
     found: Found,
-    method: str,
-    settings: dict[str, Setting],
     bound: float | None,
-    evaluations: int | None = None,
-) -> tuple[Front, list[Claim]]:
-    """The front of coefficients from elsewhere, and how its claims compare."""
+    evaluations: int | None,
+) -> tuple[Front, list[str]]:
+    """The front, and how the claims compare."""
     table = found.coefficients
     whole("number of motions", len(table), 1, _MOST_ROWS)
     if evaluations is not None:
@@ -56,8 +77,8 @@ def import_front(
     if not near.size:
         raise SolverFailedError(_why_none(rows, failed, violations, task))
     front = Front.from_coefficients(
-        task, rows[near], method=method, profile=profile, bound=bound, settings=settings,
-        evaluations=evaluations or len(rows),
+        task, rows[near], method=file.stem, profile=profile, bound=bound,
+        settings={"imported": file.name}, evaluations=evaluations or len(rows),
     )  # fmt: skip
     front = replace(
         front,
@@ -108,8 +129,8 @@ def _not_beaten(F: Array) -> NDArray[np.bool_]:
     return (last < 0) | (F[:, 1] < best[np.maximum(last, 0), 1])
 
 
-def _claims(stated: Array, figures: Array) -> list[Claim]:
-    found: list[Claim] = []
+def _claims(stated: Array, figures: Array) -> list[str]:
+    found = list[str]()
     for theirs, ours, (figure, unit, least) in zip(stated.T, figures.T, FIGURES, strict=True):
         known = ~np.isnan(theirs)
         wrong = known & ~agrees(theirs, ours, least)
@@ -117,7 +138,7 @@ def _claims(stated: Array, figures: Array) -> list[Claim]:
             continue
         if not wrong.any():
             motions = "its motion" if known.sum() == 1 else f"all {known.sum()} motions"
-            found.append(Claim(False, f"the file's {figure} is right for {motions}"))
+            found.append(f"the file's {figure} is right for {motions}")
             continue
         gaps = (np.abs(theirs - ours) - least) / np.maximum(np.abs(ours), 1e-300)
         worst = int(np.argmax(np.where(wrong, gaps, -1.0)))
@@ -125,9 +146,9 @@ def _claims(stated: Array, figures: Array) -> list[Claim]:
         hint = ""
         if telling.any() and abs(np.median(theirs[telling] / ours[telling]) / 1000 - 1) < 0.05:
             hint = f"; is it in m{unit}? name the column {figure}_m{unit}"
-        found.append(Claim(True, (
+        found.append(
             f"the file's {figure} is wrong for {wrong.sum()} of {known.sum()} motions, most for "
             f"motion {worst + 1}: {theirs[worst]:.4g} {unit} in the file, {ours[worst]:.4g} {unit} "
             f"by its coefficients{hint}"
-        )))  # fmt: skip
+        )
     return found

@@ -15,11 +15,11 @@ from rich.progress import BarColumn, Progress, TimeRemainingColumn
 
 
 @contextmanager
-def search_display(console: Console, *, quiet: bool = False) -> Iterator[SearchDisplay]:
+def search_display(console: Console) -> Iterator[SearchDisplay]:
     """Show a search's generation, best residual, least energy, hypervolume, speed and time left."""
     columns = BarColumn(bar_width=12), TimeRemainingColumn(), WORDS
-    with bars(console, quiet, *columns) as shown:
-        yield SearchDisplay(shown, Lines(console, quiet))
+    with bars(console, *columns) as shown:
+        yield SearchDisplay(shown, Lines(console))
 
 
 class SearchDisplay:
@@ -39,8 +39,7 @@ class SearchDisplay:
 
     def finish(self, front: Front) -> None:
         """Show what a search found."""
-        if not self._lines.quiet:
-            print_lines(self._lines.console, _found(front))
+        print_lines(self._lines.console, _found(front))
 
 
 def _found(front: Front) -> str:

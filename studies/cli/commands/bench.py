@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
-
 import click
 from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.given import Given
@@ -17,7 +14,7 @@ from quietarm.studies.cli.options import (
     command,
     counting,
     option,
-    quiet,
+    progress_console,
 )
 from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT, Parsed
@@ -63,14 +60,13 @@ def bench(given: Given) -> None:
 
     methods = list(map(spell_method, given.methods.split(",")))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
-    asked = methods, given.runs, given.evaluations, given.seed, _by_method(settings, methods)
+    asked = methods, given.runs, given.evaluations, given.seed, settings
     problems = problems_of(given.problems)
     jobs, left_out = jobs_of(problems, *asked)
     imported = [Front.load(path) for path in given.imported]
     planned = [(job.problem.name, job.label) for job in jobs]
     planned += [(run.problem.name, run.method) for run in imported_runs(imported, problems)]
-    if not quiet():
-        print_lines(Console(stderr=True), *left_out, say_power_of(planned))
+    print_lines(progress_console(), *left_out, say_power_of(planned))
     write_references(problems, given.output)
     trouble = None
     with counting(len(jobs), "jobs") as progress:
@@ -90,17 +86,3 @@ def bench(given: Given) -> None:
         click.echo(f"wrote report.md and {len(files) - 1} tables and pictures to {given.output}")
     if trouble is not None:
         raise trouble
-
-
-def _by_method(settings: Mapping[str, Any], methods: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Settings of several methods, each typed as ``method.name=value``, by method."""
-    found: dict[str, dict[str, Any]] = {}
-    for name, value in settings.items():
-        method, dot, own = name.partition(".")
-        if not dot or method not in methods:
-            raise ValueError(
-                f"setting {name} names no method that runs; begin it with one of these and a dot: "
-                f"{', '.join(methods)}"
-            )
-        found.setdefault(method, {})[own] = value
-    return found

@@ -94,31 +94,12 @@ def _evaluate_path(given: Given) -> None:
 
 def _evaluate_table(given: Given, task: PointToPoint) -> None:
     """A front of coefficients that another program found, beside what it states of them."""
-    from quietarm.studies.reading.foreign import read_found
     from quietarm.studies.reading.importing import import_front
 
-    file, profile, terms = given.coefficients, given.profile, given.terms
-    if profile in SHAPERS:
-        raise ValueError(f"{profile} has no coefficients; give one of {', '.join(FAMILIES)}")
-    found = read_found(file)
-    columns = found.coefficients.shape[1]
-    if terms is not None and (size := FAMILIES[profile](terms).size) != columns:
-        raise ValueError(
-            f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
-            f"{size}; leave --terms out, or transpose the table"
-        )
+    if given.profile in SHAPERS:
+        raise ValueError(f"{given.profile} has no coefficients; give one of {', '.join(FAMILIES)}")
+    asked = given.pick("terms", "bound", "evaluations")
     with busy("evaluating"):
-        try:
-            front, claims = import_front(
-                task, FAMILIES[profile].of_size(columns), found, file.stem,
-                {"imported": file.name}, given.bound, given.evaluations,
-            )  # fmt: skip
-        except ValueError as error:
-            raise ValueError(f"{file}: {error}") from None
-    notes = [claim.words for claim in claims] or [
-        "the file states neither residual nor energy in numbers: nothing to compare with"
-    ]
-    if found.ignored:
-        notes.append(f"ignored: {', '.join(found.ignored)[:200]}")
+        front, notes = import_front(given.coefficients, task, FAMILIES[given.profile], **asked)
     files = answer_files(given.output, partial(figures.front_figure, [front]), front)
     finish(files, search_lines([front], notes))

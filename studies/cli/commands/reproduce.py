@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from quietarm.studies.cli.files import FOLDER, REPORT_OPTION, ending_of, finish, report_files
 from quietarm.studies.cli.given import Given
-from quietarm.studies.cli.options import command, option, quiet
-from rich.console import Console
+from quietarm.studies.cli.options import command, option, progress_console
 
 
 @command(
@@ -36,6 +35,6 @@ def reproduce(given: Given) -> None:
     workers = joblib.cpu_count() if given.workers is None else whole("workers", given.workers, 1)
     effort = Effort(full=given.full, seeds=seeds)
     folder = next((path / "fronts" for path in given.output if ending_of(path) == FOLDER), None)
-    with progress(number_of_pieces(effort), Console(stderr=True), quiet=quiet()) as begin:
+    with progress(number_of_pieces(effort), progress_console()) as begin:
         report = reproduction_report(recompute_paper(effort, workers, begin, folder))
     finish(report_files(given.output, report), report)

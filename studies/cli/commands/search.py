@@ -24,7 +24,7 @@ from quietarm.studies.cli.options import (
     method_option,
     option,
     profile_options,
-    quiet,
+    progress_console,
 )
 from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT
@@ -33,7 +33,6 @@ from quietarm.studies.registry.methods import NSGA2, Kind
 from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.saving import STDOUT, File
 from quietarm.studies.report.search_progress import search_display
-from rich.console import Console
 
 
 @command(
@@ -83,7 +82,7 @@ def search(given: Given) -> None:
     if given.start_front is not None:
         asked["start"] = load_front(given.start_front)
     fronts, trouble = list[Front](), None
-    with search_display(Console(stderr=True), quiet=quiet()) as display:
+    with search_display(progress_console()) as display:
         if not several and workers == 1:
             asked["report"] = display
         try:
