@@ -28,6 +28,12 @@ def _families() -> dict[str, type[Cycloid]]:
 
 FAMILIES: Mapping[str, type[Cycloid]] = _families()
 """Profiles with coefficients to choose; each takes a number of terms and has one by default."""
+OTHERS: Mapping[str, Cycloid] = {
+    "network": FAMILIES["network"](),
+    "Gaussians": FAMILIES["gaussians"](),
+    "spline": FAMILIES["spline"](),
+}
+"""What stands beside the polynomial in comparisons, by what tables call it, in its default size."""
 
 
 def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> JointProfile:
