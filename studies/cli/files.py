@@ -49,7 +49,7 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.
 
     return option(
         "--output", type=Parsed("file", check), multiple=True, required=required,
-        help=f"File to write, by its ending: {listed}. May be repeated.",
+        help=f"File to write, by its ending: {listed}.",
     )  # fmt: skip
 
 

@@ -31,9 +31,10 @@ from quietarm.studies.sweep.grid import axis_values
 from rich.console import Console
 
 
-def option(*names: str, **settings: Any) -> click.Option:
-    """An option, whose help ends with its default."""
-    return click.Option(names, show_default=True, **settings)
+def option(*names: str, help: str, multiple: bool = False, **settings: Any) -> click.Option:  # noqa: A002
+    """An option, whose help ends with its default, or says that it may be repeated."""
+    words = f"{help} May be repeated." if multiple else help
+    return click.Option(names, help=words, multiple=multiple, show_default=True, **settings)
 
 
 COMMON = (
@@ -67,13 +68,11 @@ def command(*params: click.Parameter) -> Callable[[Callable[[Given], None]], cli
 def _refuse_same_file(values: Iterable[object]) -> None:
     """Refuse a line that names one file twice, so that nothing that is read is written over."""
     every = [one for value in values for one in (value if isinstance(value, tuple) else (value,))]
-    known = set[str]()
-    for path in every:
-        if isinstance(path, Path) and path != STDOUT:
-            place = os.path.realpath(path)  # of a link, too
-            if place in known:
-                raise ValueError(f"{path} is given twice; give it once, or another name")
-            known.add(place)
+    paths = [one for one in every if isinstance(one, Path) and one != STDOUT]
+    places = list(map(os.path.realpath, paths))  # of a link, too
+    for path, place in zip(paths, places, strict=True):
+        if places.count(place) > 1:
+            raise ValueError(f"{path} is given twice; give it once, or another name")
 
 
 def progress_console() -> Console:
@@ -97,12 +96,12 @@ def _times(text: str) -> tuple[float, ...] | str:
 
 SET = option(
     "--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
-    help="Set a parameter of the plant, as omega=3.2Hz or length=600mm; may be repeated.",
+    help="Set a parameter of the plant, as omega=3.2Hz or length=600mm.",
 )  # fmt: skip
 ERROR = option(
     "--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
     help="Range of the error of frequency, damping or a parameter, as frequency=8%; the "
-    "residual is then that of the worst case. `measured`: as it was identified. May be repeated.",
+    "residual is then that of the worst case. `measured`: as it was identified.",
 )  # fmt: skip
 TASK = (
     click.Argument(["plant"], type=Parsed("plant", parse_plant), required=False, metavar="[PLANT]"),
@@ -146,15 +145,13 @@ SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much r
                        "change with each parameter of the plant.")  # fmt: skip
 METHOD_SETTING = option(
     "--setting", "settings", type=SETTING, multiple=True, metavar="NAME=VALUE",
-    help="Set another setting of a method, as crossover=0.7, in a bench nsga2.crossover=0.7; may "
-    "be repeated. quietarm list METHOD has them.",
+    help="Another setting of a method, of quietarm list METHOD, as crossover=0.7, in a bench "
+    "nsga2.crossover=0.7.",
 )  # fmt: skip
 WORKERS = option("--workers", type=int, default=1,
                  help="Processes of this machine that share the work.")  # fmt: skip
-SCHEDULER = option(
-    "--scheduler", metavar="ADDRESS",
-    help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.",
-)  # fmt: skip
+SCHEDULER = option("--scheduler", metavar="ADDRESS", help="Let the workers of this dask scheduler "
+                   "share the work, as in tcp://host:8786.")  # fmt: skip
 PART = option("--part", type=Parsed("i/n", parse_part), default="1/1", help="Do every n-th piece "
               "of the work alone, as 2/8 in a queue's array job.")  # fmt: skip
 
@@ -176,18 +173,17 @@ def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.
     )  # fmt: skip
 
 
-_FOUND_BY = {
-    Kind.GRADIENT: ("by the gradient", "front"), Kind.METAHEURISTIC: ("a metaheuristic", "search"),
-}  # fmt: skip
+_OF_OTHERS = {
+    Kind.GRADIENT: "a metaheuristic; give quietarm search",
+    Kind.METAHEURISTIC: "by the gradient; give quietarm front",
+}
+"""What a method is that is not of a kind."""
 
 
-def method_option(what: str, kind: Kind, default: str, help: str) -> click.Option:  # noqa: A002
+def method_option(kind: Kind, default: str, words: str) -> click.Option:
     """--method of one kind; an error says which command has those of the other."""
-    own, others = list[str](), dict[str, str]()
-    for name, method in METHODS.items():
-        way, other = _FOUND_BY[method.kind]
-        if method.kind is kind:
-            own.append(name)
-        else:
-            others[name] = f"{name} is {way}; give quietarm {other} --method {name}"
-    return option("--method", type=Named(what, own, others), default=default, help=help)
+    own = [name for name, method in METHODS.items() if method.kind is kind]
+    others = {
+        name: f"{name} is {_OF_OTHERS[kind]} --method {name}" for name in METHODS.keys() - {*own}
+    }
+    return option("--method", type=Named("method", own, others), default=default, help=words)

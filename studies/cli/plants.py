@@ -100,16 +100,16 @@ def warn_of_payload(kind: Kind, plant: Plant, changed: Collection[str]) -> None:
 
     It may have been weighed anew, or carry another payload.
     """
-    if not isinstance(kind, Identified) or "omega" in changed:
-        return
-    beam = kind.plant
-    if isinstance(beam, FlexibleBeam) and isinstance(plant, FlexibleBeam):
-        if plant.tip_mass == beam.tip_mass:
-            return
-        loaded = beam.carrying(plant.tip_mass).omega / tau
+    beam, mass = getattr(kind, "plant", None), plant.parameters.get("tip_mass")
+    if (
+        isinstance(beam, FlexibleBeam)
+        and mass not in (beam.tip_mass, None)
+        and "omega" not in changed
+    ):
+        loaded = beam.carrying(mass).omega / tau
         print_lines(
             Console(stderr=True),
-            f"warning: tip_mass is {plant.tip_mass:.4g} kg, and was {beam.tip_mass:.4g} kg when "
+            f"warning: tip_mass is {mass:.4g} kg, and was {beam.tip_mass:.4g} kg when "
             f"the frequency of {beam.omega / tau:.4g} Hz was measured, which is kept; if the "
             f"payload has changed, give --set omega={loaded:.4g}Hz, by the beam's equation, or "
             "record it anew",

@@ -233,15 +233,11 @@ def parse_scale(text: str) -> tuple[str, float]:
     quantity, _, factor = (part.strip() for part in text.lower().partition("="))
     _of_column(quantity)
     number, _, divisor = factor.partition("/")
-    try:
+    with suppress(ValueError, ZeroDivisionError):
         scale = parse_quantity(number, "rad", "a scale") / float(divisor or 1)
-    except (ValueError, ZeroDivisionError):
-        scale = 0.0
-    if not scale or not math.isfinite(scale):
-        raise ValueError(
-            f"{factor!r} is no scale; give a number other than 0, as {quantity}=2pi/4096"
-        )
-    return quantity, scale
+        if scale and math.isfinite(scale):
+            return quantity, scale
+    raise ValueError(f"{factor!r} is no scale; give a number other than 0, as {quantity}=2pi/4096")
 
 
 def _of_column(quantity: str) -> Mapping[str, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 import pandas as pd
@@ -10,7 +10,7 @@ from quietarm.metaheuristics.quality import BETWEEN
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.studies import figures
-from quietarm.studies.compare.fronts import Comparison, Group
+from quietarm.studies.compare.fronts import Comparison, Group, compare_fronts
 from quietarm.studies.figures.comparison import KnownPoint
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import millimetres, spread_words, title_of
@@ -19,8 +19,20 @@ _INDICATORS = {"hypervolume": ".4f", "igd_plus": ".2g", "epsilon": ".2g"}
 _HEADINGS = {"hypervolume": "hypervolume", "igd_plus": "IGD+", "epsilon": "epsilon"}
 
 
-def by_task(fronts: dict[str, Front]) -> list[dict[str, Front]]:
-    """Fronts of several tasks, those of each together."""
+def compare_by_task(
+    fronts: Mapping[str, Front], reference: Front | None = None, reference_name: str = ""
+) -> list[Comparison]:
+    """Named fronts of several tasks, those of each compared; a reference is of a single task."""
+    tasks = _by_task(fronts)
+    if reference is not None and len(tasks) > 1:
+        raise ValueError(
+            "a reference is for fronts of one task; these are of several: leave it out"
+        )
+    known = {"reference": reference, "reference_name": reference_name} if reference else {}
+    return [compare_fronts(list(one.values()), list(one), **known) for one in tasks]
+
+
+def _by_task(fronts: Mapping[str, Front]) -> list[dict[str, Front]]:
     tasks: list[dict[str, Front]] = []
     for name, front in fronts.items():
         for known in tasks:

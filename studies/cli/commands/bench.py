@@ -30,7 +30,7 @@ from rich.console import Console
     option("--evaluations", default=10_000, help="Candidates of each run of a search."),
     SEED, METHOD_SETTING,
     option("--import", "imported", multiple=True, type=INPUT,
-           help="A run of another library, by a recorded function; may be repeated."),
+           help="A run of another library, by a recorded function."),
     option("--output", type=Parsed("folder", check_folder), required=True,
            help="Folder for runs and report; runs that are there are kept."),
     PART, WORKERS, SCHEDULER,

@@ -94,19 +94,12 @@ def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
 
 
 def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
-    from quietarm.studies.compare.front_report import by_task, fronts_report
-    from quietarm.studies.compare.fronts import compare_fronts
+    from quietarm.studies.compare.front_report import compare_by_task, fronts_report
     from quietarm.studies.reading.saved import load_front
     from quietarm.studies.reproduce.paper import paper_points
 
-    tasks, named = by_task(fronts), {}
-    if given.reference is not None:
-        if len(tasks) > 1:
-            raise ValueError(
-                "--reference is for fronts of one task; these are of several: leave it out"
-            )
-        named = {"reference": load_front(given.reference), "reference_name": str(given.reference)}
-    found = [compare_fronts(list(one.values()), list(one), **named) for one in tasks]
+    reference = None if given.reference is None else load_front(given.reference)
+    found = compare_by_task(fronts, reference, str(given.reference))
     found = list(map(_with_floor, found)) if given.free else found
     known = [paper_points(one.task, {run.front.profile.size for run in one.runs}) for one in found]
     return fronts_report(found, known)

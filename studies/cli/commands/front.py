@@ -33,15 +33,14 @@ _CHECKED = 7
 
 @command(
     *TASK,
-    method_option("method", Kind.GRADIENT, EPSILON.name, "Least energy at one residual limit after "
-                  "another (epsilon), or the least weighted sum for one pair of weights after "
-                  "another (weighted)."),
+    method_option(Kind.GRADIENT, EPSILON.name, "Least energy at one residual limit after another "
+                  "(epsilon), or the least weighted sum for one pair of weights after another."),
     *profile_options(), BOUND,
     option("--points", default=50,
            help="Points of the front; epsilon has 0.1, 1 and 5 mm besides."),
     option("--weights", type=Parsed("weights", parse_weights), multiple=True, metavar="R:E",
-           help="weighted: weights of residual and energy, scaled to the ends of the front, in "
-           "place of --points; may be repeated, as --weights 1:1 --weights 1:3."),
+           help="weighted: weights of residual and energy, scaled to the ends of the front, as "
+           "1:3; in place of --points."),
     STARTS, SEED, SOLVER,
     option("--check", is_flag=True, help="Solve seven points by the other solver as well, from the "
            "plain cycloid, and say by how much the two differ."),

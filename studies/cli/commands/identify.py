@@ -25,17 +25,15 @@ _RINGS = ("tip", "acceleration", "torque")
     SET,
     option("--time", help="Column of the time.  [default: the one that is called so]"),
     option("--angle", help="Column of the joint's angle; without it the joint was held."),
-    option("--tip", multiple=True, help="Column of the tip's displacement; one for each tip."),
-    option("--acceleration", multiple=True,
-           help="Column of an accelerometer at the tip, likewise."),
+    option("--tip", multiple=True, help="Column of a tip's displacement."),
+    option("--acceleration", multiple=True, help="Column of an accelerometer at a tip."),
     option("--torque", help="Column of the joint's torque."),
     option("--units", type=Parsed("units", parse_units), help="Of columns whose names have none, "
            "as time:ms,angle:deg,tip:mm,acceleration:g. [default: SI]"),
     option("--scale", "scales", type=Parsed("scale", parse_scale), multiple=True,
-           help="What a count is in SI units, as angle=2pi/4096; may be repeated."),
+           help="What a count is in SI units, as angle=2pi/4096."),
     option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
-           help="Begin and end of a ring-down [s], as 3.2:7.3; may be repeated. [default: they are "
-           "found]"),
+           help="Begin and end of a ring-down [s], as 3.2:7.3. [default: they are found]"),
     option("--free", type=Parsed("names", lambda text: [one.strip() for one in text.split(",")]),
            help="The parameters that are sought, as omega,zeta. [default: frequencies and "
            "dampings, and with a torque what shows in it alone]"),

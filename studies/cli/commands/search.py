@@ -37,7 +37,7 @@ from quietarm.studies.report.search_progress import search_display
 
 @command(
     *TASK,
-    method_option("metaheuristic", Kind.METAHEURISTIC, NSGA2.name,
+    method_option(Kind.METAHEURISTIC, NSGA2.name,
                   "The metaheuristic; quietarm list methods has them."),
     *profile_options(), BOUND,
     option("--population", type=int, help="Individuals, or particles in a swarm."),
