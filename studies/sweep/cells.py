@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from quietarm.ocp import (
     InfeasibleTaskError,
     PointToPoint,
@@ -21,8 +22,7 @@ from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.robustness.perturbed import sensitivities_of_moves
 from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
 
-Row = dict[str, Any]
-"""What is known of a cell: its variables by name; without a plan its status alone."""
+Rows = Iterator[dict[str, Any]]
 _CHECKED, _COLD_STARTS = 10, 4
 """One cell in so many, at random, is planned from so many starts of its own as well."""
 _ABOVE = 1e-4
@@ -30,74 +30,63 @@ _ABOVE = 1e-4
 
 
 @one_at_a_time
-def plan_chunk(definition: Definition, number: int) -> tuple[int, list[Row]]:
+def plan_chunk(definition: Definition, number: int) -> tuple[int, pd.DataFrame]:
     """The number of a chunk, and its cells; those of one plant are planned together."""
     tasks = definition.planned.tasks(definition.chunks[number])
-    rows = list[Row]()
-    for group in _by_plant(tasks):
-        found = _plan_checked(definition, group, number)
-        _add_sensitivities(definition, group, found)
-        rows += found
-    for task, row in zip(tasks, rows, strict=True) if definition.front else ():
-        if "energy" in row:
-            row |= _front_of(definition, task)
-    return number, rows
+    found = [_plan_checked(definition, group, number) for group in by_plant(tasks)]
+    cells = pd.concat(found, ignore_index=True)
+    if definition.front:
+        planned = zip(tasks, cells["energy"].notna(), strict=True)
+        fronts = [_front_of(definition, task) if solved else {} for task, solved in planned]
+        cells = cells.join(pd.DataFrame(fronts, index=cells.index))
+    return number, cells
 
 
-def plan_energies(
-    definition: Definition, tasks: Iterable[PointToPoint], starts: int
-) -> list[float]:
-    """Energies of the plans of moves; NaN where one has no plan."""
-    rows = [row for group in _by_plant(tasks) for row in _plan(definition, group, starts)]
-    return [row.get("energy", np.nan) for row in rows]
-
-
-def _by_plant(tasks: Iterable[PointToPoint]) -> Iterator[list[PointToPoint]]:
+def by_plant(tasks: Iterable[PointToPoint]) -> Iterator[list[PointToPoint]]:
+    """Moves of one plant after another, together."""
     return (list(group) for _, group in groupby(tasks, key=lambda task: task.plant))
 
 
-def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) -> list[Row]:
+def plan_cells(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> pd.DataFrame:
+    """Variables of moves of one plant, a row each; without a plan the status alone."""
+    plan = _plan_robust if tasks[0].ranges else _plan_certain
+    cells = pd.DataFrame([*plan(definition, tasks, starts)])
+    return cells if "energy" in cells else cells.assign(energy=np.nan)
+
+
+def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) -> pd.DataFrame:
     """Plans from neighbours, and of a tenth the excess over cold plans; the cheaper ones stay."""
-    rows = _plan(definition, tasks, definition.settings.starts)
-    solved = [k for k, row in enumerate(rows) if "energy" in row]
-    if not solved:
-        return rows
+    cells = plan_cells(definition, tasks, definition.settings.starts)
+    solved = np.flatnonzero(cells["energy"].notna())
+    if not len(solved):
+        return cells
     random = np.random.default_rng(seed)
-    checked = random.choice(solved, -(-len(solved) // _CHECKED), replace=False).tolist()
-    energies = plan_energies(definition, [tasks[k] for k in checked], _COLD_STARTS)
-    cold = dict(zip(checked, energies, strict=True))
-    if any(rows[k]["energy"] > (1 + _ABOVE) * energy for k, energy in cold.items()):
-        others = _plan(definition, tasks, _COLD_STARTS)
-        rows = [min(both, key=lambda row: row.get("energy", np.inf))
-                for both in zip(rows, others, strict=True)]  # fmt: skip
-    for k, energy in cold.items():
-        rows[k]["cold_excess"] = rows[k]["energy"] / energy - 1
-    return rows
-
-
-def _add_sensitivities(definition: Definition, tasks: list[PointToPoint], rows: list[Row]) -> None:
-    solved = [k for k, row in enumerate(rows) if "energy" in row]
-    if not solved:
-        return
-    coefficients = np.array([rows[k][COEFFICIENTS] for k in solved])
-    some = [tasks[k] for k in solved]
+    checked = random.choice(solved, -(-len(solved) // _CHECKED), replace=False)
+    some = [tasks[k] for k in checked]
+    cold = plan_cells(definition, some, _COLD_STARTS)["energy"].to_numpy()
+    if (cells["energy"].to_numpy()[checked] > (1 + _ABOVE) * cold).any():
+        others = plan_cells(definition, tasks, _COLD_STARTS)
+        cheaper = others["energy"] < cells["energy"].fillna(np.inf)
+        cells = cells.mask(cheaper, others)
+    cells.loc[checked, "cold_excess"] = cells["energy"].to_numpy()[checked] / cold - 1
+    solved = np.flatnonzero(cells["energy"].notna())
+    some, coefficients = (
+        [tasks[k] for k in solved],
+        np.stack(cells[COEFFICIENTS].to_numpy()[solved]),
+    )
     changes = sensitivities_of_moves(some, definition.profile, coefficients)
-    for name, of_name in changes.items():
-        for k, energy, residual in zip(solved, *of_name, strict=True):
-            rows[k] |= {f"energy_by_{name}": energy, f"residual_by_{name}": residual}
+    for name, (energy, residual) in changes.items():
+        cells.loc[solved, f"energy_by_{name}"] = energy
+        cells.loc[solved, f"residual_by_{name}"] = residual
+    return cells
 
 
-def _plan(definition: Definition, tasks: list[PointToPoint], starts: int) -> list[Row]:
-    """Plans of moves of one plant."""
-    return [*(_plan_robust if tasks[0].ranges else _plan_certain)(definition, tasks, starts)]
-
-
-def _plan_certain(definition: Definition, tasks: list[PointToPoint], starts: int) -> Iterator[Row]:
+def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Rows:
     """Plans of certain plants, all at once."""
     least, bound = definition.settings.residual_limit, definition.settings.bound
     moves = plan_moves(tasks, definition.profile, residual_limit=least, bound=bound, starts=starts)
     for k, status in enumerate(moves.status):
-        row: Row = {STATUS: STATES.index(status.value)}
+        row: dict[str, Any] = {STATUS: STATES.index(status.value)}
         if np.isfinite(moves.energy[k]):
             for name in ("energy", "residual", "iterations", COEFFICIENTS):
                 row[name] = getattr(moves, name)[k]
@@ -106,7 +95,7 @@ def _plan_certain(definition: Definition, tasks: list[PointToPoint], starts: int
         yield row
 
 
-def _plan_robust(definition: Definition, tasks: list[PointToPoint], starts: int) -> Iterator[Row]:
+def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Rows:
     """Plans of uncertain plants one after another, each from the last one's coefficients."""
     least, bound = definition.settings.residual_limit or None, definition.settings.bound
     guess = None
@@ -127,7 +116,7 @@ def _plan_robust(definition: Definition, tasks: list[PointToPoint], starts: int)
                "energy": plan.energy, "residual": plan.residual, **peaks}  # fmt: skip
 
 
-def _front_of(definition: Definition, task: PointToPoint) -> Row:
+def _front_of(definition: Definition, task: PointToPoint) -> dict[str, Any]:
     """The front of a move, as far as it has points; one without a range has none."""
     settings, points = definition.settings, definition.front
     try:

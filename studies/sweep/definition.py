@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from quietarm.ocp import SolveSettings, SolveStatus
 from quietarm.ocp.checks import positive
-from quietarm.ocp.limits import RESIDUAL, quantities_of
+from quietarm.ocp.limits import RESIDUAL, TORQUE_SPEED, quantities_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness.perturbed import OF_MODES
 from quietarm.studies.sweep.grid import Grid
@@ -92,45 +92,41 @@ class Definition:
     @cached_property
     def planned(self) -> Grid:
         """The moves as they are planned: their limits less the margin."""
-        share, task = 1 - self.margin, self.grid.task
-        limits: dict[str, Any] = {
-            one.quantity.limit: (share * one.lower, share * one.upper)
-            for one in task.limits
-            if hasattr(task, one.quantity.limit)
-        }
-        if task.torque_speed is not None:
-            limits["torque_speed"] = tuple((share * torque, at) for torque, at in task.torque_speed)
-        return replace(self.grid, task=replace(task, **limits)) if self.margin else self.grid
+        share, task, limits = 1 - self.margin, self.grid.task, dict[str, Any]()
+        for one in task.limits if self.margin else ():
+            if one.name == TORQUE_SPEED:
+                line = task.torque_speed or ()
+                limits[TORQUE_SPEED] = tuple((share * torque, speed) for torque, speed in line)
+            else:
+                limits[one.quantity.limit] = share * one.lower, share * one.upper
+        return replace(self.grid, task=replace(task, **limits))
 
     @property
     def variables(self) -> dict[str, Variable]:
         """The dataset's variables by name."""
-        task = self.grid.task
-        units = {"energy": "J", "residual": "m", f"price_{RESIDUAL}": "J/m"}
+        task, size = self.grid.task, {"coefficient": self.profile.size}
+        units = {"energy": "J", "residual": "m", f"price_{RESIDUAL}": "J/m", "iterations": "1",
+                 "cold_excess": "1"}  # fmt: skip
         units |= {one.peak: one.unit for one in quantities_of(task.plant.joint).values()}
         units |= {f"price_{one.name}": f"J/({one.quantity.unit or '1'})" for one in task.limits}
-        units |= {f"energy_by_{name}": "J" for name in OF_MODES}
-        units |= {f"residual_by_{name}": "m" for name in OF_MODES}
-        units |= {"iterations": "1", "cold_excess": "1"}
-        of_profile = {"coefficient": self.profile.size}
-        states = {
-            "flag_values": [*range(len(STATES))],
-            "flag_meanings": " ".join(state.replace(" ", "_") for state in STATES),
-        }
+        for name in OF_MODES:
+            units |= {f"energy_by_{name}": "J", f"residual_by_{name}": "m"}
+        meanings = [state.replace(" ", "_") for state in STATES]
+        states = {"flag_values": [*range(len(STATES))], "flag_meanings": " ".join(meanings)}
+        nexts = [f"to_the_next_{name}" for name in self.grid.names]
         jumps = {
-            "flag_masks": [1 << k for k in range(len(self.grid.axes))],
-            "flag_meanings": " ".join(f"to_the_next_{name}" for name in self.grid.names),
+            "flag_masks": [1 << k for k in range(len(nexts))],
+            "flag_meanings": " ".join(nexts),
         }
-        variables = {name: Variable(unit) for name, unit in units.items()} | {
-            COEFFICIENTS: Variable("1", of_profile),
-            STATUS: Variable("1", {}, np.int8(0), states),
-            JUMP: Variable("1", {}, np.int32(0), jumps),
-        }
+        variables = {name: Variable(unit) for name, unit in units.items()}
+        variables[COEFFICIENTS] = Variable("1", size)
+        variables[STATUS] = Variable("1", {}, np.int8(0), states)
+        variables[JUMP] = Variable("1", {}, np.int32(0), jumps)
         if self.front:
             point = {"point": self.front}
             variables["front_residual"] = Variable("m", point)
             variables["front_energy"] = Variable("J", point)
-            variables["front_coefficients"] = Variable("1", point | of_profile)
+            variables["front_coefficients"] = Variable("1", point | size)
         return variables
 
     def difference(self, other: Definition) -> str:

@@ -18,7 +18,7 @@ from quietarm.ocp import (
     evaluate_coefficients,
 )
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.studies.sweep.cells import plan_energies
+from quietarm.studies.sweep.cells import by_plant, plan_cells
 from quietarm.studies.sweep.definition import COEFFICIENTS
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.store import Store
@@ -118,16 +118,14 @@ class MoveLibrary:
             to a jump from one branch to another.
         """
         self._check_names(at)
-        for axis in self.grid.axes:
-            values = np.asarray(at[axis.name], float)
-            low, high = axis.values[0], axis.values[-1]
-            if not ((low <= values) & (values <= high)).all():
-                worst = values.ravel()[np.argmax(np.abs(values - (low + high) / 2))]
-                raise ValueError(
-                    f"{axis.name} is {worst:g} {axis.unit}, and the grid has {low:g} to {high:g}; "
-                    f"sweep a wider one, or {_ALONE}"
-                )
         columns = np.broadcast_arrays(*(np.asarray(at[name], float) for name in self.grid.names))
+        for axis, values in zip(self.grid.axes, columns, strict=True):
+            low, high = axis.values[0], axis.values[-1]
+            if beyond := values[(values < low) | (values > high)].tolist():
+                raise ValueError(
+                    f"{axis.name} is {beyond[0]:g} {axis.unit}, and the grid has {low:g} to "
+                    f"{high:g}; sweep a wider one, or {_ALONE}"
+                )
         places = np.stack(columns, axis=-1)
         found = self.interpolation(places.reshape(-1, places.shape[-1]))
         if not np.isfinite(found).all():
@@ -162,25 +160,25 @@ class MoveLibrary:
         known = self.store.note("between the cells")
         if known.get("samples") == samples:
             return Between(**known)
-        ends = np.array([(axis.values[0], axis.values[-1]) for axis in self.grid.axes])
-        low, high = ends.T
-        random = np.random.default_rng(0).uniform(low, high, (_TRIES * samples, len(ends)))
-        inside = (one for one in random if np.isfinite(self.interpolation(one[None])).all())
-        places = [dict(zip(self.grid.names, one.tolist(), strict=True))
-                  for one in islice(inside, samples)]  # fmt: skip
+        low, high = np.array([(axis.values[0], axis.values[-1]) for axis in self.grid.axes]).T
+        random = np.random.default_rng(0).uniform(low, high, (_TRIES * samples, len(low)))
+        places = list(islice(
+            (one for one in random if np.isfinite(self.interpolation(one[None])).all()), samples
+        ))  # fmt: skip
         if not places:
             raise ValueError(
                 f"{self.store.path} has no move between its cells that has coefficients"
             )
-        plans = [self.plan(**one) for one in places]
-        tasks = [plan.task for plan in plans]
-        least = np.array(plan_energies(self.store.definition, tasks, _STARTS))
+        names, definition = self.grid.names, self.store.definition
+        plans = [self.plan(**dict(zip(names, one.tolist(), strict=True))) for one in places]
+        own = [energy for group in by_plant([plan.task for plan in plans])
+               for energy in plan_cells(definition, group, _STARTS)["energy"]]  # fmt: skip
+        of_limits = [share for plan in plans
+                     for share in plan.motion.exceeded(plan.task.limits, -1).values()]  # fmt: skip
         found = Between(
             max(plan.residual for plan in plans),
-            float(np.nanmax([plan.energy for plan in plans] / least - 1)),
-            max(
-                max(one.motion.exceeded(one.task.limits, -1).values(), default=0.0) for one in plans
-            ),
+            float(np.nanmax([plan.energy for plan in plans] / np.array(own) - 1)),
+            max(of_limits, default=0.0),
             len(plans),
         )
         self.store.keep("between the cells", asdict(found))

@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,11 +17,11 @@ from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import install
 from quietarm.ocp.record import versions
 from quietarm.ocp.saved import plain, typed
-from quietarm.studies.sweep.cells import Row
 from quietarm.studies.sweep.definition import COEFFICIENTS, JUMP, STATUS, Definition
 from quietarm.studies.sweep.interpolation import find_jumps
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
 NEEDS = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
@@ -62,19 +61,15 @@ class Store:
         chunks = [*enumerate(self.definition.chunks)][number - 1 :: of]
         return [k for k, chunk in chunks if (status[chunk] == 0).any()]
 
-    def write(self, number: int, rows: Sequence[Row]) -> None:
+    def write(self, number: int, cells: pandas.DataFrame) -> None:
         """Write a chunk; its status last, so that a killed run computes it again."""
         names = self.definition.grid.names
         region = dict(zip(names, self.definition.chunks[number], strict=True))
         part = self.dataset.drop_vars([*names, JUMP]).isel(region).load()
-        for k, row in enumerate(rows):
-            for name, value in row.items():
-                variable = part[name].to_numpy()
-                cell = variable.reshape(len(rows), *variable.shape[len(names) :])[k : k + 1]
-                if np.ndim(value):
-                    cell[0, : len(value)] = value
-                else:
-                    cell[0] = value
+        for name, column in cells.items():
+            places = part[name].to_numpy().reshape(len(cells), -1)
+            for place, value in zip(places, column, strict=True):
+                place[: np.size(value)] = np.ravel(value)
         for some in (part.drop_vars(STATUS), part[[STATUS]]):
             self._write(some, region)
 
@@ -111,19 +106,16 @@ def _lay_out(path: Path, definition: Definition) -> None:
     variables: dict[str, Any] = {
         axis.name: (axis.name, np.array(axis.values), {"units": axis.unit}) for axis in grid.axes
     }
-    for name, one in definition.variables.items():
-        sizes = one.beside.values()
-        variables[name] = (
-            [*grid.names, *one.beside],
-            np.broadcast_to(one.empty, [*grid.shape, *sizes]),  # takes no memory
-            {"units": one.unit, **one.attributes},
-            {"chunks": (*definition.chunk, *sizes), "_FillValue": None, "fill_value": one.empty},
-        )
-    texts = {"sweep": plain(definition), "versions": versions()}
-    attributes = {"format": _FORMAT, **{name: json.dumps(one) for name, one in texts.items()}}
+    for name, (unit, beside, empty, attributes) in definition.variables.items():
+        sizes = beside.values()
+        nothing = np.broadcast_to(empty, [*grid.shape, *sizes])  # takes no memory
+        how = {"chunks": (*definition.chunk, *sizes), "_FillValue": None, "fill_value": empty}
+        variables[name] = [*grid.names, *beside], nothing, {"units": unit, **attributes}, how
+    texts = {"sweep": json.dumps(plain(definition)), "versions": json.dumps(versions())}
+    dataset = xr.Dataset(variables, attrs={"format": _FORMAT, **texts})
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".sweep-") as folder:
         place = Path(folder) / "store"
-        xr.Dataset(variables, attrs=attributes).to_zarr(place, consolidated=False, zarr_format=3)
+        dataset.to_zarr(place, consolidated=False, zarr_format=3)
         with suppress(OSError):  # another process was first
             os.rename(place, path)
 
@@ -141,9 +133,11 @@ def _damage_told(path: Path) -> Iterator[None]:
 
 
 def _xarray() -> Any:
-    if find_spec("xarray") is None or find_spec("zarr") is None:
-        raise ValueError(NEEDS)
-    return import_module("xarray")
+    try:
+        import_module("zarr")
+        return import_module("xarray")
+    except ImportError:
+        raise ValueError(NEEDS) from None
 
 
 def _open(path: Path) -> xarray.Dataset:
