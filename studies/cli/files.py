@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from quietarm.ocp import QuietarmError
-from quietarm.ocp.files import check_writable, unwritable, write_whole
+from quietarm.ocp.files import check_writable, unwritable
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
@@ -39,12 +39,12 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.
 
     def check(text: str) -> Path:
         path, kind = Path(text), ending_of(Path(text))
-        if path == STDOUT and ".json" not in kinds:
-            raise ValueError(f"this cannot go to standard output; give a name, or ./{text}")
+        if path == STDOUT:
+            if ".json" not in kinds:
+                raise ValueError(f"this cannot go to standard output; give a name, or ./{text}")
+            return path
         if kind not in kinds:
             raise ValueError(f"{text} is none of the files that it writes; give {listed}")
-        if path == STDOUT:
-            return path
         return check_folder(path) if kind in (FOLDER, DATASET) else check_writable(path)
 
     return option(
@@ -76,22 +76,9 @@ def answer_files(
     output: Sequence[Path], draw: Callable[[], Figure], answer: Any = None
 ) -> list[File]:
     """An answer as JSON, as a table where it has one, and as a picture, as the endings say."""
-    ways = {PICTURE: drawing(draw)}
-    for ending, save in {".json": "save", ".csv": "save_csv"}.items():
-        ways[ending] = getattr(answer, save, None)
-    return [(path, ways[ending_of(path)]) for path in output]
-
-
-def report_files(output: Sequence[Path], report: Report) -> list[File]:
-    """A report as a folder, a page or LaTeX, as the endings say."""
-    writes = {".html": report.html, ".tex": report.latex}
-    found = list[File]()
-    for path in output:
-        if text := writes.get(ending_of(path)):
-            found.append((path, lambda place, text=text: write_whole(place, text())))
-        else:
-            found += report.files(path)
-    return found
+    saves = {".json": "save", ".csv": "save_csv"}
+    ways = {ending: getattr(answer, save, None) for ending, save in saves.items()}
+    return [(path, ways.get(ending_of(path)) or drawing(draw)) for path in output]
 
 
 def finish(
@@ -115,7 +102,7 @@ def finish(
                 failures.append(error)
             else:
                 written += [] if path == STDOUT else [str(path)]
-    console = Console(stderr=any(path == STDOUT for path, _ in files))
+    console = Console(stderr=STDOUT in dict(files))
     for part in filter(None, shown):
         if isinstance(part, str):
             print_lines(console, part)

@@ -23,7 +23,7 @@ from quietarm.studies.cli.quantities import (
     parse_torque_speed,
 )
 from quietarm.studies.cli.types import LENGTH, SETTING, TIME, Named, Parsed
-from quietarm.studies.registry.methods import METHODS, Kind
+from quietarm.studies.registry.methods import METHODS, Kind, methods_of
 from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
@@ -94,15 +94,11 @@ def _times(text: str) -> tuple[float, ...] | str:
     return FASTEST if text == FASTEST else axis_values(text, TIME.parse)
 
 
-SET = option(
-    "--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
-    help="Set a parameter of the plant, as omega=3.2Hz or length=600mm.",
-)  # fmt: skip
-ERROR = option(
-    "--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
-    help="Range of the error of frequency, damping or a parameter, as frequency=8%; the "
-    "residual is then that of the worst case. `measured`: as it was identified.",
-)  # fmt: skip
+SET = option("--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
+             help="Set a parameter of the plant, as omega=3.2Hz or length=600mm.")  # fmt: skip
+ERROR = option("--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
+               help="Range of the error of frequency, damping or a parameter, as frequency=8%; the "
+               "residual is then that of the worst case. `measured`: as identified.")  # fmt: skip
 TASK = (
     click.Argument(["plant"], type=Parsed("plant", parse_plant), required=False, metavar="[PLANT]"),
     SET,
@@ -132,22 +128,18 @@ TASK = (
 """What describes a task: a command with these has `Given.read_task`."""
 BOUND = option("--bound", type=float, help="Largest size of a coefficient. [default: none; a "
                "search of polynomials needs one]")  # fmt: skip
-RESIDUAL_LIMIT = option(
-    "--residual-limit", type=LENGTH,
-    help="Largest tip displacement after arrival. [default: at rest; with --error 5 % of the "
-    "plain cycloid's largest deflection, or less]",
-)  # fmt: skip
+RESIDUAL_LIMIT = option("--residual-limit", type=LENGTH, help="Largest tip displacement after "
+                        "arrival. [default: at rest; with --error 5 % of the plain cycloid's "
+                        "largest deflection, or less]")  # fmt: skip
 SEED = option("--seed", default=0, help="Seed of the random numbers; the first of several.")
 STARTS = option("--starts", default=4, help="Starts of the solver.")
 SOLVER = option("--solver", type=Named("solver", SOLVERS), default=SOLVERS[0],
                 help="Sequential quadratic programs (quietarm's own, fast), or IPOPT.")  # fmt: skip
 SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "
                        "change with each parameter of the plant.")  # fmt: skip
-METHOD_SETTING = option(
-    "--setting", "settings", type=SETTING, multiple=True, metavar="NAME=VALUE",
-    help="Another setting of a method, of quietarm list METHOD, as crossover=0.7, in a bench "
-    "nsga2.crossover=0.7.",
-)  # fmt: skip
+METHOD_SETTING = option("--setting", "settings", type=SETTING, multiple=True, metavar="NAME=VALUE",
+                        help="Another setting of a method, of quietarm list METHOD, as "
+                        "crossover=0.7, in a bench nsga2.crossover=0.7.")  # fmt: skip
 WORKERS = option("--workers", type=int, default=1,
                  help="Processes of this machine that share the work.")  # fmt: skip
 SCHEDULER = option("--scheduler", metavar="ADDRESS", help="Let the workers of this dask scheduler "
@@ -173,17 +165,13 @@ def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.
     )  # fmt: skip
 
 
-_OF_OTHERS = {
-    Kind.GRADIENT: "a metaheuristic; give quietarm search",
-    Kind.METAHEURISTIC: "by the gradient; give quietarm front",
-}
+_OF_OTHERS = {Kind.GRADIENT: "a metaheuristic; give quietarm search",
+              Kind.METAHEURISTIC: "by the gradient; give quietarm front"}  # fmt: skip
 """What a method is that is not of a kind."""
 
 
 def method_option(kind: Kind, default: str, words: str) -> click.Option:
     """--method of one kind; an error says which command has those of the other."""
-    own = [name for name, method in METHODS.items() if method.kind is kind]
-    others = {
-        name: f"{name} is {_OF_OTHERS[kind]} --method {name}" for name in METHODS.keys() - {*own}
-    }
+    own, other = [one.name for one in methods_of(kind)], _OF_OTHERS[kind]
+    others = {name: f"{name} is {other} --method {name}" for name in METHODS.keys() - {*own}}
     return option("--method", type=Named("method", own, others), default=default, help=words)

@@ -186,8 +186,9 @@ _state = two(
     ":", _lengths, _lengths,
     "state; give W [m] of each mode, a colon, and W' [m/s] of each, as 5mm:-0.3 or 0,0:0.1,0",
 )  # fmt: skip
+_torque, _speed = (partial(parse_quantity, unit=unit, what="one") for unit in ("N m", "rad/s"))
 _torque_at_speed = two(
-    "@", *(partial(parse_quantity, unit=unit, what="a number") for unit in ("N m", "rad/s")),
+    "@", _torque, _speed,
     "torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with speeds in rad/s, or as 190rpm",
 )  # fmt: skip
 

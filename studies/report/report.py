@@ -76,8 +76,15 @@ class Report:
             for name, table in self.tables.items()
         )  # fmt: skip
 
-    def files(self, folder: Path) -> list[File]:
-        """The text, a CSV file for each table, and the pictures; none without a folder."""
+    def files(self, *paths: Path) -> list[File]:
+        """A page (.html) or tables (.tex) by the endings of paths; any other path is a folder."""
+        return [file for path in paths for file in self._files(path)]
+
+    def _files(self, path: Path) -> list[File]:
+        """The file, or in a folder the text, a CSV file for each table, and the pictures."""
+        forms = {".html": self.html, ".htm": self.html, ".tex": self.latex}
+        if form := forms.get(path.suffix.lower()):
+            return [(path, lambda place: write_whole(place, form()))]
         writes: dict[str, Callable[[Path], object]] = {
             "report.md": lambda path: write_whole(path, self.markdown())
         }
@@ -86,7 +93,7 @@ class Report:
                 path, table.to_csv(index=False, lineterminator="\n")
             )
         writes |= {picture: drawing(draw) for picture, draw in self.figures.items()}
-        return inside(folder, writes)
+        return inside(path, writes)
 
 
 def table_in_markdown(table: DataFrame) -> str:

@@ -7,11 +7,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
-from quietarm.studies.cli.files import REPORT_OPTION, finish, report_files
+from quietarm.ocp.checks import unknown
+from quietarm.studies.cli.files import REPORT_OPTION, finish
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import ERROR, busy, command, option
 from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.studies.compare.baselines import BASELINES
 from quietarm.studies.compare.judged import SAMPLES
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import print_lines
@@ -23,9 +25,6 @@ if TYPE_CHECKING:
 
 
 def _names(text: str) -> tuple[str, ...]:
-    from quietarm.ocp.checks import unknown
-    from quietarm.studies.compare.baselines import BASELINES
-
     names = BASELINES if text == "all" else tuple(dict.fromkeys(text.split(",")))
     for name in names:
         if name not in BASELINES:
@@ -72,7 +71,7 @@ def compare(given: Given) -> None:
         else:
             given.refuse(["baselines", "errors", "samples"], "is for plans")
             report = _of_fronts(given, fronts)
-    finish(report_files(given.output, report), report)
+    finish(report.files(*given.output), report)
 
 
 def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from quietarm.studies.cli.files import FOLDER, REPORT_OPTION, ending_of, finish, report_files
+from quietarm.studies.cli.files import FOLDER, REPORT_OPTION, ending_of, finish
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import command, option, progress_console
 
@@ -37,4 +37,4 @@ def reproduce(given: Given) -> None:
     folder = next((path / "fronts" for path in given.output if ending_of(path) == FOLDER), None)
     with progress(number_of_pieces(effort), progress_console()) as begin:
         report = reproduction_report(recompute_paper(effort, workers, begin, folder))
-    finish(report_files(given.output, report), report)
+    finish(report.files(*given.output), report)
