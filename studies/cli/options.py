@@ -103,8 +103,7 @@ TASK = (
     click.Argument(["plant"], type=Parsed("plant", parse_plant), required=False, metavar="[PLANT]"),
     SET,
     option("--start", default="0", metavar="ANGLE", help="Joint angle at the start."),
-    option("--target", metavar="ANGLE",
-           help="Joint angle at the end; of a linear axis a length, as 300mm."),
+    option("--target", metavar="ANGLE", help="Joint angle at the end, or 300mm of a linear axis."),
     option("--duration", type=Parsed("time", _times), help="Travelling time; quietarm plan also "
            "takes `fastest`, the shortest within the limits."),
     *(

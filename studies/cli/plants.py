@@ -68,11 +68,10 @@ def build_plant(kind: Kind, values: Mapping[str, float]) -> Plant:
     """The plant with these values; of an identified machine it keeps the others."""
     if isinstance(kind, Identified):
         return replace(kind.plant, **values)
-    for entry in fields(kind):
-        if entry.default is entry.default_factory is MISSING and entry.name not in values:
-            raise ValueError(
-                f"{kind.name} has no value for {entry.name}; give --set {entry.name}=..."
-            )
+    needed = (one.name for one in fields(kind) if one.default is one.default_factory is MISSING)
+    for name in needed:
+        if name not in values:
+            raise ValueError(f"{kind.name} has no value for {name}; give --set {name}=...")
     return kind(**values)
 
 
@@ -100,17 +99,13 @@ def warn_of_payload(kind: Kind, plant: Plant, changed: Collection[str]) -> None:
 
     It may have been weighed anew, or carry another payload.
     """
-    beam, mass = getattr(kind, "plant", None), plant.parameters.get("tip_mass")
-    if (
-        isinstance(beam, FlexibleBeam)
-        and mass not in (beam.tip_mass, None)
-        and "omega" not in changed
-    ):
-        loaded = beam.carrying(mass).omega / tau
-        print_lines(
-            Console(stderr=True),
-            f"warning: tip_mass is {mass:.4g} kg, and was {beam.tip_mass:.4g} kg when "
-            f"the frequency of {beam.omega / tau:.4g} Hz was measured, which is kept; if the "
-            f"payload has changed, give --set omega={loaded:.4g}Hz, by the beam's equation, or "
-            "record it anew",
-        )
+    beam, mass = getattr(kind, "plant", None), plant.parameters.get("tip_mass", 0.0)
+    if not isinstance(beam, FlexibleBeam) or mass == beam.tip_mass or "omega" in changed:
+        return
+    loaded = beam.carrying(mass).omega / tau
+    print_lines(
+        Console(stderr=True),
+        f"warning: tip_mass is {mass:.4g} kg, and was {beam.tip_mass:.4g} kg when the frequency of "
+        f"{beam.omega / tau:.4g} Hz was measured, which is kept; if the payload has changed, give "
+        f"--set omega={loaded:.4g}Hz, by the beam's equation, or record it anew",
+    )

@@ -221,12 +221,13 @@ def parse_error(text: str) -> tuple[str, float]:
 
 def parse_units(text: str) -> dict[str, str]:
     """Read units of a recording's quantities: ``time:ms,angle:deg``."""
-    units = [tuple(map(str.strip, one.partition(":")[::2])) for one in text.split(",")]
-    for quantity, unit in units:
+    pairs = (map(str.strip, one.partition(":")) for one in text.split(","))
+    units = once(((quantity, unit) for quantity, _, unit in pairs), "the unit of ")
+    for quantity, unit in units.items():
         factors = _of_column(quantity)
         if normal(unit) not in factors:
             raise ValueError(unknown(f"unit of {quantity}", unit, factors))
-    return once(units, "the unit of ")
+    return units
 
 
 def parse_scale(text: str) -> tuple[str, float]:

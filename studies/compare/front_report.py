@@ -20,7 +20,7 @@ _HEADINGS = {"hypervolume": "hypervolume", "igd_plus": "IGD+", "epsilon": "epsil
 
 
 def compare_by_task(
-    fronts: Mapping[str, Front], reference: Front | None = None, reference_name: str = ""
+    fronts: Mapping[str, Front], reference: Front | None, reference_name: str
 ) -> list[Comparison]:
     """Named fronts of several tasks, those of each compared; a reference is of a single task."""
     tasks = _by_task(fronts)
@@ -28,8 +28,8 @@ def compare_by_task(
         raise ValueError(
             "a reference is for fronts of one task; these are of several: leave it out"
         )
-    known = {"reference": reference, "reference_name": reference_name} if reference else {}
-    return [compare_fronts(list(one.values()), list(one), **known) for one in tasks]
+    compare = partial(compare_fronts, reference=reference, reference_name=reference_name)
+    return [compare(list(one.values()), list(one)) for one in tasks]
 
 
 def _by_task(fronts: Mapping[str, Front]) -> list[dict[str, Front]]:

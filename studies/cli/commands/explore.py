@@ -44,7 +44,7 @@ def explore(given: Given) -> None:
             raise ValueError(f"--set is for a PLANT, and {what} has its own; leave it out")
         explored = open_file(Path(what))
     else:
-        usual = _USUAL if given.plant_file is None else None
-        kind = parse_plant(what or usual) if what or usual else None
+        of_file = what is None and given.plant_file is not None
+        kind = None if of_file else parse_plant(what or _USUAL)
         explored = open_plant(given.read_plant(kind))
     serve(explored, click.echo, not given.no_browser)

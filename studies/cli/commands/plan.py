@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
 
@@ -93,12 +92,10 @@ def plan(given: Given) -> None:
 
 def finish_plan(given: Given, found: Plan, *notes: str, trouble: Exception | None = None) -> None:
     """Save a plan; show its figures, and how they change with the parameters of the plant."""
-    shown: list[Sequence[tuple[str, str]] | str] = [plan_rows(found)]
-    if given.sensitivities:
-        shown.append("\nwhat a parameter that is 1 % larger adds to residual and energy:")
-        shown.append(sensitivity_rows(found))
+    title = "\nwhat a parameter that is 1 % larger adds to residual and energy:"
+    more = [title, sensitivity_rows(found)] if given.sensitivities else []
     files = answer_files(given.output, partial(figures.motion_figure, found), found)
-    finish(files, *shown, *notes, trouble=trouble)
+    finish(files, plan_rows(found), *more, *notes, trouble=trouble)
 
 
 def _plan_freely(given: Given) -> None:
@@ -107,8 +104,7 @@ def _plan_freely(given: Given) -> None:
     if any(ending_of(path) == ".csv" for path in given.output):
         raise ValueError("a free motion is written as .json or as a picture, not as .csv")
     with busy("refining the grid"):
-        asked = given.pick("starts", "seed")
-        found = energy_floor(task, smooth=FREE[given.profile], **asked)
+        found = energy_floor(task, smooth=FREE[given.profile], **given.pick("starts", "seed"))
         with suppress(SolverFailedError):
             beside = plan_move(task)
     draw = partial(figures.floor_figure, found, beside)

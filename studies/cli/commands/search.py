@@ -112,6 +112,6 @@ def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> li
     others = [path for path in output if path not in pictures]
     draw, found = partial(figures.front_figure, fronts), list[File]()
     for front in fronts:
-        names = [path.with_stem(f"{path.stem}-seed{front.record.seed}") for path in others]
-        found += answer_files(names if several else others, draw, front)
+        seed = f"-seed{front.record.seed}" if several else ""
+        found += answer_files([path.with_stem(path.stem + seed) for path in others], draw, front)
     return [*found, *answer_files(pictures, draw)]
