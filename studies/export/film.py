@@ -15,7 +15,6 @@ import numpy as np
 from matplotlib.animation import (
     AbstractMovieWriter,
     FFMpegWriter,
-    FuncAnimation,
     HTMLWriter,
     PillowWriter,
 )
@@ -97,8 +96,11 @@ class Film:
         writer = _WRITERS[name](fps=self.rate)
         with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
             place = Path(folder) / f"film.{name}"
-            animation = FuncAnimation(figure, update, self.frames)
-            animation.save(place, writer, progress_callback=lambda k, _: report(k + 1, self.frames))
+            with writer.saving(figure, str(place), figure.dpi):
+                for k in range(self.frames):
+                    update(k)
+                    writer.grab_frame()
+                    report(k + 1, self.frames)
             return place.read_bytes()
 
     def _repr_html_(self) -> str:
@@ -222,7 +224,7 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
         updates.append(lambda k, cursor=cursor: cursor.set_xdata([times[k], times[k]]))
     with as_written(figure):
         figure.draw_without_rendering()
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)  # any, even one that does nothing, draws every frame twice
     return figure, lambda k: [one(k) for one in updates]
 
 

@@ -162,8 +162,12 @@ def shortened(words):
     """The words of a command, with fewer generations or points."""
     words = [word.replace(":90deg:", ":50deg:").replace(":1.4s:", ":1s:") for word in words]
     fewer = [] if "--polish" in words else SHORTER.get(words[0], [])
+    if words[-1].endswith(".gif"):
+        fewer = ["--rate", "4", "--width", "240"]
     if "free" in words:
         fewer = ["--starts", "1"]
+    if "--terms" not in words and (words[0] == "sweep" or "fastest" in words):
+        fewer = [*fewer, "--terms", "6"]  # what 18 terms give: tests/ocp/planning/test_terms.py
     return [*words, "--quiet", *fewer, *(["--runs", "2"] if "--workers" in words else [])]
 
 

@@ -74,7 +74,7 @@ def test_no_polynomial_goes_through_a_cell_without_a_plan_or_across_a_jump():
 
 def test_a_margin_makes_moves_between_the_cells_keep_their_limits(call, tmp_path):
     axes = "--target 60deg:90deg:10deg --duration 600ms:800ms:100ms"
-    line, at = f"sweep single-link {axes} --acceleration-limit 80 --quiet", (1.48, 0.65)
+    line, at = f"sweep single-link {axes} --acceleration-limit 80 --terms 6 --quiet", (1.48, 0.65)
     place, target, duration = tmp_path / "limited.zarr", *at
     assert call(f"{line} --output {place}")[0] == 0
     plan, between, trouble = plan_from(place, target=target, duration=duration)
