@@ -45,6 +45,25 @@ def call(capfd, monkeypatch):
 
 
 @pytest.fixture
+def done(call):
+    """Run a line that must end well and say nothing on standard error; its standard output."""
+
+    def run_done(line):
+        code, out, err = call(line)
+        assert (code, err) == (0, "")
+        return out
+
+    return run_done
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder of the test's own, and standing in it."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
 def at_a_terminal():
     """Start a line as a process with a group of its own, as a shell does; killed at the end."""
     begun = []

@@ -4,11 +4,9 @@ import pytest
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch, quick_pictures):
-    """A folder of the test's own, and standing in it."""
-    monkeypatch.chdir(tmp_path)
+def _as_typed(folder, monkeypatch, quick_pictures):
+    """Standing in a folder of the test's own, with lines of 100 letters."""
     monkeypatch.setenv("COLUMNS", "100")
-    return tmp_path
 
 
 def contents(folder):

@@ -14,12 +14,6 @@ from quietarm.studies.figures.structure import structures_of
 SMALL = "--width 240 --rate 4 --quiet"
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def test_frames_differ_while_the_structure_moves_and_where_it_does(plan, cycloid, tmp_path):
     film = animate([Line(cycloid, "plain cycloid"), Line(plan, "plan")], width=240, rate=10)
     film.save(tmp_path / "film.gif")
@@ -83,12 +77,11 @@ def test_moves_of_different_durations_share_a_clock(plan, task):
 
 
 def test_plans_of_different_plants_and_durations_become_a_page_and_a_gif(
-    call, folder, plan, two_links
+    call, done, folder, plan, two_links
 ):
     plan.save("plan.json")
     evaluate_coefficients(PointToPoint(two_links, math.pi / 2, 0.9), []).save("links.json")
-    code, out, err = call(f"export plan.json links.json --output move.gif {SMALL}")
-    assert (code, err) == (0, "")
+    out = done(f"export plan.json links.json --output move.gif {SMALL}")
     with Image.open("move.gif") as image:  # in 1.9 s, 7 after the first
         assert (image.n_frames, image.width) == (8, 240)
     kilobytes = (folder / "move.gif").stat().st_size / 1e3

@@ -19,12 +19,6 @@ MOVES = "sweep single-link --target 10deg:40deg:10deg --duration 600ms:1.4s:10ms
 FEW = "sweep single-link --target 30deg,60deg --duration 0.8,1.2 --quiet --output few.zarr"
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def dataset(path):
     return xr.open_zarr(path, consolidated=False).load()
 
@@ -37,12 +31,11 @@ def started(line):
     return subprocess.Popen([QUIETARM, *line.split()], stdout=subprocess.DEVNULL)
 
 
-def test_one_axis_is_shown_as_a_table_and_too_short_a_move_says_so(call, folder):
-    code, out, err = call(
+def test_one_axis_is_shown_as_a_table_and_too_short_a_move_says_so(done, folder):
+    out = done(
         "sweep single-link --target 30deg --duration 400ms:1.2s:400ms --acceleration-limit 40 "
         "--quiet --output times.zarr --output times.png"
     )
-    assert (code, err) == (0, "")
     assert (folder / "times.png").read_bytes().startswith(b"\x89PNG")
     lines = [line.split() for line in out.splitlines()]
     none, short, long = [line for line in lines if line and line[0] in ("0.4", "0.8", "1.2")]
@@ -52,9 +45,8 @@ def test_one_axis_is_shown_as_a_table_and_too_short_a_move_says_so(call, folder)
     assert float(long[1]) < float(short[1])
 
 
-def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, folder):
-    code, out, err = call(FEW + " --output few.png")
-    assert (code, err) == (0, "")
+def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, done, folder):
+    out = done(FEW + " --output few.png")
     assert "4 of 4 have a plan" in out
     found = dataset("few.zarr")
     assert found.energy.dims == ("target", "duration")
@@ -83,12 +75,11 @@ def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, folde
         qa.sweep(task, {"omga": [9.0, 10.0]}, folder / "other.zarr")
 
 
-def test_parameters_are_axes_and_what_cannot_be_has_a_reason(call, folder):
-    code, out, err = call(
+def test_parameters_are_axes_and_what_cannot_be_has_a_reason(done, folder):
+    out = done(
         "sweep flexible-beam --set tip_mass=0,200g --target 60deg --duration 0.5,1 --quiet "
         "--torque-limit 0.6 --terms 6 --output payload.zarr --output payload.png"
     )
-    assert (code, err) == (0, "")
     assert "infeasible 1 cells" in " ".join(out.split())
     found = dataset("payload.zarr")
     meanings = found.status.attrs["flag_meanings"].split()

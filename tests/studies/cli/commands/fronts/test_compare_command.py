@@ -1,6 +1,7 @@
 """`quietarm compare`: fronts, plans, folders; what it shows, writes and refuses."""
 
 import json
+from dataclasses import replace
 
 import pandas as pd
 import pytest
@@ -8,19 +9,17 @@ import quietarm.studies.reading.saved
 
 
 @pytest.fixture
-def files(good, poor, tmp_path, monkeypatch):
+def files(good, poor, folder, monkeypatch):
     """Two invented fronts, in the folder of the test; nothing can be evaluated between points."""
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.setattr(quietarm.studies.reading.saved, "check_figures", lambda front, name: None)
     good.save("good.json")
     poor.save("poor.json")
-    return tmp_path
+    return folder
 
 
-def test_fronts_fill_a_folder(call, files):
-    code, out, err = call("compare good.json poor.json --no-free-motion --output compared")
-    assert (code, err) == (0, "")
+def test_fronts_fill_a_folder(done, files):
+    out = done("compare good.json poor.json --no-free-motion --output compared")
     names = {"report.md", "methods.csv", "runs.csv", "fronts.png"}
     assert {path.name for path in (files / "compared").iterdir()} == names
     runs = pd.read_csv(files / "compared" / "runs.csv").set_index("name")
@@ -29,8 +28,6 @@ def test_fronts_fill_a_folder(call, files):
 
 
 def test_a_folder_is_compared_move_by_move(call, files, front_of, task):
-    from dataclasses import replace
-
     (files / "bench" / "deep").mkdir(parents=True)
     (files / "good.json").rename(files / "bench" / "good.json")
     (files / "poor.json").rename(files / "bench" / "deep" / "poor.json")
@@ -42,12 +39,10 @@ def test_a_folder_is_compared_move_by_move(call, files, front_of, task):
     assert (files / "compared" / "fronts-2.png").exists()
 
 
-def test_plans_are_compared_with_baselines_under_errors(call, tmp_path, monkeypatch, plan, cycloid):
-    monkeypatch.chdir(tmp_path)
+def test_plans_are_compared_with_baselines_under_errors(done, plan, cycloid):
     plan.save("ours.json")
     line = "compare ours.json --baselines zv,cycloid --error frequency=8% --samples 50"
-    code, out, err = call(f"{line} --output out")
-    assert (code, err) == (0, "")
+    out = done(f"{line} --output out")
     table = pd.read_csv("out/motions.csv").set_index("motion")
     assert list(table.index) == ["ours", "zv", "cycloid"]
     assert table.loc["ours", "energy [J]"] == pytest.approx(plan.energy, rel=1e-9)

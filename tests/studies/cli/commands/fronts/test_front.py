@@ -42,17 +42,15 @@ def test_an_epsilon_front_is_shown_and_written(call):
     assert err.splitlines()[-1] == "9 of 9 points"  # 0.1, 1 and 5 mm as well
 
 
-def test_a_weighted_front_takes_the_weights_that_are_typed(call):
+def test_a_weighted_front_takes_the_weights_that_are_typed(done):
     line = f"front {MOVE} --method weighted --weights 1:1 --weights 1:3 --quiet --output f.json"
-    code, out, err = call(line)
-    assert (code, err) == (0, "")
+    out = done(line)
     assert Front.load("f.json") == weighted_front(TASK, PROFILE, weights=[(1, 1), (1, 3)])
     assert out.startswith("weighted: 4 points, ")  # the ends and one for each weight
 
 
-def test_the_other_solver_checks_the_front(call):
-    code, out, err = call(f"front {MOVE} --points 4 --bound 0.5 --check --quiet --output f.json")
-    assert (code, err) == (0, "")
+def test_the_other_solver_checks_the_front(done):
+    out = done(f"front {MOVE} --points 4 --bound 0.5 --check --quiet --output f.json")
     assert Front.load("f.json").record.settings["solver"] == "sqp"
     (shares,) = re.findall(
         r"^checked by IPOPT, 7 points .* differ by (\S+) to (\S+) of their size$", out, re.MULTILINE

@@ -38,12 +38,9 @@ def test_one_search_is_shown_and_written(call):
 
 
 @pytest.mark.parametrize("spelling", ["rvea", "RVEA"])
-def test_a_method_with_settings(call, spelling):
+def test_a_method_with_settings(done, spelling):
     settings = "--setting alpha=3 --setting crossover=0.5"
-    code, out, err = call(
-        f"search {MOVE} {TERMS} --method {spelling} {settings} --quiet --output f.json"
-    )
-    assert (code, err) == (0, "")
+    out = done(f"search {MOVE} {TERMS} --method {spelling} {settings} --quiet --output f.json")
     assert out.startswith("rvea, seed 0: ")
     wanted = directly("rvea", settings={"alpha": 3, "crossover": 0.5})
     assert Front.load("f.json") == wanted != directly("rvea")

@@ -37,25 +37,22 @@ def klipper_text(rng):
     )
 
 
-def test_a_belt_axis_is_identified_and_moved_to_rest(call, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_belt_axis_is_identified_and_moved_to_rest(done):
     Path("raw_data_x.csv").write_text(klipper_text(np.random.default_rng(3)))
-    code, out, err = call(
+    done(
         "identify raw_data_x.csv linear-axis --acceleration accel_x --units acceleration:mm/s^2 "
         "--set mass=1.2 --set load=400g --output belt.json --output fit.png --quiet"
     )
-    assert (code, err) == (0, "")
     found = Identified.load("belt.json")
     omega, zeta = found.estimates
     assert found.not_identifiable == {}
     assert [omega.parameter, zeta.parameter] == ["omega1", "zeta1"]
     assert omega.next_low < 2 * np.pi * 35 < omega.next_high
     assert zeta.value == pytest.approx(0.05, rel=1e-2)
-    code, out, err = call(
+    out = done(
         "plan belt.json --error measured --target 300mm --duration 0.3 --acceleration-limit 15 "
         "--quiet --output plan.json --output plan.csv"
     )
-    assert (code, err) == (0, "")
     assert "0 to 300 mm in 0.3 s" in out
     # the motor's path, on the belt of above
     plan, time = Plan.load("plan.json"), np.arange(0, 1.0, 1e-4)

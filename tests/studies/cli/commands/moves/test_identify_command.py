@@ -28,26 +28,22 @@ def push(folder):
     return folder
 
 
-def test_pushes_make_a_machine_that_is_planned_for(push, call, refused):
-    code, out, err = call(f"{PUSH} --set length=0.6 --output one.json")
-    assert (code, err) == (0, "")
+def test_pushes_make_a_machine_that_is_planned_for(push, done, refused):
+    out = done(f"{PUSH} --set length=0.6 --output one.json")
     assert "One ring-down does not tell how much the machine varies" in out
     plan = "--quiet --set friction=0.02 --target 30deg --duration 1 --error measured"
     assert "one ring-down does not tell" in refused(f"plan one.json {plan}")
     line = PUSH.replace("push.csv", "push.csv again0.csv again1.csv")
-    code, out, err = call(f"{line} --set length=0.6 --output arm.json --output fit.png")
-    assert (code, err) == (0, "")
+    out = done(f"{line} --set length=0.6 --output arm.json --output fit.png")
     assert "of the next swing within 3." in out
     assert (push / "fit.png").read_bytes().startswith(b"\x89PNG")
     found = Identified.load(push / "arm.json")
     assert found.plant.length == 0.6
-    code, out, err = call(f"plan arm.json {plan} --output plan.json")
-    assert (code, err) == (0, "")  # friction shows in the torque alone
+    done(f"plan arm.json {plan} --output plan.json")
     task = Plan.load(push / "plan.json").task
     assert task.ranges == found.errors
     assert (task.plant.friction, task.plant.omega) == (0.02, found.plant.omega)
-    code, out, err = call("identify --check arm.json again1.csv --tip tip_mm --quiet")
-    assert (code, err) == (0, "")
+    out = done("identify --check arm.json again1.csv --tip tip_mm --quiet")
     assert "of the swing predicted over five periods, at least" in out
 
 
@@ -92,21 +88,20 @@ TEXTS = {
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_texts_of_other_programs_tell_the_same(push, call, name):
+def test_texts_of_other_programs_tell_the_same(push, done, name):
     header, form, size, options = TEXTS[name]
     (push / name).write_text(header + rows(form, TIME, size * TIP))
-    same(call, f"identify {name} flexible-beam {options}")
+    same(done, f"identify {name} flexible-beam {options}")
 
 
-def same(call, line):
-    code, _, err = call(f"{line} --quiet --output arm.json")
-    assert (code, err) == (0, "")
+def same(done, line):
+    done(f"{line} --quiet --output arm.json")
     omega, zeta = Identified.load("arm.json").estimates
     assert omega.low < OMEGA < omega.high, line
     assert zeta.value == pytest.approx(ZETA, rel=0.1)
 
 
-def test_arrays_and_german_texts_tell_the_same(push, call):
+def test_arrays_and_german_texts_tell_the_same(push, done):
     np.save(push / "push.npy", np.column_stack([TIME, TIP]))
     savemat(push / "push.mat", {"t": TIME, "w": TIP, "rate": 200.0})
     savemat(push / "nested.mat", {"run": {"t": TIME, "X": np.column_stack([0 * TIP, TIP])}})
@@ -122,7 +117,7 @@ def test_arrays_and_german_texts_tell_the_same(push, call):
         "identify ms.csv flexible-beam --tip tip",
         "identify push.csv ms.csv flexible-beam --time 0 --tip 1",
     ):
-        same(call, line)
+        same(done, line)
 
 
 def test_a_swing_that_no_arm_has_is_asked_about(push, refused):
