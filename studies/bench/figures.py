@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 from matplotlib.figure import Figure
-from quietarm.studies.bench.results import Results, derivative_free, label_of
+from quietarm.studies.bench.results import Results, bench_label, derivative_free
 from quietarm.studies.bench.statistics import ALPHA, Ranking
 from quietarm.studies.figures.axes import TITLE, legend_below, logarithmic, new_figure
 from quietarm.studies.figures.looks import look
@@ -38,7 +38,8 @@ def curves_figure(results: Results, by: str = "seconds") -> Figure:
             own, few = look(number), len(at) <= len(missing)  # it ends by itself: a point a run
             ax.plot(
                 at, 100 * np.maximum(median, _LEAST), drawstyle="steps-post", color=own.colour,
-                linestyle=own.dash, marker="o" if few else "", markersize=4, label=label_of(method),
+                linestyle=own.dash, marker="o" if few else "", markersize=4,
+                label=bench_label(method),
             )  # fmt: skip
             costs += at.tolist()
         logarithmic(ax, costs)
@@ -79,7 +80,7 @@ def profiles_figure(results: Results) -> Figure:
             for _ in range(_BANDS)
         ]
         share, own = sum(own.sum(axis=0) for own in reached) / total, look(number)
-        ax.plot(places, share, color=own.colour, linestyle=own.dash, label=label_of(method))
+        ax.plot(places, share, color=own.colour, linestyle=own.dash, label=bench_label(method))
         ax.fill_between(places, *np.quantile(drawn, _INTERVAL, axis=0), color=own.colour,
                         alpha=0.12, linewidth=0)  # fmt: skip
     logarithmic(ax, places)
@@ -94,7 +95,7 @@ def ranks_figure(ranking: Ranking) -> Figure:
     import pandas as pd
     from scikit_posthocs import critical_difference_diagram
 
-    ranks = pd.Series(ranking.ranks, index=[label_of(method) for method in ranking.methods])
+    ranks = pd.Series(ranking.ranks, index=[bench_label(method) for method in ranking.methods])
     apart = np.abs(np.subtract.outer(ranks.to_numpy(), ranks.to_numpy())) > ranking.critical
     p_values = pd.DataFrame(np.where(apart, ALPHA / 2, 1.0), index=ranks.index, columns=ranks.index)
     figure = new_figure(8.0, 0.28 * len(ranks) + 1.2)

@@ -12,7 +12,7 @@ import pandas as pd
 from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.quality import CORNER
 from quietarm.studies.bench.figures import curves_figure, profiles_figure, ranks_figure
-from quietarm.studies.bench.results import AT_REST, Results, label_of, quartiles
+from quietarm.studies.bench.results import AT_REST, Results, bench_label, quartiles
 from quietarm.studies.bench.statistics import (
     kruskal_on,
     moves_of,
@@ -59,10 +59,10 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         figures["ranks.png"] = partial(ranks_figure, ranking)
     versions = results.runs[0].front.record.versions
     values = {
-        "line": line, "problems": problems, "methods": [label_of(m) for m in results.methods],
+        "line": line, "problems": problems, "methods": [bench_label(m) for m in results.methods],
         "power": say_power_of((run.problem.name, run.method) for run in results.runs),
         "ranking": ranking,
-        "label_of": label_of, "corner": CORNER, "accuracy": ACCURACY, "at_rest": 1e3 * AT_REST,
+        "label_of": bench_label, "corner": CORNER, "accuracy": ACCURACY, "at_rest": 1e3 * AT_REST,
         "target": f"{100 * SHOWN_TARGET:g}", "moves": len(moves_of(results.problems)),
         "verdicts": {name: verdict_on(results, name) for name in problems},
         "on_energy": {name: verdict_on(results, name, "energy_1mm") for name in problems},
@@ -76,7 +76,7 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
 
 def _with_labels(table: pd.DataFrame, *columns: str) -> pd.DataFrame:
     """A table whose columns name methods, as these are called."""
-    return table.assign(**{name: table[name].map(label_of) for name in columns})
+    return table.assign(**{name: table[name].map(bench_label) for name in columns})
 
 
 def brief_report(results: Results) -> Report:
@@ -103,7 +103,7 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
         time = results.expected_running_time(problem, str(method), SHOWN_TARGET)
         spent = {name: quartiles(own[name])[1] for name in _COST}
         rows.append({
-            "method": label_of(str(method)), "runs": len(own),
+            "method": bench_label(str(method)), "runs": len(own),
             "missing [%]": middle, "quartiles [%]": f"{low:.3g} to {high:.3g}",
             "with motions between [%]": 100 * quartiles(own["missing_between"])[1],
             "IGD+": quartiles(own["igd_plus"])[1], "epsilon": quartiles(own["epsilon"])[1],
@@ -131,7 +131,7 @@ def summary_table(results: Results) -> pd.DataFrame:
         )
         over = {name: quartiles(medians[name])[1] for name in medians}
         rows.append({
-            "method": label_of(str(method)), "problems": len(medians), "runs": len(own),
+            "method": bench_label(str(method)), "problems": len(medians), "runs": len(own),
             "missing [%]": 100 * over["missing"],
             "with motions between [%]": 100 * over["missing_between"],
             "energy above at 1 mm [%]": 100 * over["energy_1mm"],

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
-from quietarm.metaheuristics import PRESETS, Job, NamedProblem
+from quietarm.metaheuristics import Job, NamedProblem
+from quietarm.metaheuristics.jobs import POLISH
 from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front
 from quietarm.ocp.front.points import LEVELS, beyond
+from quietarm.studies.report.methods import is_gradient, label_of
 
 Array = NDArray[np.float64]
 AT_REST = LEVELS[0]
@@ -24,8 +26,6 @@ TARGETS = (0.1, 0.03, 0.01, 0.003)
 reached."""
 _RESAMPLED, _INTERVAL = 1000, (0.025, 0.975)
 """How often runs are drawn again for an interval, and the quantiles that are its ends."""
-_LABELS = {"epsilon": "epsilon-constraint", "weighted": "weighted sum", "multistart": "multistart"}
-_SOLVERS = {"": "SQP", "ipopt": "IPOPT"}
 
 
 @dataclass(frozen=True)
@@ -231,22 +231,11 @@ def _drawn_again(runs: int) -> NDArray[np.int64]:
 
 def derivative_free(method: str) -> bool:
     """Whether all of a method's work is candidates simulated without derivatives."""
-    name = method.partition("(")[0]
-    return "+" not in name and name.partition(":")[0] not in _LABELS
+    return not is_gradient(method) and not method.partition("(")[0].endswith(POLISH)
 
 
-def label_of(method: str) -> str:
-    """What a method is called in tables and pictures."""
-    name, bracket, settings = method.partition("(")
-    search, plus, _ = name.partition("+")
-    if search in PRESETS:
-        words = f"{PRESETS[search].label}{', polished' if plus else ''}"
-    elif search.partition(":")[0] in _LABELS:
-        way, _, solver = search.partition(":")
-        words = f"{_LABELS[way]}, {_SOLVERS[solver]}"
-    else:
-        words = name
-    return f"{words} {bracket}{settings}" if bracket else words
+bench_label = partial(label_of, solver="sqp")
+"""A method in tables and pictures; the gradient's solver is the SQP where no other is named."""
 
 
 def quartiles(values: ArrayLike) -> tuple[float, float, float]:

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 from quietarm.metaheuristics import NamedProblem
-from quietarm.studies.bench.results import Results, label_of, quartiles
+from quietarm.studies.bench.results import Results, bench_label, quartiles
 from quietarm.studies.report.words import counted
 from scipy import stats
 
@@ -191,7 +191,7 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
     names = [problem.name for problem in results.problems]
     known = {name: values_on(results, name, column) for name in names}
     left_out = [
-        f"{label_of(method)} (not on all problems, or too few runs)"
+        f"{bench_label(method)} (not on all problems, or too few runs)"
         for method in results.methods
         if any(method not in known[name] for name in names)
     ]
@@ -202,7 +202,7 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
         if twin is None:
             kept.append(method)
         else:
-            left_out.append(f"{label_of(method)} (the same as {label_of(twin)})")
+            left_out.append(f"{bench_label(method)} (the same as {bench_label(twin)})")
     moves = moves_of(results.problems)
     if len(kept) < 3 or len(moves) < 3:
         return None
@@ -246,4 +246,4 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
     beside = table[(table["one"] == best) | (table["other"] == best)]
     near = sorted({*beside["one"], *beside["other"]} - {best}, key=lambda name: medians[name])
     alike = "; not significantly different from it: " * bool(near)
-    return f"{label_of(best)} ends nearest{alike}{'; '.join(map(label_of, near))}"
+    return f"{bench_label(best)} ends nearest{alike}{'; '.join(map(bench_label, near))}"

@@ -21,7 +21,7 @@ from quietarm.studies.cli.plants import (
     warn_of_payload,
 )
 from quietarm.studies.cli.quantities import parse_of_joint
-from quietarm.studies.registry.profiles import profile_of
+from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
 
 FASTEST = "fastest"

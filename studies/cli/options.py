@@ -23,8 +23,7 @@ from quietarm.studies.cli.quantities import (
     parse_torque_speed,
 )
 from quietarm.studies.cli.types import LENGTH, SETTING, TIME, Named, Parsed
-from quietarm.studies.registry.methods import METHODS, Kind, methods_of
-from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL
+from quietarm.studies.reading.profiles import FAMILIES, POLYNOMIAL
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
 from quietarm.studies.sweep.grid import axis_values
@@ -164,13 +163,9 @@ def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.
     )  # fmt: skip
 
 
-_OF_OTHERS = {Kind.GRADIENT: "a metaheuristic; give quietarm search",
-              Kind.METAHEURISTIC: "by the gradient; give quietarm front"}  # fmt: skip
-"""What a method is that is not of a kind."""
-
-
-def method_option(kind: Kind, default: str, words: str) -> click.Option:
-    """--method of one kind; an error says which command has those of the other."""
-    own, other = [one.name for one in methods_of(kind)], _OF_OTHERS[kind]
-    others = {name: f"{name} is {other} --method {name}" for name in METHODS.keys() - {*own}}
-    return option("--method", type=Named("method", own, others), default=default, help=words)
+def method_option(
+    own: Iterable[str], others: Iterable[str], remedy: str, default: str, words: str
+) -> click.Option:
+    """--method; an error says of others what they are, and which command has them."""
+    told = {name: f"{name} is {remedy} --method {name}" for name in others}
+    return option("--method", type=Named("method", own, told), default=default, help=words)

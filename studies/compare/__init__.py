@@ -1,6 +1,6 @@
 """Answers compared: plans of one move beside baselines and under errors, fronts of one task.
 
-May import `figures`, `report`, `reading` and `registry`.
+May import `figures`, `report` and `reading`.
 """
 
 import lazy_loader

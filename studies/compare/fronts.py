@@ -16,7 +16,7 @@ from quietarm.ocp import Front, PointToPoint, task_difference
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.saved import plain
 from quietarm.studies.compare.staircase import best_of, evenly_spaced, filled
-from quietarm.studies.registry.methods import Kind, method_of
+from quietarm.studies.report.methods import is_gradient, label_of
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class Group:
     @property
     def by_gradient(self) -> bool:
         """Whether the gradient found them, so that the points lie on a line."""
-        return method_of(self.runs[0].front.record.method).kind is Kind.GRADIENT
+        return is_gradient(self.runs[0].front.record.method)
 
     @property
     def band(self) -> tuple[Array, Array, Array]:
@@ -268,7 +268,7 @@ def _settings(front: Front) -> dict[str, object]:
 
 def _label(front: Front, alike: Sequence[Front]) -> str:
     """The method, with the settings in which it differs from others of the same method."""
-    words, others = [method_of(front.record.method).label], [_settings(other) for other in alike]
+    words, others = [label_of(front.record.method)], [_settings(other) for other in alike]
     for name, value in _settings(front).items():
         if all(other.get(name) == value for other in others):
             continue

@@ -16,7 +16,7 @@ from quietarm.ocp import Front, Plan, PointToPoint, epsilon_front, evaluate_coef
 from quietarm.ocp.front.curve import Report, no_report
 from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.studies.export.formats import export_plan
-from quietarm.studies.registry.profiles import FAMILIES, profile_of
+from quietarm.studies.reading.profiles import FAMILIES, profile_of
 from quietarm.studies.report.words import moved
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary

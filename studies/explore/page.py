@@ -32,7 +32,7 @@ from quietarm.ocp import QuietarmError
 from quietarm.studies.explore.move import CHOICES, FILES, Dial, Explored
 from quietarm.studies.explore.plots import GREY, PANELS, Plots
 from quietarm.studies.figures.looks import RED
-from quietarm.studies.registry.profiles import FAMILIES
+from quietarm.studies.reading.profiles import FAMILIES
 from quietarm.studies.report.moves import plan_rows
 
 Change = Callable[[Explored], Explored]

@@ -21,7 +21,7 @@ from quietarm.studies.figures.axes import (
     side_by_side,
 )
 from quietarm.studies.figures.looks import BLUE, RED, look
-from quietarm.studies.registry.methods import Kind, method_of
+from quietarm.studies.report.methods import is_gradient, label_of
 from quietarm.studies.report.words import millimetres, spread_words, title_of
 
 _MOST_NAMED = 10
@@ -72,7 +72,7 @@ def draw_fronts(
             ax,
             np.insert(np.maximum(front.residuals, REST), places, np.nan),  # rest has no logarithm
             np.insert(front.energies, places, np.nan),
-            exact=method_of(front.record.method).kind is Kind.GRADIENT, color=own.colour,
+            exact=is_gradient(front.record.method), color=own.colour,
             marker=own.mark, markersize=3, alpha=0.8, label=name,
         )  # fmt: skip
     failures = [one for front in fronts for one in front.failures]
@@ -93,7 +93,7 @@ def draw_fronts(
 
 def _names(fronts: Sequence[Front]) -> list[str]:
     """What to call every front: its method where there are several; of several runs the seed."""
-    methods = [method_of(front.record.method).label for front in fronts]
+    methods = [label_of(front.record.method) for front in fronts]
     several, names = len(set(methods)) > 1, list[str]()
     for i, (front, method) in enumerate(zip(fronts, methods, strict=True), start=1):
         runs, seed = methods.count(method) > 1, front.record.seed
@@ -184,11 +184,11 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
         hypervolume with its quartiles against candidates; for several seeds also the least energy
         of each within 1 mm.
     """
-    method = method_of(fronts[0].record.method)
-    gradient = method.kind is Kind.GRADIENT
+    method = fronts[0].record.method
+    gradient = is_gradient(method)
     panels = 1 + (not gradient and all(front.history for front in fronts))
     panels += panels > 1 and len(fronts) > 1
-    title = f"{method.label}: {title_of(fronts[0].task)}"
+    title = f"{label_of(method)}: {title_of(fronts[0].task)}"
     figure, axes = side_by_side(panels, title, width=4.2 if panels > 1 else 6.4)
     draw_fronts(fronts, axes[0], linear=gradient)
     if len(fronts) == 1 and len(fronts[0].points) > 2:
@@ -204,7 +204,7 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
 
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """Draw a front before and after polishing, and the energy that this saved point by point."""
-    name = method_of(polish.front.record.method).label
+    name = label_of(polish.front.record.method)
     figure, (ax, saved) = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
     draw_fronts([before, polish.front], ax, ("before", "after"))
     residuals = [max(gain.residual, REST) for gain in polish.gains]

@@ -1,1 +1,1 @@
-"""What is read from files: answers, judged anew, and coefficients that another program found."""
+"""What is read: answers in files, judged anew, coefficients of others, and names of profiles."""

@@ -11,7 +11,7 @@ from quietarm.metaheuristics.problems.card import card_of
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant
 from quietarm.ocp.checks import unknown
-from quietarm.studies.registry.methods import METHODS
+from quietarm.studies.report.methods import GRADIENT, label_of
 from quietarm.studies.report.words import error_words
 
 Row = tuple[str, str]
@@ -20,7 +20,7 @@ KINDS = ("plants", "problems", "methods")
 
 def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, list[Row]]:
     """A title, and rows of one of `KINDS` or of an entry by its name; ValueError of no other."""
-    known = [*KINDS, *plants, *PROBLEMS, *METHODS]
+    known = [*KINDS, *plants, *PROBLEMS, *GRADIENT, *PRESETS]
     if name not in known:
         raise ValueError(unknown("name", name, known))
     if name == "plants":
@@ -30,7 +30,7 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
         rows = [(one, _problem(problem)) for one, problem in PROBLEMS.items()]
         return "problems, each with a reference front", rows
     if name == "methods":
-        rows = [(one, method.label) for one, method in METHODS.items()]
+        rows = [(one, label_of(one)) for one in (*GRADIENT, *PRESETS)]
         return "methods, with `quietarm list NAME` for the settings", rows
     if name in plants:
         rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
@@ -38,7 +38,8 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
     if name in PROBLEMS:
         return name, [("problem", _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]
     if name not in PRESETS:
-        return name, [("by quietarm front", METHODS[name].label)]
+        command = "bench" if name == "multistart" else "front"
+        return name, [(f"by quietarm {command}", label_of(name))]
     preset = PRESETS[name]
     settings = [
         (one.name, f"{'-' if one.default is None else one.default}: {one.meaning}")

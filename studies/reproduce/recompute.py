@@ -30,7 +30,7 @@ from quietarm.ocp.record import versions
 from quietarm.ocp.robustness.measures import tolerated_residual
 from quietarm.studies.compare.judged import Judged, judge
 from quietarm.studies.compare.plans import compare_plans
-from quietarm.studies.registry.profiles import OTHERS
+from quietarm.studies.reading.profiles import OTHERS
 from quietarm.studies.reproduce.paper import CONDITIONS, ROWS, SIX, STUDIED, Case, paper_plan
 from quietarm.studies.reproduce.searched import (
     OLD_CONSTANTS,

@@ -23,8 +23,8 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.studies.reading.profiles import FAMILIES
 from quietarm.studies.reading.table import TABLES
-from quietarm.studies.registry.profiles import FAMILIES
 from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.moves import path_rows
 

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from functools import partial
 
-from quietarm.ocp import SolverFailedError, cross_check, polish_front
+from quietarm.metaheuristics import PRESETS
+from quietarm.ocp import (
+    SolverFailedError,
+    cross_check,
+    epsilon_front,
+    polish_front,
+    weighted_front,
+)
+from quietarm.ocp.front.points import LEVELS
 from quietarm.studies import figures
 from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_option
 from quietarm.studies.cli.given import Given
@@ -24,17 +32,18 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.quantities import parse_weights
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.reading.saved import load_front
-from quietarm.studies.registry.methods import EPSILON, METHODS, WEIGHTED, Kind
 from quietarm.studies.report.fronts import failure_lines, gradient_lines, polish_lines
 
+_METHODS = {"epsilon": partial(epsilon_front, at=LEVELS), "weighted": weighted_front}
 _CHECKED = 7
 """Points that the other solver finds again."""
 
 
 @command(
     *TASK,
-    method_option(Kind.GRADIENT, EPSILON.name, "Least energy at one residual limit after another "
-                  "(epsilon), or the least weighted sum for one pair of weights after another."),
+    method_option(_METHODS, PRESETS, "a metaheuristic; give quietarm search", "epsilon",
+                  "Least energy at one residual limit after another (epsilon), or the least "
+                  "weighted sum for one pair of weights after another."),
     *profile_options(), BOUND,
     option("--points", default=50,
            help="Points of the front; epsilon has 0.1, 1 and 5 mm besides."),
@@ -63,13 +72,13 @@ def front(given: Given) -> None:
         return _polish(given)
     wanted, asked = "points", given.pick("bound", "starts", "seed", "solver")
     if given.weights:
-        if given.method != WEIGHTED.name:
+        if given.method != "weighted":
             raise ValueError(f"--weights is for weighted, not for {given.method}; leave it out")
         given.refuse(["points"], "is for weights that are chosen by the method")
         wanted = "weights"
     task, total = given.read_task(), len(given.weights) or given.points
     with counting(total, wanted) as report:
-        found = METHODS[given.method].sweep(
+        found = _METHODS[given.method](
             task, profile=given.read_profile(task), report=report, **given.pick(wanted), **asked
         )
     # the ends come with weights, and epsilon has residuals of its own

@@ -25,7 +25,7 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.plants import read_parameters
 from quietarm.studies.cli.types import INPUT
-from quietarm.studies.registry.profiles import FAMILIES, chooses_terms
+from quietarm.studies.reading.profiles import FAMILIES, chooses_terms
 from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
 from quietarm.studies.sweep.grid import OF_MOVES
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.metaheuristics.algorithms.presets import PAPER_BOX
+from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
@@ -29,7 +29,6 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT
 from quietarm.studies.reading.saved import load_front
-from quietarm.studies.registry.methods import NSGA2, Kind
 from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.saving import STDOUT, File
 from quietarm.studies.report.search_progress import search_display
@@ -37,7 +36,7 @@ from quietarm.studies.report.search_progress import search_display
 
 @command(
     *TASK,
-    method_option(Kind.METAHEURISTIC, NSGA2.name,
+    method_option(PRESETS, ("epsilon", "weighted"), "by the gradient; give quietarm front", "nsga2",
                   "The metaheuristic; quietarm list methods has them."),
     *profile_options(), BOUND,
     option("--population", type=int, help="Individuals, or particles in a swarm."),

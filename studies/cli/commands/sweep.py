@@ -29,7 +29,7 @@ from quietarm.studies.cli.options import (
     profile_options,
 )
 from quietarm.studies.cli.types import SHARE
-from quietarm.studies.registry.profiles import chooses_terms
+from quietarm.studies.reading.profiles import chooses_terms
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

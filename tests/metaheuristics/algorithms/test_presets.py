@@ -1,4 +1,4 @@
-"""The registry of the methods that are known by name."""
+"""The methods that are known by name."""
 
 import inspect
 import re
