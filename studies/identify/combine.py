@@ -23,16 +23,16 @@ _OWN_FREEDOM = 30.0
 
 def combine(names: Sequence[str], parts: Sequence[Part]) -> tuple[list[Estimate], dict[str, str]]:
     """The estimates of parameters from parts, and those with an interval as wide as their value."""
-    found: list[Estimate] = []
-    wide: dict[str, str] = {}
+    found, wide = list[Estimate](), dict[str, str]()
     recordings = np.unique([part.recording for part in parts], return_inverse=True)[1]
     for name in names:
-        values = np.array([part.values[name] for part in parts])
-        deviations = np.array([part.deviations[name] for part in parts])
+        values, deviations = (
+            np.array([of[name] for of in columns])
+            for columns in ([part.values for part in parts], [part.deviations for part in parts])
+        )
         one = estimate(name, values, deviations, recordings)
         if one.value == 0 or one.error >= 1:
-            low = one.low if one.next_low is None else one.next_low
-            high = one.high if one.next_high is None else one.next_high
+            low, high = one.widest
             wide[name] = f"its interval, {low:.3g} to {high:.3g}, is as wide as its value"
         else:
             found.append(one)
@@ -47,14 +47,14 @@ def estimate(
 
     own = np.maximum(deviations, 1e-12 * np.abs(values) + 1e-300) ** 2
     groups = [recordings == k for k in np.unique(recordings)]
-    within = _between([values[g] for g in groups], [own[g] for g in groups])
+    within = _between([(values[g], own[g]) for g in groups])
     means, of_means = np.array([_mean(values[g], own[g] + within) for g in groups]).T
-    among = _between([means], [of_means])
+    among = _between([(means, of_means)])
     mean, of_mean = _mean(means, of_means + among)
 
     count, files = len(values), len(groups)
     between = np.array([among, within, 0.0])
-    of_parts = np.array([among / files, within / count, 0.0])
+    of_parts = between / [files, count, 1.0]
     of_parts[2] = max(of_mean - of_parts.sum(), of_mean / 1e6)  # their own
     freedom = np.array([max(files - 1, 1), max(count - files, 1), _OWN_FREEDOM * count])
 
@@ -74,21 +74,18 @@ def _mean(values: Array, variances: Array) -> tuple[float, float]:
     return float((weight * values).sum() / weight.sum()), 1 / float(weight.sum())
 
 
-def _between(groups: Sequence[Array], own: Sequence[Array]) -> float:
+def _between(groups: Sequence[tuple[Array, Array]]) -> float:
     """Variance within groups beyond their own: with it weighed squares are as many as free."""
     from scipy.optimize import brentq  # not at the top: it takes long to load
 
-    free = sum(len(values) - 1 for values in groups)
-
     def excess(between: float) -> float:
-        total = 0.0
-        for values, variances in zip(groups, own, strict=True):
-            mean, _ = _mean(values, variances + between)
-            total += float(((values - mean) ** 2 / (variances + between)).sum())
-        return total - free
+        return sum(
+            float(((values - _mean(values, own + between)[0]) ** 2 / (own + between)).sum())
+            - (len(values) - 1)
+            for values, own in groups
+        )
 
-    if free == 0 or excess(0.0) <= 0:
+    if all(len(values) == 1 for values, _ in groups) or excess(0.0) <= 0:
         return 0.0
-    widest = max(float(np.ptp(values)) for values in groups)
-    root: Any = brentq(excess, 0.0, 1e3 * widest**2)
-    return float(root)
+    solve: Any = brentq
+    return float(solve(excess, 0.0, 1e3 * max(np.ptp(values) for values, _ in groups) ** 2))

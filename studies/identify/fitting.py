@@ -51,6 +51,7 @@ class Model:
         scaled: bool = True,
     ) -> None:
         self.time, self.values, self.driven = recording.time, recording.values, response.driven
+        self.count = response.count
         self.kept, self.fixed = np.ones(len(self.time), bool), int(response.driven and not scaled)
         share = (self.time - self.time[0]) / np.ptp(self.time)
         slow = [np.cos(k * np.pi * share) for k in range(1, cosines + 1)]
@@ -89,27 +90,31 @@ class Model:
         B, _ = self._last(p.tobytes(), True)
         return np.concatenate([p, self.amplitudes(B, self.kept)[:, self.fixed :].ravel()])
 
-    def evaluate(self, x: Array, count: int) -> tuple[Array, Array, Array]:
-        """Of x, that begins with so many parameters: columns, their derivatives, amplitudes."""
-        B, dB = self._last(x[:count].tobytes(), True)
-        free = x[count:].reshape(self.values.shape[1], -1)
-        return (
-            B[:, self.kept],
-            dB[:, :, self.kept],
-            np.pad(free, ((0, 0), (self.fixed, 0)), constant_values=1.0),
-        )
+    def _evaluate(self, x: Array) -> tuple[Array, Array, Array]:
+        """Columns of the rows that count, their derivatives by the parameters, amplitudes."""
+        B, dB = self._last(x[: self.count].tobytes(), True)
+        free = x[self.count :].reshape(self.values.shape[1], -1)
+        amplitudes = np.pad(free, ((0, 0), (self.fixed, 0)), constant_values=1.0)
+        return B[:, self.kept], dB[:, :, self.kept], amplitudes
 
-    def left(self, x: Array, count: int) -> Array:
+    def left(self, x: Array) -> Array:
         """What x leaves of the rows that count (signals, rows)."""
-        B, _, amplitudes = self.evaluate(x, count)
+        B, _, amplitudes = self._evaluate(x)
         return self.values[self.kept].T - _products(B, amplitudes)
 
-    def jacobian(self, x: Array, count: int) -> Array:
+    def jacobian(self, x: Array) -> Array:
         """Derivatives of what x makes of the signals (signals, rows, x)."""
-        B, dB, amplitudes = self.evaluate(x, count)
+        B, dB, amplitudes = self._evaluate(x)
         by_p = np.moveaxis(_products(dB, amplitudes), 0, -1)
         of_signal = np.eye(len(amplitudes))[:, None, :, None] * B[:, :, None, self.fixed :]
         return np.concatenate([by_p, of_signal.reshape(*by_p.shape[:2], -1)], axis=-1)
+
+    def swinging(self, x: Array) -> tuple[Array, Array]:
+        """What swings by x, and what of that follows from the joint's motion (signals, rows)."""
+        B, _, amplitudes = self._evaluate(x)
+        own = B.shape[-1] - self.trend.shape[1]
+        whole, first = (_products(B[..., :k], amplitudes[:, :k]) for k in (own, 1))
+        return whole, first
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,43 +157,42 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
 
     solve: Any = least_squares
     count, x = len(start), model.start(start)
-    residual = model.left(x, count)
     free = np.full(len(x) - count, np.inf)
     bounds = np.append(lower, -free), np.append(upper, free)
     least = 1e-9 * model.values.std(axis=0)[:, None] + 1e-300
+    residual = model.left(x)
     deviation = np.maximum(residual.std(axis=1, keepdims=True), least)
+
+    def weighed_jacobian(x: Array) -> Array:
+        return (model.jacobian(x) / deviation[..., None]).reshape(-1, len(x))
+
     for loss, most in (("linear", 40), *[("huber", 20)] * (_ROUNDS - 1)):
         x = solve(
-            lambda x: (-model.left(x, count) / deviation).ravel(),  # noqa: B023
-            x,
-            lambda x: (model.jacobian(x, count) / deviation[..., None]).reshape(-1, len(x)),  # noqa: B023
+            lambda x: (-model.left(x) / deviation).ravel(), x, weighed_jacobian,  # noqa: B023
             bounds=bounds, x_scale="jac", loss=loss, f_scale=_HUBER, xtol=1e-12, ftol=1e-9,
             gtol=1e-14, max_nfev=most,
         ).x  # fmt: skip
-        residual, before = model.left(x, count), deviation
+        residual, before = model.left(x), deviation
         spread = residual.std(axis=1, keepdims=True)
         robust = 1.4826 * np.median(np.abs(residual), axis=1, keepdims=True)
         deviation = np.clip(robust, np.maximum(0.1 * spread, least), spread + least)
         if loss == "huber" and np.allclose(before, deviation, rtol=0.02):
             break
-    time, weighed = model.time[model.kept], residual / deviation
-    J = (model.jacobian(x, count) / deviation[..., None]).reshape(-1, len(x))
+    time, weighed, J = model.time[model.kept], residual / deviation, weighed_jacobian(x)
     size = np.linalg.norm(J, axis=0)
     size[size == 0] = 1.0
     J /= size  # units apart: else the pseudo-inverse takes a small one for none
-    power = _power_near(time, weighed, frequency, len(x))
     variances = _variances(J)
-    B, _, amplitudes = model.evaluate(x, count)
-    own = B.shape[-1] - model.trend.shape[1]
-    swinging, delay = _products(B[..., :own], amplitudes[:, :own]), 0.0
-    inflation = np.ones(count)
+    power = _power_near(time, weighed, frequency, len(x))
+    deviations = (np.sqrt(variances * power) / size)[:count]
+    (swinging, by_joint), delay, inflation = model.swinging(x), 0.0, np.ones(count)
     if model.driven:
-        later = np.gradient(_products(B[..., :1], amplitudes[:, :1]), time, axis=1) / deviation
+        later = np.gradient(by_joint, time, axis=1) / deviation
         delay = _delay(weighed.ravel(), later.ravel(), J)
         if not model.fixed:
-            known = np.delete(J, count + np.arange(len(B)) * B.shape[-1], axis=1)
+            signals = len(residual)
+            known = np.delete(J, count + np.arange(signals) * (len(free) // signals), axis=1)
             inflation = np.sqrt(variances[:count] / _variances(known)[:count])
-    deviations = (np.sqrt(variances * power) / size)[:count]
     return Fit(x[:count], deviations, model, swinging.T, residual.T, delay, inflation)
 
 

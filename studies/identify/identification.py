@@ -94,9 +94,9 @@ def curve_of(found: Identified, part: Part, recordings: Sequence[Recording]) -> 
     """What was fitted in a part, and the signals that it was met by (rows, signals)."""
     recording = next(one for one in recordings if one.name == part.recording)
     fitter = PartFitter(found.plant, list(part.values), recording, 1.0)
-    fitter.frequency = fitter.frequency_of(np.array(list(part.values.values())))
+    fitter.frequency = fitter.frequency_of(part.vector)
     model = fitter.model(part)
-    return model, model.fitted(np.array(list(part.values.values())))
+    return model, model.fitted(part.vector)
 
 
 def _check(recordings: Sequence[Recording], plant: Plant) -> list[str]:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.saved import Saved
 from quietarm.ocp.uncertainty import with_values
@@ -40,19 +42,23 @@ class Estimate:
     next_high: float | None = None
 
     @property
+    def widest(self) -> tuple[float, float]:
+        """The interval of the next swing, or where there is none that of the mean."""
+        if self.next_low is None or self.next_high is None:
+            return self.low, self.high
+        return self.next_low, self.next_high
+
+    @property
     def error(self) -> float:
-        """The larger distance to an end of the widest interval, as a share of the value."""
-        ends = [
-            end for end in (self.low, self.high, self.next_low, self.next_high) if end is not None
-        ]
+        """The larger distance to an end of either interval, as a share of the value."""
+        ends = (self.low, self.high, *self.widest)
         return max(abs(end - self.value) for end in ends) / abs(self.value)
 
     @property
     def varies(self) -> bool:
         """Whether the parts differ by more than their own uncertainty, twice and more."""
-        if self.next_low is None or self.next_high is None:
-            return False
-        return self.next_high - self.next_low > 2 * (self.high - self.low)
+        low, high = self.widest
+        return high - low > 2 * (self.high - self.low)
 
 
 @dataclass(frozen=True)
@@ -97,6 +103,11 @@ class Part:
     saturated: int = 0
     drifts: bool = False
     hub: str = ""
+
+    @property
+    def vector(self) -> NDArray[np.float64]:
+        """The values of its parameters."""
+        return np.array([*self.values.values()])
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 from math import tau
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY
-from quietarm.studies.identify.diagnosis import cause_of, exceeds, saturated
+from quietarm.studies.identify.diagnosis import doubt, doubt_of, exceeds, saturated
 from quietarm.studies.identify.fitting import Fit, Model, fit
 from quietarm.studies.identify.machine import Part
 from quietarm.studies.identify.parameters import bounds_of, is_frequency, is_modal, values_of
@@ -71,14 +72,15 @@ class PartFitter:
         self._response = Response(plant, names, kinds)
         self._given = values_of(plant, names)
         self._rates = np.array([is_frequency(plant, name) for name in names])
-        self._dampings = np.array([is_modal(plant, name) for name in names]) & ~self._rates
-        self._scaled = "torque" not in kinds and all(is_modal(plant, name) for name in names)
-        self._modes, _ = self._response.eigenvalues(self._given)
+        modal = np.array([is_modal(plant, name) for name in names])
+        self._dampings = modal & ~self._rates
+        self._scaled = "torque" not in kinds and bool(modal.all())
+        self._modes = self._response.eigenvalues(self._given)[0].imag
 
     def model(self, part: Part, thin: bool = True) -> Model:
         """The model of a part: without saturated samples, with drift or hub, as the part says."""
         piece = self._piece(part)
-        fastest = self.frequency * float(self._modes[-1].imag / self._modes[0].imag)
+        fastest = self.frequency * float(self._modes[-1] / self._modes[0])
         spline = smooth(piece) if part.hub else None
         if thin and not part.saturated:
             piece = piece.averaged(1 / max(_PER_PERIOD * fastest * piece.step, 1e-9))
@@ -90,7 +92,7 @@ class PartFitter:
         if part.saturated:
             model.kept = ~saturated(piece.values)
             if part.values:  # by the fit: near the limit the noise is cut as well
-                model.kept = ~saturated(piece.values, model.fitted(_p(part)))
+                model.kept = ~saturated(piece.values, model.fitted(part.vector))
         return model
 
     def ring_downs(self, by_hand: Sequence[tuple[float, float]] = ()) -> tuple[list[Part], str]:
@@ -98,29 +100,25 @@ class PartFitter:
         recording, frequency = self.recording, self.frequency
         if not frequency:
             return [], SILENT
-        if by_hand:
-            found = [recording.rows(*ends) for ends in by_hand]
-            found = [rows for rows in found if rows.stop - rows.start >= LEAST_ROWS]
-        else:
-            found = find_ring_downs(recording, frequency)
-        parts: list[Part] = []
-        end, why = 0, _no_ring_down(recording, frequency)
-        for rows in found:
+        found = [recording.rows(*ends) for ends in by_hand]
+        found = [rows for rows in found if rows.stop - rows.start >= LEAST_ROWS]
+        parts, end, why = list[Part](), 0, _no_ring_down(recording, frequency)
+        for rows in found if by_hand else find_ring_downs(recording, frequency):
             part = self._ring_down(rows, end, bool(by_hand))
             end = rows.stop
             if part.misfit < 1 or by_hand:
                 parts.append(part)
             else:
                 why = f"{part.begin:.3g} to {part.end:.3g} s is no free decay of {frequency:.3g} Hz"
-        if moves(recording):
-            groups = [([part], self._rows(part)) for part in parts]
-            groups = groups if by_hand else [(parts, slice(None))]
-            parts = [part for own, rows in groups for part in self._with_hub(own, rows)]
+        if moves(recording) and not by_hand:
+            parts = self._with_hub(parts, slice(None))
+        elif moves(recording):
+            parts = [one for part in parts for one in self._with_hub([part], self._rows(part))]
         return parts, "" if parts else why
 
     def whole(self, rows: slice = slice(None)) -> Part:
         """All of the recording, or some rows, by how the plant answers its joint's motion."""
-        part = replace(self._part(rows), hub="moves")
+        part = self._part(rows, hub="moves")
         starts = [self._given, *self._starts(self.frequency * _FACTORS)]
         best = sorted(starts, key=self.model(part).cost)[:_STARTS]
         return min((self._met(part, start)[0] for start in best), key=lambda one: one.misfit)
@@ -130,10 +128,10 @@ class PartFitter:
 
         What amplitudes and trend can do instead does not count.
         """
-        model = self.model(replace(self._part(slice(None)), hub="moves"))
-        count, x = len(self.names), model.start(self._given)
-        J = model.jacobian(x, count) / model.values.std(axis=0)[:, None, None]
-        by_p, others = np.split(J.reshape(-1, len(x)), [count], axis=1)
+        model = self.model(self._part(slice(None), hub="moves"))
+        x = model.start(self._given)
+        J = model.jacobian(x) / model.values.std(axis=0)[:, None, None]
+        by_p, others = np.split(J.reshape(-1, len(x)), [model.count], axis=1)
         by_p -= others @ np.linalg.lstsq(others, by_p, rcond=None)[0]
         return by_p * np.where(self._given != 0, np.abs(self._given), 1e-2)
 
@@ -141,30 +139,23 @@ class PartFitter:
         """Frequency of the slowest mode [Hz] by some parameters."""
         return float(self._response.eigenvalues(p)[0][0].imag) / tau
 
-    def _met(self, part: Part, start: Array) -> tuple[Part, Fit]:
-        """A fit of a part as it says, and the part with what that says."""
-        ends = bounds_of(self.plant, self.names, start)
-        best = fit(self.model(part), start, *ends, self.frequency)
-        part = self._described(part, best)
-        for name, value, low, high in zip(self.names, best.p, *ends, strict=True):
-            if np.isfinite(high - low) and min(value - low, high - value) < 1e-6 * (high - low):
-                part = replace(part, cause="bound", warning=(
-                    f"{name} ends at the limit of what is sought: the model does not fit; begin "
-                    "after the release, by --part, or hold the joint"
-                ))  # fmt: skip
-        return part, best
+    def _rows(self, part: Part) -> slice:
+        return self.recording.rows(part.begin, part.end)
+
+    def _piece(self, part: Part) -> Recording:
+        return self.recording.part(self._rows(part))
+
+    def _part(self, rows: slice, hub: str = "") -> Part:
+        time = self.recording.time[rows]
+        return Part(self.recording.name, float(time[0]), float(time[-1]), hub=hub)
 
     def _starts(self, frequencies: Array) -> list[Array]:
         """Frequencies and dampings from which fits may start, whichever mode swings."""
-        found: list[Array] = []
-        for mode in self._modes:
-            for frequency in frequencies:
-                for damping in _DAMPINGS:
-                    p = self._given.copy()
-                    p[self._rates] *= tau * frequency / mode.imag
-                    p[self._dampings] = damping
-                    found.append(p)
-        return found
+        return [
+            np.where(self._dampings, damping, self._given)
+            * np.where(self._rates, tau * frequency / mode, 1.0)
+            for mode, frequency, damping in product(self._modes, frequencies, _DAMPINGS)
+        ]
 
     def _ring_down(self, rows: slice, earliest: int, by_hand: bool) -> Part:
         """A ring-down fitted alone: grown to what it meets; then what helps its model is added."""
@@ -195,31 +186,19 @@ class PartFitter:
             part = part if tried.cause == "drift" else tried
         return part
 
-    def _rows(self, part: Part) -> slice:
-        return self.recording.rows(part.begin, part.end)
-
-    def _piece(self, part: Part) -> Recording:
-        return self.recording.part(self._rows(part))
-
-    def _part(self, rows: slice) -> Part:
-        time = self.recording.time[rows]
-        return Part(self.recording.name, float(time[0]), float(time[-1]))
-
     def _grown(self, rows: slice, best: Fit, earliest: int) -> slice:
         """The rows with those before that the same swing meets, without those it does not."""
         size = max(2, round(0.25 / (self.frequency * self.recording.step)))
         first = max(earliest, rows.start - 12 * size)
         wide = self.model(self._part(slice(first, rows.stop)), thin=False)
-        known = np.arange(first, rows.stop) >= rows.start
-        left = wide.values - wide.fitted(best.p, known)
+        left = wide.values - wide.fitted(best.p, np.arange(first, rows.stop) >= rows.start)
         count, inside = len(left) // size, (rows.stop - rows.start) // size
         blocks = (left[len(left) - count * size :] ** 2).sum(axis=1).reshape(count, size)
         power = blocks.mean(axis=1)
         usual = _FAR**2 * float(np.median(power[-inside:]))
-        good = power < max(usual, 1e-6 * float((best.swinging**2).sum(axis=1).mean()))
+        far = power >= max(usual, 1e-6 * float((best.swinging**2).sum(axis=1).mean()))
         begin = count - inside + min(8, inside // 3)  # at most two periods are lost
-        while begin > 0 and good[begin - 1]:
-            begin -= 1
+        begin = int(np.flatnonzero(far[:begin]).max(initial=-1)) + 1
         return slice(rows.stop - (count - begin) * size, rows.stop)
 
     def _with_hub(self, parts: list[Part], rows: slice) -> list[Part]:
@@ -234,70 +213,60 @@ class PartFitter:
         met = whole.misfit < max(_MET, 2 * whole.noise)
         if met and not fails and whole.cause != "delay":
             return [whole]
-        warning = (
-            "the hub swings with the tip, so that the frequency is not that of a held one: hold "
-            "it, by a brake or a stiffer controller"
-        )
-        held = self.frequency_of(_p(whole))
-        return [
-            replace(part, cause="hub", warning=warning)
-            if (fails or abs(self.frequency_of(_p(part)) / held - 1) > _HUB)
-            and not (part.warning or part.hub)
-            else part
-            for part in parts
-        ]
+        held = self.frequency_of(whole.vector)
+
+        def doubted(part: Part) -> bool:
+            shifted = fails or abs(self.frequency_of(part.vector) / held - 1) > _HUB
+            return shifted and not (part.warning or part.hub)
+
+        return [replace(part, **doubt("hub", "swings")) if doubted(part) else part
+                for part in parts]  # fmt: skip
 
     def _hub_swings(self, part: Part) -> bool:
         """Whether the hub swings as the tip does in a part, by more than an encoder's noise."""
         piece = self._piece(part)
         assert piece.angle is not None
-        swing = FreeDecay(self._response, piece)(_p(part))[0][0, :, :2]
+        swing = FreeDecay(self._response, piece)(part.vector)[0][0, :, :2]
         X = np.hstack([swing, np.vander(piece.time - piece.time[0], 2)])
         share, *_ = np.linalg.lstsq(X, piece.angle, rcond=None)
         noise = float(noise_of(piece.angle)[0])
         return float(np.hypot(*share[:2])) > max(8 * noise / len(piece.time) ** 0.5, noise / 2)
 
-    def _described(self, part: Part, best: Fit) -> Part:
-        """The part with what a fit of it says."""
+    def _met(self, part: Part, start: Array) -> tuple[Part, Fit]:
+        """A fit of a part as it says, and the part with what that says."""
+        low, high = bounds_of(self.plant, self.names, start)
+        best = fit(self.model(part), start, low, high, self.frequency)
         piece, model = self._piece(part), best.model
         time = model.time[model.kept]
         size = np.maximum(np.sqrt((best.swinging**2).mean(axis=0)), 1e-300)
         thinned = (len(piece.time) / len(model.time)) ** 0.5
         noise = float((noise_of(piece.values) / thinned / size).max())
-        part = replace(
-            part,
-            values=dict(zip(self.names, best.p.tolist(), strict=True)),
-            deviations=dict(zip(self.names, best.deviations.tolist(), strict=True)),
-            amplitude=float(np.abs(best.swinging[time <= time[0] + 1 / self.frequency]).max()),
-            misfit=best.misfit,
-            noise=noise,
-        )
+        room = np.minimum(best.p - low, high - best.p) / np.where(high < np.inf, high - low, 1.0)
+        facts = {
+            "values": dict(zip(self.names, best.p.tolist(), strict=True)),
+            "deviations": dict(zip(self.names, best.deviations.tolist(), strict=True)),
+            "amplitude": float(np.abs(best.swinging[time <= time[0] + 1 / self.frequency]).max()),
+            "misfit": best.misfit, "noise": noise, "cause": "", "warning": "",
+        }  # fmt: skip
+        found = self._doubt(part, best, time, noise)
+        if (room < 1e-6).any():
+            found = doubt("bound", parameter=self.names[int(np.flatnonzero(room < 1e-6)[-1])])
+        return replace(part, **facts | found), best
+
+    def _doubt(self, part: Part, best: Fit, time: Array, noise: float) -> dict[str, str]:
+        """Why a fit of a part is doubted; empty where it is not."""
         if best.delay and part.hub == "moves" and best.misfit > _MORE * noise:
             side = "late" if best.delay > 0 else "early"
-            return replace(part, cause="delay", warning=(
-                f"the misfit is {best.misfit:.1%} of the swing, less if the angle were not "
-                f"{abs(best.delay) * 1e3:.3g} ms {side}: record both by one clock"
-            ))  # fmt: skip
+            return doubt("delay", misfit=best.misfit, delay=abs(best.delay) * 1e3, side=side)
         unsure = (best.inflation > _INFLATED) & (best.deviations > _UNSURE * np.abs(best.p))
         if unsure[self._rates].any():
-            return replace(part, cause="hub", warning=(
-                "the hub swings in proportion to the tip, so that its share in the frequency is "
-                "not identifiable: hold it, by a brake or a stiffer controller"
-            ))  # fmt: skip
-        cause, warning = cause_of(time, best.residual, best.swinging, self.frequency, noise)
+            return doubt("hub", "hides")
+        found = doubt_of(time, best.residual, best.swinging, self.frequency, noise)
         damping = float(best.p[self._dampings].max(initial=0.0))
-        if not cause and self.plant.joint == ROTARY and damping > _MUCH_DAMPING:
-            cause, named = "hub", self.recording.angle is not None
-            warning = (
-                f"a damping ratio of {damping:.2g} is more than a beam on a held joint has: a "
-                "controller that gives way damps like that, and shifts the frequency; hold the "
-                f"joint{'' if named else ', or name its angle by --angle'}"
-            )
-        return replace(part, cause=cause, warning=warning)
-
-
-def _p(part: Part) -> Array:
-    return np.array(list(part.values.values()))
+        if not found and self.plant.joint == ROTARY and damping > _MUCH_DAMPING:
+            remedy = "" if self.recording.angle is not None else ", or name its angle by --angle"
+            return doubt("hub", "damps", damping=damping, remedy=remedy)
+        return found
 
 
 def _no_ring_down(recording: Recording, frequency: float) -> str:

@@ -75,7 +75,7 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
                 worst, worst_at = min(shares)
                 share = float(np.median([share for share, _ in shares]))
                 ends = part.begin, part.end
-                own = fitter.frequency_of(np.array(list(part.values.values())))
+                own = fitter.frequency_of(part.vector)
                 found.append(Prediction(one.name, *ends, share, worst, worst_at, own))
     if not found:
         raise ValueError(f"{recordings[0].name}: no ring-down of three periods; record longer")

@@ -100,6 +100,7 @@ class FreeDecay:
 
     def __init__(self, response: Response, recording: Recording) -> None:
         self._response, self._time = response, recording.time - recording.time[0]
+        self.count = len(response.names)
         self._angle = 0.0 if recording.angle is None else float(recording.angle.mean())
 
     def __call__(self, p: Array, derivatives: bool = True) -> tuple[Array, Array]:
@@ -122,7 +123,7 @@ class Driven:
     def __init__(
         self, response: Response, time: Array, spline: Any, fastest: float, linear: bool
     ) -> None:
-        self._response, steps = response, np.diff(time)
+        self._response, self.count, steps = response, len(response.names), np.diff(time)
         orders = (1.0, 0.0, 1.0) if linear else (1.0, 1.0, 1.0)
         joint = lambda at: [size * spline(at, k) for k, size in enumerate(orders)]  # noqa: E731
         counts = np.maximum(np.ceil(fastest * steps / _STEP), 1).astype(int)
