@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.machine import Estimate, Part
+from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _LEVEL = 0.95
@@ -33,7 +34,7 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> tuple[list[Estimate]
         one = estimate(name, values, deviations, recordings)
         if one.value == 0 or one.error >= 1:
             low, high = one.widest
-            wide[name] = f"its interval, {low:.3g} to {high:.3g}, is as wide as its value"
+            wide[name] = say("parameter.wide", low=low, high=high)
         else:
             found.append(one)
     return found, wide

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.recording import noise_of
+from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _STANDS_OUT = 14.0
@@ -22,15 +20,9 @@ _AT_LIMIT = 6
 """Samples at the same extreme value, from which on a sensor may be saturated."""
 
 
-def doubt(cause: str, which: str = "", **facts: object) -> dict[str, str]:
-    """Cause and warning of a part, with the sentence of `doubts.toml` for the cause."""
-    sentence = _sentences()[cause]
-    return {"cause": cause, "warning": (sentence[which] if which else sentence).format(**facts)}
-
-
-@cache
-def _sentences() -> dict[str, Any]:
-    return tomllib.loads(Path(__file__).with_name("doubts.toml").read_text(encoding="utf-8"))
+def doubt(cause: str, /, **facts: object) -> dict[str, str]:
+    """Cause and warning of a part."""
+    return {"cause": cause.partition(".")[0], "warning": say(f"doubt.{cause}", **facts)}
 
 
 def spectrum_of(time: Array, left: Array) -> tuple[Array, Array]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import tau
 
 import numpy as np
+from numpy.typing import NDArray
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording
 from quietarm.studies.identify.ring_downs import envelope, evenly, runs_of, standing
+from quietarm.studies.identify.words import say
 
+Array = NDArray[np.float64]
 _SLOWEST, _FASTEST = 0.02, 500.0
 """Frequencies [Hz] that no arm has: a wrong unit of the time is more likely."""
 _COARSE, _DOUBTFUL = 0.2, 0.1
@@ -29,70 +32,57 @@ def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
 
     0 where nothing swings; ValueError where nothing does in any, or as no arm does.
     """
-    tables = [_candidates_of(one) for one in recordings]
-    if not any(any(table.values()) for table in tables):
-        raise ValueError(
-            f"{recordings[0].name}: no swing stands out of the noise; push harder, or record "
-            "longer and with more samples"
-        )
-    shares = [
-        {f: loud / (sum(table.values()) or 1) for f, loud in table.items()} for table in tables
-    ]
-    common = max(
-        (f for table in tables for f in table),
-        key=lambda f: sum(max(_near(share, f).values(), default=0.0) for share in shares),
-    )
-    found: list[float] = []
-    for one, share in zip(recordings, shares, strict=True):
-        near, loudest = _near(share, common), max(share.values(), default=0.0)
-        among = near if max(near.values(), default=0.0) > _LOUD * loudest else share
-        best = max(among, key=lambda f: among[f]) if loudest else 0.0
+    tables = [np.array([*_candidates_of(one).items()]).reshape(-1, 2).T for one in recordings]
+    if not any(loud.any() for _, loud in tables):
+        raise ValueError(say("refused.silent", name=recordings[0].name))
+    shares = [(f, loud / (loud.sum() or 1.0)) for f, loud in tables]
+
+    def near(f: Array, frequency: float) -> NDArray[np.bool_]:
+        return np.abs(f / frequency - 1) < _SAME
+
+    def loudness(frequency: float) -> float:
+        return sum(float(share[near(f, frequency)].max(initial=0.0)) for f, share in shares)
+
+    common = max(np.concatenate([f for f, _ in tables]), key=loudness)
+    found = list[float]()
+    for one, (f, share) in zip(recordings, shares, strict=True):
+        among = share * near(f, common)
+        if among.max(initial=0.0) <= _LOUD * share.max(initial=0.0):
+            among = share
+        best = float(f[among.argmax()]) if share.any() else 0.0
         if best and not _SLOWEST <= best <= _FASTEST:
-            raise ValueError(
-                f"{one.name} swings at {best:.3g} Hz, as no arm does; is its time in another "
-                "unit? say so by --units, as time:ms"
-            )
+            raise ValueError(say("refused.swings", name=one.name, frequency=best))
         found.append(best)
     return found
 
 
-def _near(table: Mapping[float, float], frequency: float) -> dict[float, float]:
-    """The candidates near a frequency."""
-    return {one: loud for one, loud in table.items() if abs(one / frequency - 1) < _SAME}
-
-
 def doubt_units(recordings: Sequence[Recording], frequencies: Sequence[float]) -> list[str]:
     """What units may be wrong."""
-    found: list[str] = []
+    found = list[str]()
     for one, frequency in zip(recordings, frequencies, strict=True):
         turns = 0.0 if one.angle is None else float(np.ptp(one.angle))
-        slow = f"{frequency:.3g} Hz by samples {one.step:.3g} s apart; is its time in milliseconds?"
-        fast = f"{frequency:.4g} Hz is fast for an arm; is its time in seconds?"
-        turned = f"its joint turns by {turns:.3g} rad, more than two turns; is it in degrees?"
-        doubts = [
-            (one.step >= _COARSE or 0 < frequency < _DOUBTFUL, slow, "time:ms"),
-            (frequency > _FASTEST / 2, fast, "time:s"),
-            (turns > _TURNS, turned, "angle:deg"),
-        ]
-        found += [
-            f"{one.name}: {text} say so by --units {unit}" for is_so, text, unit in doubts if is_so
-        ]
+        doubts = {
+            "slow": one.step >= _COARSE or 0 < frequency < _DOUBTFUL,
+            "fast": frequency > _FASTEST / 2,
+            "turned": turns > _TURNS,
+        }
+        facts = {"name": one.name, "frequency": frequency, "step": one.step, "turns": turns}
+        found += [say(f"units.{unit}", **facts) for unit, is_so in doubts.items() if is_so]
     return found
 
 
-def _longest_rest(recording: Recording) -> Recording:
-    """The longest stretch in which the joint is at rest; all where there is no fifth of it."""
-    at_rest = standing(recording, 10 / float(np.ptp(recording.time)))
-    runs = runs_of(at_rest)
-    first, last = max(runs, key=lambda run: run[1] - run[0], default=(0, 0))
-    long = last - first >= max(len(at_rest) / 5, LEAST_ROWS)
-    return recording.part(slice(first, last)) if long else recording
-
-
 def _candidates_of(recording: Recording) -> dict[float, float]:
-    """Candidates of the longest rest, or where nothing swings there of the whole recording."""
-    at_rest = _candidates(_longest_rest(recording))
-    return at_rest if any(at_rest.values()) else _candidates(recording)
+    """Candidates of the longest rest of the joint, if it is a fifth of the recording.
+
+    Where nothing swings there, those of all of it.
+    """
+    at_rest = standing(recording, 10 / float(np.ptp(recording.time)))
+    first, last = max(runs_of(at_rest), key=lambda run: run[1] - run[0], default=(0, 0))
+    if last - first >= max(len(at_rest) / 5, LEAST_ROWS):
+        found = _candidates(recording.part(slice(first, last)))
+        if any(found.values()):
+            return found
+    return _candidates(recording)
 
 
 def _candidates(recording: Recording) -> dict[float, float]:
@@ -104,7 +94,7 @@ def _candidates(recording: Recording) -> dict[float, float]:
 
     even, y = evenly(recording, 1 / (32 * recording.step))
     rate, total = 1 / float(even[1] - even[0]), len(even)
-    found: dict[float, float] = {}
+    found = dict[float, float]()
     for length in (total // share for share in _STRETCHES if total // share >= 32):
         at, _, power = spectrogram(
             y, rate, "hann", length, length // 2, 4 * length, detrend="linear", axis=0
@@ -129,8 +119,7 @@ def _prominence(recording: Recording, frequency: float) -> float:
     swing = envelope(recording, frequency)
     if swing is None:
         return 0.0
-    loud = swing.size > 4 * swing.noise
+    loud = swing.size[swing.size > 4 * swing.noise]
     step = float(swing.time[1] - swing.time[0]) if len(swing.time) > 1 else recording.step
     accelerates = "acceleration" in recording.signals and "tip" not in recording.signals
-    order = -4 if accelerates else 0
-    return float((swing.size[loud] ** 2).sum()) * step * frequency ** (1 + order)
+    return float((loud**2).sum()) * step * frequency ** (-3 if accelerates else 1)

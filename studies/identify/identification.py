@@ -16,9 +16,10 @@ from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
 from quietarm.studies.identify.machine import Identified, Part, in_torque_alone
 from quietarm.studies.identify.parameters import is_modal
-from quietarm.studies.identify.parts import SILENT, PartFitter
+from quietarm.studies.identify.parts import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.ring_downs import moves
+from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _DEPENDENT = 1e-3
@@ -66,21 +67,25 @@ def identify(
     kinds = _check(recordings, plant)
     names = _sought(plant, free, kinds)
     frequencies = find_frequencies(recordings)
-    each = list(zip(recordings, frequencies, strict=True))
+    each = [
+        PartFitter(plant, names, one, frequency)
+        for one, frequency in zip(recordings, frequencies, strict=True)
+    ]
     fitted, left_out, unknown = list[Part](), dict[str, str](), dict[str, str]()
     if "torque" not in kinds and all(is_modal(plant, name) for name in names):
-        for one, frequency in each:
-            found, why = PartFitter(plant, names, one, frequency).ring_downs(parts)
+        for one in each:
+            found, why = one.ring_downs(parts)
             fitted += found
             if why:
-                left_out[one.name] = why
+                left_out[one.recording.name] = why
         if not fitted and not any(moves(one) for one in recordings):
             raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
     if not fitted:
-        left_out = {one.name: SILENT for one, frequency in each if not frequency}
-        each = [(one, frequency) for one, frequency in each if frequency]
-        unknown = _not_identifiable(each, plant, names)
-        fitted = _wholes(each, plant, [name for name in names if name not in unknown])
+        silent = [one.recording.name for one in each if not one.frequency]
+        left_out = dict.fromkeys(silent, say("recording.silent"))
+        each = [one for one in each if one.frequency]
+        unknown = _not_identifiable(each)
+        fitted = _wholes(each, [name for name in names if name not in unknown])
     estimates, wide = combine([name for name in names if name not in unknown], fitted)
     unknown |= wide
     return Identified(
@@ -102,76 +107,63 @@ def curve_of(found: Identified, part: Part, recordings: Sequence[Recording]) -> 
 def _check(recordings: Sequence[Recording], plant: Plant) -> list[str]:
     """The kinds of the recordings' signals, that are the same in all of them."""
     if not recordings:
-        raise ValueError("no recording is given; give one")
-    first = recordings[0]
+        raise ValueError(say("refused.none"))
+    first, tips = recordings[0], {"plant": plant.name, "tips": plant.tips}
+    kinds = [*first.signals]
     for one in recordings:
-        if list(one.signals) != list(first.signals):
+        if [*one.signals] != kinds:
+            own, others = " and ".join(one.signals), " and ".join(kinds)
             raise ValueError(
-                f"{one.name} has {' and '.join(one.signals)}, {first.name} "
-                f"{' and '.join(first.signals)}; give recordings of the same signals"
+                say("refused.kinds", name=one.name, own=own, first=first.name, others=others)
             )
         for kind, values in one.signals.items():
-            if kind != "torque" and values.shape[1] != plant.tips:
-                raise ValueError(
-                    f"{one.name} has {values.shape[1]} of {kind}; {plant.name} has {plant.tips} "
-                    "tips, give one of each"
-                )
-    return list(first.signals)
+            count = values.shape[1]
+            if kind != "torque" and count != plant.tips:
+                raise ValueError(say("refused.tips", name=one.name, count=count, kind=kind, **tips))
+    return kinds
 
 
 def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> list[str]:
-    known = plant.measured
     if free is not None:
         refuse_unknown(plant, free, also=())
-        return list(dict.fromkeys(free))
-    names = [name for name in known if is_modal(plant, name)]
+        return [*dict.fromkeys(free)]
+    names = [name for name in plant.measured if is_modal(plant, name)]
     if "torque" in kinds:
-        names += [name for name in known if name not in names and in_torque_alone(plant, name)]
+        others = [name for name in plant.measured if name not in names]
+        names += [name for name in others if in_torque_alone(plant, name)]
     if not names:
-        raise ValueError(
-            f"{plant.name} has no parameter in rad/s and none that begins with zeta; name what is "
-            "sought by free"
-        )
+        raise ValueError(say("refused.sought", plant=plant.name))
     return names
 
 
-def _wholes(
-    each: Sequence[tuple[Recording, float]], plant: Plant, names: Sequence[str]
-) -> list[Part]:
+def _wholes(each: Sequence[PartFitter], names: Sequence[str]) -> list[Part]:
     """Every recording by all of its joint's motion."""
-    found = [PartFitter(plant, names, one, frequency).whole() for one, frequency in each]
+    plant = each[0].plant
+    found = [PartFitter(plant, names, one.recording, one.frequency).whole() for one in each]
     least = min(part.misfit for part in found)
     if least > _BAD:
-        raise ValueError(
-            f"{plant.name} does not move as recorded with any {' and '.join(names)}: the best "
-            f"misfit is {least:.0%} of the swing; check columns and units"
-        )
+        every = " and ".join(names)
+        raise ValueError(say("refused.misfit", plant=plant.name, names=every, least=least))
     return found
 
 
-def _not_identifiable(
-    each: Sequence[tuple[Recording, float]], plant: Plant, names: Sequence[str]
-) -> dict[str, str]:
+def _not_identifiable(each: Sequence[PartFitter]) -> dict[str, str]:
     """The parameters that recordings of moving joints do not identify, and why."""
-    for one, _ in each:
-        if not moves(one):
-            raise ValueError(
-                f"{one.name}: the joint does not move, and these parameters only matter while it "
-                "does; record its angle during a move"
-            )
-    J = np.concatenate([PartFitter(plant, names, *one).sensitivities() for one in each])
-    largest = np.linalg.norm(J, axis=0).max()
-    kept: list[int] = []
-    cannot: dict[str, str] = {}
+    for one in each:
+        if not moves(one.recording):
+            raise ValueError(say("refused.rests", name=one.recording.name))
+    J, names = np.concatenate([one.sensitivities() for one in each]), each[0].names
+    sizes = np.linalg.norm(J, axis=0)
+    kept, cannot = list[int](), dict[str, str]()
     for k, name in enumerate(names):
-        size = np.linalg.norm(J[:, k])
         share, *_ = np.linalg.lstsq(J[:, kept], J[:, k], rcond=None)
-        if size <= 1e-9 * largest:
-            cannot[name] = "nothing that was recorded depends on it"
-        elif kept and np.linalg.norm(J[:, k] - J[:, kept] @ share) < _DEPENDENT * size:
-            cannot[name] = f"it does what {names[kept[int(np.abs(share).argmax())]]} does"
+        if sizes[k] <= 1e-9 * sizes.max():
+            cannot[name] = say("parameter.idle")
+        elif kept and np.linalg.norm(J[:, k] - J[:, kept] @ share) < _DEPENDENT * sizes[k]:
+            other = names[kept[int(np.abs(share).argmax())]]
+            cannot[name] = say("parameter.same", other=other)
         else:
             kept.append(k)
     if not kept:
-        raise ValueError(f"the recordings tell nothing of {', '.join(cannot)}; name others by free")
+        raise ValueError(say("refused.nothing", names=", ".join(cannot)))
     return cannot

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.saved import Saved
 from quietarm.ocp.uncertainty import with_values
+from quietarm.studies.identify.words import say
 
 _LEAST_ERROR = 1e-6
 """Of a parameter known without error, as of a simulation: a range of none is no range."""
@@ -153,24 +154,17 @@ class Identified(Saved):
             When a parameter is not identifiable, the plant does not move as what was recorded, or
             one part alone does not tell how much the machine varies.
         """
-        doubtful = [part for part in self.parts if part.warning]
-        own = "state errors of your own, as --error frequency=5%"
+        own, doubtful = say("errors.own"), [part for part in self.parts if part.warning]
         if 2 * len(doubtful) >= len(self.parts):
             raise ValueError(f"{doubtful[0].recording}: {doubtful[0].warning}; or {own}")
         if self.not_identifiable:
             name, why = next(iter(self.not_identifiable.items()))
             known = " and ".join(one.parameter for one in self.estimates) or "omega"
-            raise ValueError(
-                f"{name} is not identifiable by the recordings ({why}); {own}, or identify again "
-                f"with {known} alone, by --free"
-            )
+            raise ValueError(say("errors.unknown", parameter=name, why=why, known=known, own=own))
         moving = [one for one in self.estimates if not in_torque_alone(self.plant, one.parameter)]
         if len(self.parts) == 1:
-            least = max((one.error for one in moving), default=0.0)
-            raise ValueError(
-                "one ring-down does not tell how much the machine varies, beyond "
-                f"{100 * least:.2g} % by its fit; record several, or {own}"
-            )
+            percent = 100 * max((one.error for one in moving), default=0.0)
+            raise ValueError(say("errors.one", percent=percent, own=own))
         return {one.parameter: max(one.error, _LEAST_ERROR) for one in moving}
 
     def check_unchanged(self, names: Iterable[str]) -> None:
@@ -189,10 +183,7 @@ class Identified(Saved):
         for name in names:
             if name in self.plant.measured and not in_torque_alone(self.plant, name):
                 value = getattr(self.plant, name)
-                raise ValueError(
-                    f"the measured intervals are of the machine with {name} {value:.6g}; identify "
-                    f"it with the other {name}, or state errors of your own, as frequency=5%"
-                )
+                raise ValueError(say("errors.changed", parameter=name, value=value))
 
 
 def in_torque_alone(plant: Plant, name: str) -> bool:

@@ -18,6 +18,7 @@ from quietarm.studies.identify.parameters import bounds_of, is_frequency, is_mod
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
 from quietarm.studies.identify.response import Driven, FreeDecay, Response, smooth
 from quietarm.studies.identify.ring_downs import LEAST_PERIODS, find_ring_downs, moves
+from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _PER_PERIOD = 64
@@ -44,8 +45,6 @@ _MUCH_DAMPING = 0.12
 _DAMPINGS = (0.002, 0.01, 0.03, 0.08, 0.2, 0.4)
 _STARTS = 2
 """Of whole recordings."""
-SILENT = "no swing stands out of the noise"
-"""Why a recording is left out."""
 
 
 class PartFitter:
@@ -99,7 +98,7 @@ class PartFitter:
         """The ring-downs of the recording, or why there are none."""
         recording, frequency = self.recording, self.frequency
         if not frequency:
-            return [], SILENT
+            return [], say("recording.silent")
         found = [recording.rows(*ends) for ends in by_hand]
         found = [rows for rows in found if rows.stop - rows.start >= LEAST_ROWS]
         parts, end, why = list[Part](), 0, _no_ring_down(recording, frequency)
@@ -109,7 +108,8 @@ class PartFitter:
             if part.misfit < 1 or by_hand:
                 parts.append(part)
             else:
-                why = f"{part.begin:.3g} to {part.end:.3g} s is no free decay of {frequency:.3g} Hz"
+                ends = {"begin": part.begin, "end": part.end}
+                why = say("recording.free", **ends, frequency=frequency)
         if moves(recording) and not by_hand:
             parts = self._with_hub(parts, slice(None))
         elif moves(recording):
@@ -219,7 +219,7 @@ class PartFitter:
             shifted = fails or abs(self.frequency_of(part.vector) / held - 1) > _HUB
             return shifted and not (part.warning or part.hub)
 
-        return [replace(part, **doubt("hub", "swings")) if doubted(part) else part
+        return [replace(part, **doubt("hub.swings")) if doubted(part) else part
                 for part in parts]  # fmt: skip
 
     def _hub_swings(self, part: Part) -> bool:
@@ -260,17 +260,17 @@ class PartFitter:
             return doubt("delay", misfit=best.misfit, delay=abs(best.delay) * 1e3, side=side)
         unsure = (best.inflation > _INFLATED) & (best.deviations > _UNSURE * np.abs(best.p))
         if unsure[self._rates].any():
-            return doubt("hub", "hides")
+            return doubt("hub.hides")
         found = doubt_of(time, best.residual, best.swinging, self.frequency, noise)
         damping = float(best.p[self._dampings].max(initial=0.0))
         if not found and self.plant.joint == ROTARY and damping > _MUCH_DAMPING:
             remedy = "" if self.recording.angle is not None else ", or name its angle by --angle"
-            return doubt("hub", "damps", damping=damping, remedy=remedy)
+            return doubt("hub.damps", damping=damping, remedy=remedy)
         return found
 
 
 def _no_ring_down(recording: Recording, frequency: float) -> str:
     lasts = float(np.ptp(recording.time)) * frequency
     few = f": it lasts {lasts:.2g} periods of {frequency:.3g} Hz" if lasts < LEAST_PERIODS else ""
-    held = "" if recording.angle is not None else ", or the joint's angle, too"
-    return f"no ring-down of two periods{few}; record longer after a push{held}"
+    angle = "" if recording.angle is not None else ", or the joint's angle, too"
+    return say("recording.short", few=few, angle=angle)

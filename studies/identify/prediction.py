@@ -14,6 +14,7 @@ from quietarm.studies.identify.machine import Part
 from quietarm.studies.identify.parameters import is_modal, values_of
 from quietarm.studies.identify.parts import PartFitter
 from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 PERIODS = 5.0
@@ -59,34 +60,30 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
         When there is no ring-down of three periods.
     """
     names = [name for name in plant.measured if is_modal(plant, name)]
-    p = values_of(plant, names)
-    found: list[Prediction] = []
+    p, found = values_of(plant, names), list[Prediction]()
     for one, frequency in zip(recordings, find_frequencies(recordings), strict=True):
         fitter = PartFitter(plant, names, one, frequency)
         parts, why = fitter.ring_downs()
         if not parts:
             raise ValueError(f"{one.name}: {why}")
         for part in parts:
-            hub = part.hub if part.hub == "moves" else ""
-            model = fitter.model(Part(one.name, part.begin, part.end, hub=hub))
+            ends, hub = (part.begin, part.end), part.hub if part.hub == "moves" else ""
+            model = fitter.model(Part(one.name, *ends, hub=hub))
             model.trend = model.trend[:, :1]  # a slope of two periods leads astray
-            shares = _shares(model, p, 1 / fitter.frequency_of(p))
-            if shares:
-                worst, worst_at = min(shares)
-                share = float(np.median([share for share, _ in shares]))
-                ends = part.begin, part.end
-                own = fitter.frequency_of(part.vector)
-                found.append(Prediction(one.name, *ends, share, worst, worst_at, own))
+            if shares := _shares(model, p, 1 / fitter.frequency_of(p)):
+                share, own = np.median([share for share, _ in shares]), part.vector
+                found.append(Prediction(
+                    one.name, *ends, float(share), *min(shares), fitter.frequency_of(own)
+                ))  # fmt: skip
     if not found:
-        raise ValueError(f"{recordings[0].name}: no ring-down of three periods; record longer")
+        raise ValueError(say("refused.predicted", name=recordings[0].name))
     return found
 
 
 def _shares(model: Model, p: Array, period: float) -> list[tuple[float, float]]:
     """How much of the swing is predicted, and where the predicted periods begin."""
-    time, y = model.time, model.values
+    time, y, found = model.time, model.values, list[tuple[float, float]]()
     last = max(float(np.ptp(time)) - (_KNOWN + 1) * period, 0.0)
-    found: list[tuple[float, float]] = []
     for start in time[0] + np.arange(0, last + 1e-9, period):
         begin = start + _KNOWN * period
         known = (time >= start) & (time < begin)
@@ -94,6 +91,5 @@ def _shares(model: Model, p: Array, period: float) -> list[tuple[float, float]]:
         if np.count_nonzero(ahead) >= 4 and np.count_nonzero(known) >= 8:
             left = y[ahead] - model.fitted(p, known)[ahead]
             swing = y[ahead] - y[ahead].mean(axis=0)
-            share = 1 - float(np.linalg.norm(left) / np.linalg.norm(swing))
-            found.append((share, float(begin)))
+            found.append((1 - float(np.linalg.norm(left) / np.linalg.norm(swing)), float(begin)))
     return found

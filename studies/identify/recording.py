@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 
@@ -55,29 +57,25 @@ class Recording:
     def __post_init__(self) -> None:
         given = {name: np.asarray(values, float) for name, values in self._arrays.items()}
         if not given.keys() - {"time", "angle"}:
-            raise ValueError(f"{self.name} has no tip, acceleration or torque; give one")
-        rows = len(given["time"])
+            self._refuse("signals")
+        rows, whole = len(given["time"]), True
         for name, values in given.items():
             if len(values) != rows:
-                raise ValueError(f"{self.name} has {rows} times and {len(values)} of {name}")
-        finite = [np.isfinite(values.reshape(rows, -1)).all(axis=1) for values in given.values()]
-        whole = np.all(finite, axis=0)
+                self._refuse("lengths", rows=rows, others=len(values), what=name)
+            whole = whole & np.isfinite(values.reshape(rows, -1)).all(axis=1)
         kept = np.count_nonzero(whole)
         if not LEAST_ROWS <= kept <= _MOST_ROWS:
-            raise ValueError(f"{self.name} has {kept} rows; give {LEAST_ROWS} to {_MOST_ROWS}")
+            self._refuse("rows", rows=kept, least=LEAST_ROWS, most=_MOST_ROWS)
         for name, values in given.items():
             object.__setattr__(self, name, values[whole])
         late = int(np.argmin(np.diff(self.time)))
         if self.time[late + 1] <= self.time[late]:
-            raise ValueError(
-                f"{self.name}: the time does not increase from row {late + 1} to the next; sort "
-                "the rows, or mend it"
-            )
-        if self.angle is not None and np.abs(self.angle).max() > MOST_ANGLE:
-            raise ValueError(
-                f"{self.name}: an angle of {np.abs(self.angle).max():g} rad; is it in degrees? say "
-                "so by its unit"
-            )
+            self._refuse("time", row=late + 1)
+        if self.angle is not None and (largest := np.abs(self.angle).max()) > MOST_ANGLE:
+            self._refuse("angle", angle=largest)
+
+    def _refuse(self, why: str, **facts: object) -> NoReturn:
+        raise ValueError(say(f"recording.{why}", name=self.name, **facts))
 
     @property
     def _arrays(self) -> dict[str, Array]:
