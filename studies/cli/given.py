@@ -24,13 +24,9 @@ from quietarm.studies.cli.quantities import parse_of_joint
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
 
-FASTEST = "fastest"
-"""In the place of a duration: the shortest within the limits."""
-_BEGIN = 1.0
-"""Duration [s] from which the shortest one is looked for."""
-OF_JOINT = ("start", "target", *(quantity.limit for quantity in QUANTITIES.values()))
+_OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()))
 """Options that are read once the plant is known: in radians, or in metres of a linear axis."""
-_OTHERS = ("duration", "residual_window", "initial", "final", "energy", "torque_speed")
+_OTHERS = ("residual_window", "initial", "final", "energy", "torque_speed")
 _NEEDED = {"target": "30deg", "duration": "0.8"}
 
 
@@ -97,15 +93,14 @@ class Given:
         parameters = read_parameters(kind, self.parameters)
         plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
         uncertainty = build_uncertainty(kind, self.errors, parameters)
-        given = {name: self.read_of_joint(name, plant.joint) for name in OF_JOINT}
-        given |= self.pick(*_OTHERS) | {name: (value,) for name, value in known.items()}
+        given = self.pick(*_OTHERS) | {name: (value,) for name, value in known.items()}
+        typed = [name for name in _OF_JOINT if name not in known]
+        given |= {name: self.read_of_joint(name, plant.joint) for name in typed}
         if plant.joint != ROTARY and given["torque_speed"] is not None:
             raise ValueError("--torque-speed is for a joint that turns; give --torque-limit in N")
         for name, example in _NEEDED.items():
             if given[name] is None:
                 raise click.UsageError(f"Missing option '--{name}'. Give it as --{name} {example}")
-        if given["duration"] == FASTEST:
-            given["duration"] = (_BEGIN,)
         moves = {name: given.pop(name) for name in OF_MOVES}
         units = {name: joint_unit(unit, plant.joint) for name, unit in OF_MOVES.items()}
         axes = [

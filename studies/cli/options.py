@@ -13,7 +13,7 @@ from quietarm.models import load_plant_file
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
-from quietarm.studies.cli.given import FASTEST, Given
+from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.quantities import (
     parse_energy,
@@ -26,7 +26,6 @@ from quietarm.studies.cli.types import LENGTH, SETTING, TIME, Named, Parsed
 from quietarm.studies.reading.profiles import FAMILIES, POLYNOMIAL
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
-from quietarm.studies.sweep.grid import axis_values
 from rich.console import Console
 
 
@@ -89,10 +88,6 @@ def counting(total: int, what: str) -> AbstractContextManager[Callable[[int, int
     return count(total, what, progress_console())
 
 
-def _times(text: str) -> tuple[float, ...] | str:
-    return FASTEST if text == FASTEST else axis_values(text, TIME.parse)
-
-
 SET = option("--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
              help="Set a parameter of the plant, as omega=3.2Hz or length=600mm.")  # fmt: skip
 ERROR = option("--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
@@ -103,8 +98,8 @@ TASK = (
     SET,
     option("--start", default="0", metavar="ANGLE", help="Joint angle at the start."),
     option("--target", metavar="ANGLE", help="Joint angle at the end, or 300mm of a linear axis."),
-    option("--duration", type=Parsed("time", _times), help="Travelling time; quietarm plan also "
-           "takes `fastest`, the shortest within the limits."),
+    option("--duration", metavar="TIME", help="Travelling time; quietarm plan also takes "
+           "`fastest`, the shortest within the limits."),
     *(
         option(f"--{one.name}-limit", metavar=f"[{one.unit}]",
                help=f"Largest {one.label} during the move; by direction as LEAST:LARGEST.")

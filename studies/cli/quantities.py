@@ -118,13 +118,14 @@ def parse_parameter(text: str, unit: str, name: str) -> float:
 
 
 def parse_of_joint(name: str, text: str, joint: str) -> Any:
-    """Read an end of a move, or a limit, in the units of a kind of joint.
+    """Read an end or the duration of a move, or a limit, in the units of a kind of joint.
 
-    Ends have one value or several; a limit is a number, or one for each direction: ``-30:40``.
+    The former have one value or several; a limit is a number, or one for each side: ``-30:40``.
     """
     if name in OF_MOVES:
         end = ("rad", "an angle") if joint == ROTARY else ("m", "a position")
-        return axis_values(text, partial(parse_usual, *end))
+        kind = ("s", "a time") if name == "duration" else end
+        return axis_values(text, partial(parse_usual, *kind))
     limited, sides = quantities_of(joint)[name.removesuffix("_limit")], text.split(":")
     what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
     values = [parse_usual(limited.unit, what, side) for side in sides]

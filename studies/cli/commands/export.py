@@ -61,9 +61,10 @@ def export(given: Given) -> None:
     """  # noqa: D301  # \b is click's: do not rewrap
     plans, output, name = given.plans, given.output, format_of(given.output)
     known = FORMATS[name]
-    for setting in {one for form in FORMATS.values() for one in form.takes} - {*known.takes}:
-        takers = ", ".join(one for one, form in FORMATS.items() if setting in form.takes)
-        given.refuse([setting], f"is for {takers}, not for {name}")
+    for setting in dict.fromkeys(one for form in FORMATS.values() for one in form.takes):
+        takers = [one for one, form in FORMATS.items() if setting in form.takes]
+        if name not in takers:
+            given.refuse([setting], f"is for {', '.join(takers)}, not for {name}")
     settings = {one: value for one, value in given.pick(*known.takes).items() if value is not None}
     if not known.is_film and len(plans) > 1:
         raise ValueError(f"{name} is of one plan, and {len(plans)} are given; give one")

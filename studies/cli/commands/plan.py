@@ -9,7 +9,7 @@ from quietarm.ocp import Plan, SolverFailedError, energy_floor, fastest_move, pl
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
 from quietarm.studies.cli.files import PICTURE, answer_files, ending_of, finish, output_option
-from quietarm.studies.cli.given import FASTEST, Given, single_values
+from quietarm.studies.cli.given import Given, single_values
 from quietarm.studies.cli.options import (
     BOUND,
     RESIDUAL_LIMIT,
@@ -31,6 +31,8 @@ from quietarm.studies.sweep.grid import OF_MOVES
 
 FREE = {"free": False, "free-smooth": True}
 """Profiles without a parametrisation, and whether the acceleration is continuous."""
+_FASTEST, _BEGIN = "fastest", 1.0
+"""In the place of a duration; and the one [s] from which the shortest is looked for."""
 _OF_COEFFICIENTS = ("terms", "bound", "residual_limit", "solver", "sensitivities")
 _OF_SOLVERS = ("starts", "seed")
 
@@ -66,7 +68,7 @@ def plan(given: Given) -> None:
     """  # noqa: D301  # \b is click's: do not rewrap
     if given.dataset is not None:
         return _look_up(given)
-    fastest = given.duration == FASTEST
+    fastest = given.duration == _FASTEST
     if given.profile not in FAMILIES:
         free = given.profile in FREE
         why = f"is not for {given.profile}, only for profiles with coefficients"
@@ -75,7 +77,7 @@ def plan(given: Given) -> None:
             raise ValueError(f"--duration fastest {why}; give a time")
         if free:
             return _plan_freely(given)
-    task, notes = given.read_task(), list[str]()
+    task, notes = given.read_task(**{"duration": _BEGIN} if fastest else {}), list[str]()
     motions = None if chooses_terms(given.profile, given.terms) else given.read_profile(task)
     asked = given.pick("bound", "residual_limit", "seed", "solver")
     if fastest:
@@ -121,9 +123,8 @@ def _look_up(given: Given) -> None:
     given.refuse_others({*taken, "dataset", "output"}, "is not for --from")
     with busy("interpolating between the cells"):
         plant = Store(given.dataset).definition.grid.task.plant
-        moves = {name: given.read_of_joint(name, plant.joint) for name in ("start", "target")}
-        moves["duration"] = given.duration
-        at = read_parameters(plant, given.parameters)
-        at |= {name: moves[name] for name in OF_MOVES if given.typed(name)}
+        typed = [name for name in OF_MOVES if given.typed(name)]
+        at = {name: given.read_of_joint(name, plant.joint) for name in typed}
+        at |= read_parameters(plant, given.parameters)
         found, between, trouble = plan_from(given.dataset, **single_values(at))
     finish_plan(given, found, between.words, trouble=trouble)

@@ -36,14 +36,13 @@ if TYPE_CHECKING:
 
 _MANY = 1_000_000
 _HOURS_OF_MANY = 1.4
-_MOST_POINTS = 1000
 
 
 @command(
     *TASK, *profile_options(), BOUND, RESIDUAL_LIMIT,
     option("--limit-margin", "margin", type=SHARE, default="0%", help="Share of each limit that "
            "plans leave unused, so that moves between the cells keep it."),
-    option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
+    option("--front", type=click.IntRange(2, 1000), metavar="POINTS",
            help="Find a front of so many points for every move as well."),
     PART,
     option("--yes", is_flag=True, help="Do more than a million cells."),
