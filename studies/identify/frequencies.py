@@ -7,6 +7,7 @@ from math import tau
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.models.joint_motion import ROTARY
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording
 from quietarm.studies.identify.ring_downs import envelope, evenly, runs_of, standing
 from quietarm.studies.identify.words import say
@@ -56,15 +57,17 @@ def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
     return found
 
 
-def doubt_units(recordings: Sequence[Recording], frequencies: Sequence[float]) -> list[str]:
-    """What units may be wrong."""
+def doubt_units(
+    recordings: Sequence[Recording], frequencies: Sequence[float], joint: str
+) -> list[str]:
+    """What units may be wrong, of a kind of joint."""
     found = list[str]()
     for one, frequency in zip(recordings, frequencies, strict=True):
         turns = 0.0 if one.angle is None else float(np.ptp(one.angle))
         doubts = {
             "slow": one.step >= _COARSE or 0 < frequency < _DOUBTFUL,
             "fast": frequency > _FASTEST / 2,
-            "turned": turns > _TURNS,
+            "turned": joint == ROTARY and turns > _TURNS,
         }
         facts = {"name": one.name, "frequency": frequency, "step": one.step, "turns": turns}
         found += [say(f"units.{unit}", **facts) for unit, is_so in doubts.items() if is_so]

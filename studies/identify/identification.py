@@ -86,12 +86,13 @@ def identify(
         each = [one for one in each if one.frequency]
         unknown = _not_identifiable(each)
         fitted = _wholes(each, [name for name in names if name not in unknown])
+    doubts = doubt_units(recordings, frequencies, plant.joint)
     estimates, wide = combine([name for name in names if name not in unknown], fitted)
     unknown |= wide
     return Identified(
         replace(plant, **{one.parameter: one.value for one in estimates}),
         tuple(estimates), {name: unknown[name] for name in names if name in unknown},
-        tuple(fitted), left_out, tuple(doubt_units(recordings, frequencies)), versions(),
+        tuple(fitted), left_out, tuple(doubts), versions(),
     )  # fmt: skip
 
 

@@ -26,6 +26,12 @@ def read_recording(
     table = read_table(path)
     time = columns.get("time") or [table.first("time", "name it by --time")]
     named, of_scale = {**columns, "time": time}, scales or {}
+    used = [table.find(one).name for names in named.values() for one in names]
+    for one in used:
+        if used.count(one) > 1:
+            raise FileFormatError(
+                f"{path}: column {one} is given for two signals; give each a column of its own"
+            )
     signals = {
         quantity: np.column_stack([
             table.in_si(

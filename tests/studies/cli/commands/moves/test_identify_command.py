@@ -123,3 +123,17 @@ def test_arrays_and_german_texts_tell_the_same(push, done):
 def test_a_swing_that_no_arm_has_is_asked_about(push, refused):
     (push / "slow.csv").write_text("time,tip_mm\n" + rows("%.0f,%.2f\n", 1e3 * TIME, TIP))
     assert "Hz, as no arm does" in refused("identify slow.csv flexible-beam --tip tip_mm")
+
+
+def test_one_column_for_two_signals_and_degrees_called_radians_are_told(push, call, refused):
+    said = refused("identify push.csv flexible-beam --tip tip_mm --angle 1")
+    assert "column tip_mm is given for two signals; give each a column of its own" in said
+    angle = 60 * np.clip(TIME - 1, 0, 1)
+    columns = rows("%.4g,%.4g,%.2f\n", TIME, angle, TIP)
+    (push / "turned.csv").write_text(f"time_s,theta_rad,tip_mm\n{columns}")
+    line = "identify turned.csv flexible-beam --tip tip_mm --angle theta_rad --quiet"
+    _, said, _ = call(line)
+    assert "turns by 60 rad, more than two turns; is it in degrees?" in said
+    assert "rename the column" in refused(f"{line} --units angle:deg")
+    (push / "turned.csv").write_text(f"time_s,theta_deg,tip_mm\n{columns}")
+    assert "is it in degrees?" not in call(line.replace("theta_rad", "theta_deg"))[1]
