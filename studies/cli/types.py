@@ -20,8 +20,6 @@ class Parsed(click.ParamType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Read the text; a click error names the option."""
-        if not isinstance(value, str):
-            return value
         try:
             return self.parse(value)
         except ValueError as error:
@@ -55,4 +53,5 @@ LENGTH, TIME, SHARE = (
 SETTING = Parsed(
     "name=value", partial(parse_pair, what="a parameter or setting", example="omega=9")
 )
+NAMES = Parsed("names", lambda text: tuple(one.strip() for one in text.split(",")))
 INPUT = click.Path(path_type=Path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -14,16 +15,24 @@ from quietarm.ocp.simulation.free_vibration import FreeVibration
 CYCLOID, RUCKIG = "cycloid", "ruckig"
 BASELINES = (CYCLOID, *SHAPERS, RUCKIG, *(f"{name}-{RUCKIG}" for name in SHAPERS))
 """Their names; a shaper alone shapes the cycloid."""
+ALL = "all"
 _SHORTEST = 1e-9
 """Pieces of a motion that are shorter [s] are none."""
 _LEAST_SHARE = 0.02
 """Share of the duration that a shaper has to leave for the motion that it shapes."""
 
 
+def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
+    """Baselines of these names, of "all" every one, each once; ValueError where one is unknown."""
+    chosen = dict.fromkeys(one for name in names for one in (BASELINES if name == ALL else [name]))
+    for name in chosen:
+        if name not in BASELINES:
+            raise ValueError(unknown("baseline", name, (ALL, *BASELINES)))
+    return tuple(chosen)
+
+
 def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
     """A baseline's motion of a task; ValueError where there is none."""
-    if name not in BASELINES:
-        raise ValueError(unknown("baseline", name, BASELINES))
     task = task.certain
     if name == CYCLOID:
         return evaluate_coefficients(task, [])

@@ -10,7 +10,7 @@ from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import Plan, PointToPoint, QuietarmError
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies import figures
-from quietarm.studies.compare.baselines import baseline
+from quietarm.studies.compare.baselines import baseline, choose_baselines
 from quietarm.studies.compare.judged import (
     SAMPLES,
     Judged,
@@ -41,7 +41,7 @@ def compare_plans(
         Plans by their names in tables. Baselines have the move and limits of the first plan, and
         all are checked against its limits.
     baselines : sequence of str
-        Names of `BASELINES`.
+        Names of `BASELINES`, or "all".
     ranges : mapping of str to float, optional
         Largest relative parameter errors by name; by default those that the plans are made for.
     samples : int
@@ -59,12 +59,12 @@ def compare_plans(
     ValueError
         When the plans are of several moves, a name is not known or a number is out of range.
     """
-    tasks = {"the move": task} if task else {}
+    names, tasks = choose_baselines(baselines), {"the move": task} if task else {}
     tasks |= {name: plan.task for name, plan in plans.items()}
     refuse_other_moves(tasks)
     task, ranges = next(iter(tasks.values())), ranges or merged_ranges(tasks.values())
     judged = [judge(name, plan, ranges, task, samples) for name, plan in plans.items()]
-    for name in baselines:
+    for name in names:
         try:
             judged.append(judge(name, baseline(name, task), ranges, task, samples))
         except (QuietarmError, ValueError) as error:

@@ -17,13 +17,13 @@ from quietarm.studies.cli.options import (
     progress_console,
 )
 from quietarm.studies.cli.quantities import read_settings
-from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from rich.console import Console
 
 
 @command(
     click.Argument(["problems"], nargs=-1, required=True, metavar="PROBLEM..."),
-    option("--methods", default="nsga2,vepso,epsilon", metavar="NAME,NAME,...",
+    option("--methods", default="nsga2,vepso,epsilon", type=NAMES, metavar="NAME,NAME,...",
            help="Searches, polished by the gradient as nsga2+polish; epsilon, weighted and "
            "multistart are the gradient alone, by SQP or by IPOPT (epsilon:ipopt)."),
     option("--runs", default=15, help="Seeds of each method."),
@@ -58,7 +58,7 @@ def bench(given: Given) -> None:
     from quietarm.studies.report import show
     from quietarm.studies.report.words import print_lines
 
-    methods = list(map(spell_method, given.methods.split(",")))
+    methods = list(map(spell_method, given.methods))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
     asked = methods, given.runs, given.evaluations, given.seed, settings
     problems = problems_of(given.problems)

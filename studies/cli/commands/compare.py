@@ -7,13 +7,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
-from quietarm.ocp.checks import unknown
 from quietarm.studies.cli.files import REPORT_OPTION, finish
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import ERROR, busy, command, option
 from quietarm.studies.cli.quantities import MEASURED, once
-from quietarm.studies.cli.types import INPUT, Parsed
-from quietarm.studies.compare.baselines import BASELINES
+from quietarm.studies.cli.types import INPUT, NAMES
 from quietarm.studies.compare.judged import SAMPLES
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import print_lines
@@ -24,18 +22,9 @@ if TYPE_CHECKING:
     from quietarm.studies.compare.fronts import Comparison
 
 
-def _names(text: str) -> tuple[str, ...]:
-    names = BASELINES if text == "all" else tuple(dict.fromkeys(text.split(",")))
-    for name in names:
-        if name not in BASELINES:
-            raise ValueError(unknown("baseline", name, ("all", *BASELINES)))
-    return names
-
-
 @command(
     click.Argument(["files"], nargs=-1, type=INPUT, metavar="FILE..."),
-    option("--baselines", type=Parsed("names", _names),
-           help="Plans: add these for the same move, as zvd,ruckig; or all."),
+    option("--baselines", type=NAMES, help="Plans: add for the same move, as zvd,ruckig; or all."),
     ERROR,
     option("--samples", default=SAMPLES, help="Plans: random plants for the percentiles."),
     option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one."),

@@ -12,7 +12,7 @@ from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, busy, command, option
 from quietarm.studies.cli.plants import Kind, parse_plant
 from quietarm.studies.cli.quantities import once, parse_interval, parse_scale, parse_units
-from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from quietarm.studies.reading.recording import read_recording
 from quietarm.studies.report.machines import machine_notes, machine_rows, prediction_rows
 
@@ -34,9 +34,8 @@ _RINGS = ("tip", "acceleration", "torque")
            help="What a count is in SI units, as angle=2pi/4096."),
     option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
            help="Begin and end of a ring-down [s], as 3.2:7.3. [default: they are found]"),
-    option("--free", type=Parsed("names", lambda text: [one.strip() for one in text.split(",")]),
-           help="The parameters that are sought, as omega,zeta. [default: frequencies and "
-           "dampings, and with a torque what shows in it alone]"),
+    option("--free", type=NAMES, help="The parameters that are sought, as omega,zeta. [default: "
+           "frequencies and dampings, and with a torque what shows in it alone]"),
     option("--check", type=Parsed("machine", parse_plant), help="An identified machine: how much "
            "of the recordings it predicts. PLANT is left out."),
     output_option({".json": "the machine, which serves as a PLANT",
@@ -55,10 +54,9 @@ def identify(given: Given) -> None:
       quietarm identify --check arm.json new.csv --tip tip_mm
       quietarm plan arm.json --error measured --target 60deg --duration 0.9
     """  # noqa: D301  # \b is click's: do not rewrap
-    named = given.pick("time", "angle", *_RINGS)
     columns = {
         quantity: [names] if isinstance(names, str) else list(names or ())
-        for quantity, names in named.items()
+        for quantity, names in given.pick("time", "angle", *_RINGS).items()
     }
     if not any(columns[one] for one in _RINGS):
         raise click.UsageError("give the column of what rings: --tip, --acceleration or --torque")

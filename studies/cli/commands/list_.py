@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS
 from quietarm.models import known_plants
+from quietarm.ocp import Front
 from quietarm.studies.cli.files import FOLDER, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import command
@@ -42,14 +41,10 @@ def list_(given: Given) -> None:
         raise ValueError("--output is for the reference fronts of problems; name one")
     for folder in given.output:
         folder.mkdir(exist_ok=True)
-        fronts = {front for name in problems for front in _save(name, folder)}
+        fronts = dict[str, Front]()
+        for name in problems:
+            fronts |= zip(PROBLEMS[name].tasks(), PROBLEMS[name].fronts(), strict=True)
+        for name, front in fronts.items():
+            front.save(folder / f"{name}.json")
         shown.append(f"wrote {counted(len(fronts), 'front')} to {folder}")
     finish([], *shown)
-
-
-def _save(name: str, folder: Path) -> list[str]:
-    """Write the reference fronts of a problem; their names."""
-    problem = PROBLEMS[name]
-    for task, front in zip(problem.tasks(), problem.fronts(), strict=True):
-        front.save(folder / f"{task}.json")
-    return list(problem.tasks())
