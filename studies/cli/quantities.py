@@ -173,9 +173,7 @@ def _lengths(text: str) -> tuple[float, ...]:
     return tuple(parse_quantity(one, "m", "a length") for one in lengths)
 
 
-parse_weights = two(
-    ":", float, float, "pair of weights; give those of residual and energy as in 1:3"
-)
+parse_weights = two(":", float, float, "pair of weights; give those of residual and energy as 1:3")
 """Read the weights of residual and energy: ``1:3``."""
 parse_part = two(
     "/", int, int, "part; give the second of eight as 2/8", lambda number, of: 1 <= number <= of
