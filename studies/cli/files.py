@@ -113,8 +113,7 @@ def finish(
     for name in written:
         print_lines(console, f"wrote {name}")
     if came and trouble is None:
-        names = ", ".join(written)
-        trouble = QuietarmError(f"interrupted; {f'wrote {names}' if names else 'nothing written'}")
+        trouble = QuietarmError(f"interrupted; wrote {', '.join(written) or 'nothing'}")
     _raise([*([trouble] if trouble else []), *failures])
 
 

@@ -202,7 +202,9 @@ def parse_torque_speed(text: str) -> tuple[tuple[float, float], ...]:
     return tuple(map(_torque_at_speed, text.split(",")))
 
 
-def parse_pair(text: str, what: str, example: str) -> tuple[str, str]:
+def parse_pair(
+    text: str, what: str = "a parameter or setting", example: str = "omega=9"
+) -> tuple[str, str]:
     """Read a name and its value, ``omega=9``."""
     name, _, value = (part.strip() for part in text.partition("="))
     if not (name and value):

@@ -50,8 +50,6 @@ LENGTH, TIME, SHARE = (
     Parsed(name, partial(parse_usual, unit, f"a {name}"))
     for name, unit in {"length": "m", "time": "s", "share": "-"}.items()
 )
-SETTING = Parsed(
-    "name=value", partial(parse_pair, what="a parameter or setting", example="omega=9")
-)
+SETTING = Parsed("name=value", parse_pair)
 NAMES = Parsed("names", lambda text: tuple(one.strip() for one in text.split(",")))
 INPUT = click.Path(path_type=Path)

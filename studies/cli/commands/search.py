@@ -70,6 +70,7 @@ def search(given: Given) -> None:
     task = given.read_task()
     asked = given.pick("bound", "population", "generations") | {
         "profile": given.read_profile(task), "settings": read_settings(given.settings),
+        "start": None if given.start_front is None else load_front(given.start_front),
     }  # fmt: skip
     if given.bound is None and asked["profile"].default_bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
@@ -78,8 +79,6 @@ def search(given: Given) -> None:
         )
     workers, first = whole("workers", given.workers, 1), whole("seed", given.seed, 0)
     seeds = range(first, first + whole("runs", given.runs, 1, 10_000))
-    if given.start_front is not None:
-        asked["start"] = load_front(given.start_front)
     fronts, trouble = list[Front](), None
     with search_display(progress_console()) as display:
         if not several and workers == 1:
