@@ -34,7 +34,7 @@ def test_moves_at_rest_are_planned_as_alone(moves):
 
 def test_moves_with_limits_are_certified_by_cvodes(moves):
     limited = [replace(task, speed_limit=4.0) for task in moves]
-    found = qa.plan_moves(limited, residual_limit=1e-3)
+    found = qa.plan_moves(limited, qa.CycloidPolynomial(6), residual_limit=1e-3)
     assert found.by_cvodes.all()
     assert (found.residual <= 1e-3 * (1 + 1e-6)).all()
     for task, coefficients in zip(limited, found.coefficients, strict=True):
@@ -59,7 +59,7 @@ def test_a_move_that_cvodes_does_not_confirm_has_a_status_and_no_figures(moves, 
 
     limited = [replace(task, speed_limit=4.0) for task in moves[:2]]
     monkeypatch.setattr(many, "certify", refuse)
-    found = qa.plan_moves(limited)
+    found = qa.plan_moves(limited, qa.CycloidPolynomial(6))
     assert set(found.status) == {qa.SolveStatus.NOT_CERTIFIED}
     assert not any(status.solved for status in found.status)
     assert all(reason.startswith("refused at") for reason in found.reasons)

@@ -41,7 +41,7 @@ def derivatives(plant, profile, energy):
     shape, move = PROFILES[profile], (0.1, 1.0, 0.9)
     a = ca.MX.sym("a", shape.size)
     found = qa.symbolic_rollout(
-        PLANTS[plant], shape, ca.vertsplit(a), move, 30,
+        PLANTS[plant], shape, ca.vertsplit(a), move, 12,
         jerk=True, breaks=shape.breaks(move[2]), energy=ENERGIES[energy],
     )  # fmt: skip
     values = [found.energy, found.arrival.T]
