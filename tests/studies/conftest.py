@@ -87,11 +87,11 @@ def at_a_terminal():
 
 
 @pytest.fixture
-def ctrl_c():
+def stop():
     """Send Ctrl-C to a process and to those that it started; what it says until all have ended."""
 
-    def press(process):
-        os.killpg(process.pid, signal.SIGINT)
+    def press(process, number=signal.SIGINT):
+        os.killpg(process.pid, number)
         # both pipes end with the last of the processes; the limit is a guard against hanging
         return process.communicate(timeout=240)
 

@@ -90,17 +90,6 @@ def test_plans_of_different_plants_and_durations_become_a_page_and_a_gif(
     assert (folder / "move.html").read_text().count("data:image/png;base64") == 8
 
 
-def test_ctrl_c_leaves_nothing_behind(at_a_terminal, ctrl_c, folder, plan):
-    plan.save("plan.json")
-    before = set(folder.iterdir())
-    process = at_a_terminal("export plan.json --output m.gif --width 2000 --rate 50 --speed 20%")
-    assert "of 451 frames" in process.stderr.readline()
-    _, err = ctrl_c(process)
-    assert process.returncode == 1
-    assert err.endswith("quietarm: interrupted; what was written until then is kept\n")
-    assert set(folder.iterdir()) == before
-
-
 def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", "")
     with pytest.raises(ValueError, match="needs the program ffmpeg, which is not found here"):

@@ -1,15 +1,52 @@
-"""Ctrl-C in a reproduction, which keeps the fronts that it has."""
+"""Ctrl-C: what takes long ends, says so, and leaves no half of a file."""
 
+import re
+import signal
+
+import pytest
+from lines import MOVE
 from quietarm.ocp import Front
 from quietarm.studies.reproduce.paper import ARM_HALF
 
+INTERRUPTED = "quietarm: interrupted; what was written until then is kept"
+SEARCH = f"search {MOVE} --method vepso --bound 0.2 --terms 2 --population 8 --generations 100000"
+FRONT = "front arm-on-flexible-link --target 90deg --duration 0.8 --terms 3 --points 10000"
+FILM = "export plan.json --output m.gif --width 2000 --rate 50 --speed 20%"
 
-def test_ctrl_c_ends_a_reproduction_and_keeps_its_fronts(at_a_terminal, ctrl_c, folder):
-    process = at_a_terminal("reproduce --workers 1 --output results")
-    while not process.stderr.readline().startswith("[1/"):
+
+def begin(process, words):
+    """Wait until a process says on standard error that it has begun."""
+    while not re.match(words, process.stderr.readline()):
         assert process.poll() is None
-    out, err = ctrl_c(process)
+
+
+@pytest.mark.parametrize(
+    ("line", "words", "number"),
+    [
+        (f"{SEARCH} --output f.json", "generation ", signal.SIGINT),
+        (f"{SEARCH} --output f.json", "generation ", signal.SIGTERM),
+        # the ends of the front are found
+        (f"{FRONT} --output f.json --output f.png", r"([2-9]|\d\d+) of ", signal.SIGINT),
+        (FILM, r"\d+ of 451 frames", signal.SIGINT),
+    ],
+)
+def test_what_is_stopped_writes_nothing(at_a_terminal, stop, folder, plan, line, words, number):
+    if signal.getsignal(number) is signal.SIG_IGN:
+        pytest.skip("ignored where these tests run, as after nohup")
+    plan.save("plan.json")
+    process = at_a_terminal(line)
+    begin(process, words)
+    out, err = stop(process, number)
     assert (process.returncode, out) == (1, "")
-    assert err.splitlines()[-1] == "quietarm: interrupted; what was written until then is kept"
+    assert err.splitlines()[-1] == INTERRUPTED
+    assert [path.name for path in folder.iterdir()] == ["plan.json"]
+
+
+def test_a_reproduction_keeps_its_fronts(at_a_terminal, stop, folder):
+    process = at_a_terminal("reproduce --workers 1 --output results")
+    begin(process, r"\[1/")
+    out, err = stop(process)
+    assert (process.returncode, out) == (1, "")
+    assert err.splitlines()[-1] == INTERRUPTED
     first = min((folder / "results" / "fronts").iterdir(), key=lambda path: path.stat().st_mtime)
     assert Front.load(first).task == ARM_HALF.task

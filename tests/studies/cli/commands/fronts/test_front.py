@@ -59,19 +59,6 @@ def test_the_other_solver_checks_the_front(done):
     assert -1e-6 <= low <= high <= 1e-6
 
 
-def test_ctrl_c_ends_a_front_and_writes_nothing(folder, at_a_terminal, ctrl_c):
-    # far more points than are found before the signal comes
-    line = f"front {MOVE} --points 10000 --output f.json --output f.png"
-    process = at_a_terminal(line)
-    found = 0
-    while found < 2:  # the ends of the front
-        found, *_ = map(int, re.findall(r"\d+", process.stderr.readline()))
-    out, err = ctrl_c(process)
-    assert (process.returncode, out) == (1, "")
-    assert err.splitlines()[-1] == "quietarm: interrupted; what was written until then is kept"
-    assert not list(folder.glob("f.*"))
-
-
 # --polish
 
 

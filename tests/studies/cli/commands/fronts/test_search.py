@@ -1,8 +1,6 @@
 """`quietarm search`: whole runs of a small size."""
 
 import math
-import os
-import signal
 from pathlib import Path
 
 import pytest
@@ -76,16 +74,3 @@ def test_workers_share_the_runs(folder):
     ran = run(f"{SMALL} --quiet --runs 2 --workers 2 --output f.json")
     assert (ran.returncode, ran.stderr) == (0, "")
     assert all(Front.load(f"f-seed{seed}.json").points for seed in range(2))
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_search_that_is_stopped_writes_nothing(at_a_terminal, folder, number):
-    if signal.getsignal(number) is signal.SIG_IGN:
-        pytest.skip("ignored where these tests run, as after nohup")
-    process = at_a_terminal(f"{SMALL} --generations 100000 --output f.json")
-    assert "generation " in process.stderr.readline()
-    os.killpg(process.pid, number)
-    out, err = process.communicate(timeout=240)
-    assert (process.returncode, out) == (1, "")
-    assert err.splitlines()[-1] == "quietarm: interrupted; what was written until then is kept"
-    assert list(folder.iterdir()) == []
