@@ -21,7 +21,12 @@ from quietarm.studies.reproduce.paper import (
     paper_plan,
     paper_points,
 )
-from quietarm.studies.reproduce.recompute import Effort, Reproduction, recompute_paper
+from quietarm.studies.reproduce.recompute import (
+    Effort,
+    Reproduction,
+    number_of_pieces,
+    recompute_paper,
+)
 from quietarm.studies.reproduce.report import TITLES, reproduction_report
 from quietarm.studies.reproduce.searched import OLD_CONSTANTS
 
@@ -133,6 +138,12 @@ def test_after_an_interruption_the_fronts_that_are_there_are_kept(tmp_path):
     after = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
     assert len(after) == len(effort.searched)
     assert {name: after[name] for name in kept} == kept
+
+
+def test_full_effort_searches_more_from_every_seed():
+    few, full = (Effort(full=full, seeds=2) for full in (False, True))
+    assert set(few.searched) < set(full.searched)
+    assert number_of_pieces(full) > 2 * number_of_pieces(few)
 
 
 # Claims
