@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.models.joint_motion import ROTARY
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording
-from quietarm.studies.identify.ring_downs import envelope, evenly, runs_of, standing
+from quietarm.studies.identify.ring_downs import envelope, evenly, rests
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
@@ -79,10 +79,10 @@ def _candidates_of(recording: Recording) -> dict[float, float]:
 
     Where nothing swings there, those of all of it.
     """
-    at_rest = standing(recording, 10 / float(np.ptp(recording.time)))
-    first, last = max(runs_of(at_rest), key=lambda run: run[1] - run[0], default=(0, 0))
-    if last - first >= max(len(at_rest) / 5, LEAST_ROWS):
-        found = _candidates(recording.part(slice(first, last)))
+    stretches = rests(recording, 10 / float(np.ptp(recording.time)))
+    longest = max(stretches, key=lambda rows: rows.stop - rows.start, default=slice(0, 0))
+    if longest.stop - longest.start >= max(len(recording.time) / 5, LEAST_ROWS):
+        found = _candidates(recording.part(longest))
         if any(found.values()):
             return found
     return _candidates(recording)

@@ -160,22 +160,19 @@ def smooth(recording: Recording) -> Any:
     """The quintic spline of an angle whose number of knots has the least cross-validated error."""
     from scipy.interpolate import make_lsq_spline  # not at the top: it takes long to load
 
-    time, angle = recording.time, recording.angle
-    found: list[tuple[float, int, Any]] = []
+    time, angle, found = recording.time, recording.angle, list[tuple[float, int, Any]]()
+    rows = len(time)
     for count in _KNOTS:
-        if count > max(len(time) / 4, _KNOTS[0]):
+        if count > max(rows / 4, _KNOTS[0]):
             break
-        at = np.linspace(0, len(time) - 1, count)[1:-1]
-        inner = np.interp(at, np.arange(len(time)), time)
+        inner = np.interp(np.linspace(0, rows - 1, count)[1:-1], np.arange(rows), time)
         knots = np.concatenate([[time[0]] * 6, inner, [time[-1]] * 6])
         spline = make_lsq_spline(time, angle, knots, 5)
         rest = float(np.sum((spline(time) - angle) ** 2))
-        found.append((rest / (len(time) - len(inner) - 6) ** 2, count, spline))
+        found.append((rest / (rows - len(inner) - 6) ** 2, count, spline))
     return min(found)[2]
 
 
 def _parts(values: Any) -> Array:
     """Real and imaginary parts of columns, side by side."""
-    return np.stack([values.real, values.imag], axis=-1).reshape(
-        *values.shape[:-1], 2 * values.shape[-1]
-    )
+    return np.ascontiguousarray(values).view(np.float64)

@@ -72,30 +72,26 @@ def evenly(recording: Recording, frequency: float) -> tuple[Array, Array]:
 
 def find_ring_downs(recording: Recording, frequency: float) -> list[slice]:
     """The rows of every free decay of two periods or more, while the joint is at rest."""
-    found: list[tuple[float, slice]] = []
+    sizes, found = list[float](), list[slice]()
+    for rest in rests(recording, frequency, _GAP):
+        part = recording.part(rest)
+        swing = envelope(part, frequency)
+        for begin, end in [] if swing is None else _decays(swing, part, frequency):
+            rows, long = recording.rows(begin, end), 0.9 * LEAST_PERIODS / frequency
+            if swing and end - begin > long and rows.stop - rows.start >= LEAST_ROWS:
+                among = (swing.time >= begin) & (swing.time <= end)
+                sizes.append(float(swing.size[among].max(initial=0.0)))
+                found.append(rows)
+    return [rows for rows, size in zip(found, sizes, strict=True) if size >= _SMALLEST * max(sizes)]
+
+
+def rests(recording: Recording, frequency: float, gap: float = np.inf) -> list[slice]:
+    """The stretches of some rows in which the joint rests, without a gap of so many periods."""
     at_rest = standing(recording, frequency)
-    gaps = np.flatnonzero(np.diff(recording.time) * frequency > _GAP) + 1
-    for run in np.split(np.arange(len(at_rest)), gaps):
-        for first, last in runs_of(at_rest[run]):
-            if last - first < LEAST_ROWS:
-                continue
-            part = recording.part(slice(run[0] + first, run[0] + last))
-            if (swing := envelope(part, frequency)) is None:
-                continue
-            for begin, end in _decays(swing, part, frequency):
-                rows = recording.rows(begin, end)
-                long = (end - begin) * frequency > 0.9 * LEAST_PERIODS
-                if long and rows.stop - rows.start >= LEAST_ROWS:
-                    among = (swing.time >= begin) & (swing.time <= end)
-                    found.append((float(swing.size[among].max(initial=0.0)), rows))
-    largest = max((size for size, _ in found), default=0.0)
-    return [rows for size, rows in found if size >= _SMALLEST * largest]
-
-
-def runs_of(yes: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and one after the last of each run."""
-    edges = np.flatnonzero(np.diff(yes.astype(int), prepend=0, append=0))
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+    breaks = np.diff(at_rest) | (np.diff(recording.time) * frequency > gap)
+    runs = np.split(np.arange(len(at_rest)), np.flatnonzero(breaks) + 1)
+    long = [run for run in runs if at_rest[run[0]] and len(run) >= LEAST_ROWS]
+    return [slice(run[0], run[-1] + 1) for run in long]
 
 
 def _decays(swing: Envelope, part: Recording, frequency: float) -> list[tuple[float, float]]:
@@ -104,8 +100,7 @@ def _decays(swing: Envelope, part: Recording, frequency: float) -> list[tuple[fl
     half, count = _WINDOW / 2 / frequency, len(size)
     least = max(3 * noise, 1e-6 * float(size.max()))
     reach = max(1, round(half / max(float(np.ptp(time)) / max(count - 1, 1), 1e-300)))
-    found: list[tuple[float, float]] = []
-    top = 0
+    found, top = list[tuple[float, float]](), 0
     while top < count:
         if size[top] < least:
             top += 1
@@ -115,8 +110,7 @@ def _decays(swing: Envelope, part: Recording, frequency: float) -> list[tuple[fl
             top += ahead
         rest = size[top:]
         grows = rest > _GROWS * np.minimum.accumulate(rest) + 2 * noise
-        ended = np.flatnonzero((rest < least) | grows)
-        last = top + int(ended[0]) if len(ended) else count
+        last = top + int(np.argmax(np.append((rest < least) | grows, True)))
         begin = part.time[0] if top == 0 else time[top]
         end = part.time[-1] if last == count else time[last - 1]
         if last < count and size[last] >= least:  # what pushed it again is in the windows before
@@ -134,13 +128,16 @@ def standing(recording: Recording, frequency: float) -> NDArray[np.bool_]:
     angle = recording.angle
     if angle is None:
         return np.ones(len(recording.time), bool)
-    noise = _FLICKERS * float(noise_of(angle)[0])
     size = max(3, round(1 / (frequency * recording.step)))
     moved = maximum_filter1d(angle, size) - minimum_filter1d(angle, size)
-    return moved <= max(noise, _CREEPS * float(np.ptp(angle)))
+    return moved <= max(_flicker(angle), _CREEPS * float(np.ptp(angle)))
 
 
 def moves(recording: Recording) -> bool:
     """Whether the joint moves more than its encoder flickers."""
     angle = recording.angle
-    return angle is not None and float(np.ptp(angle)) > _FLICKERS * float(noise_of(angle)[0])
+    return angle is not None and float(np.ptp(angle)) > _flicker(angle)
+
+
+def _flicker(angle: Array) -> float:
+    return _FLICKERS * float(noise_of(angle)[0])

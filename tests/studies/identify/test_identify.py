@@ -226,6 +226,14 @@ def test_an_encoder_that_flickers_stands():
     assert by_angle.parts[0].hub == ""
 
 
+def test_a_joint_that_rests_for_a_moment_only_is_left_alone_there():
+    t = np.arange(0, 6, 0.005)
+    angle = np.interp(t, [0.3, 0.62, 0.96], [0.5, 0.5, 1]) * np.minimum(t / 0.3, 1)
+    found = beam(qa.Recording(t, angle, noisy(decay(t, start=0.96), 0.02)))
+    assert holds(found, 3.2)
+    assert found.parts[0].begin == pytest.approx(0.96, abs=0.2)
+
+
 def test_the_push_of_the_joint_shows_while_it_moves(moved):
     angle, tip = moved.joint[:, 0], noisy(moved.tips[:, 0], 0.01)
     assumed = qa.SingleLinkManipulator(phi=2.0)
