@@ -108,7 +108,8 @@ class Given:
             for name, values in {**parameters, **moves}.items()
             if len(values) > 1
         ]
-        first = {name: max(values, key=abs) for name, values in moves.items()}  # one that moves
+        # one that moves
+        first: dict[str, Any] = {name: max(values, key=abs) for name, values in moves.items()}
         task = PointToPoint(plant, **first, **given, uncertainty=uncertainty)
         warn_of_payload(kind, plant, parameters)
         return Grid(task, tuple(axes))

@@ -68,11 +68,12 @@ def search(given: Given) -> None:
     from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 
     task = given.read_task()
+    profile = given.read_profile(task)
     asked = given.pick("bound", "population", "generations") | {
-        "profile": given.read_profile(task), "settings": read_settings(given.settings),
+        "profile": profile, "settings": read_settings(given.settings),
         "start": None if given.start_front is None else load_front(given.start_front),
     }  # fmt: skip
-    if given.bound is None and asked["profile"].default_bound is None:
+    if given.bound is None and profile.default_bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
