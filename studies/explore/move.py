@@ -171,12 +171,12 @@ class Explored:
 
     def solve(self) -> Explored:
         """The same with the gradient's motion; it raises what `plan_move` does."""
-        asked = {"residual_limit": self.residual_limit, "bound": self.bound}
+        asked: dict[str, Any] = {"residual_limit": self.residual_limit, "bound": self.bound}
         return replace(self, plan=plan_move(self.task, self.plan.profile, **asked))
 
     def find_front(self, report: Report = no_report) -> Explored:
         """The same with the front of this move; it raises what `epsilon_front` does."""
-        asked = {"bound": self.bound, "points": FRONT_POINTS, "report": report}
+        asked: dict[str, Any] = {"bound": self.bound, "points": FRONT_POINTS, "report": report}
         return replace(self, front=epsilon_front(self.task, self.plan.profile, **asked))
 
     def pick(self, number: int) -> Explored:

@@ -100,7 +100,8 @@ class Page:
             if new == self._explored.shown[name]:
                 return  # it was set by the page
             if not self._pending:
-                self._document.add_timeout_callback(self._change, _WAIT)
+                change: Any = self._change  # what it returns is not asked for
+                self._document.add_timeout_callback(change, _WAIT)
             self._pending[name] = lambda explored: choose(explored, new)
 
         self._fields[name] = field

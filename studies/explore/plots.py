@@ -86,7 +86,7 @@ class Plots:
 
     def _tradeoff(self, pick: Callable[[int], None]) -> Any:
         """The front, and where the motion in hand lies."""
-        axes = {"x_axis_label": "residual F1 [mm]", "y_axis_label": "energy F2 [J]"}
+        axes: dict[str, Any] = {"x_axis_label": "residual F1 [mm]", "y_axis_label": "energy F2 [J]"}
         plot: Any = figure(name="front", tools="tap", **axes)
         points, here = self._sources["points"], self._sources["here"]
         points.selected.on_change("indices", lambda _, old, new: pick(new[0]) if new else None)
@@ -159,4 +159,4 @@ def _along(points: NDArray[np.float64]) -> tuple[Any, ...]:
 
 
 def _plain(values: ArrayLike) -> Any:
-    return np.round(values, _DIGITS).tolist()
+    return np.round(np.asarray(values), _DIGITS).tolist()

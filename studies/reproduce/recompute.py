@@ -44,7 +44,7 @@ BEYOND_SIX = (8, 10)
 """Numbers of terms that check the paper's 'no gain above six'."""
 TERMS = (2, 4, SIX_TERMS, *BEYOND_SIX)
 _CONSTANTS = ("inertia", "last_inertia", "constriction", "cognitive", "social")
-VEPSO_2002 = dict(zip(_CONSTANTS, astuple(INERTIA_2002), strict=True))
+VEPSO_2002: dict[str, object] = dict(zip(_CONSTANTS, astuple(INERTIA_2002), strict=True))
 """Settings with the constants of Parsopoulos and Vrahatis; the paper names none."""
 FREQUENCY_ERROR = {"frequency": 0.1}
 _SHAPERS = ("cycloid", "zv", "zvd", "ei")
@@ -239,6 +239,7 @@ def _search(piece: Piece, settings: Mapping[str, Any], folder: Path | None) -> F
     """A front of the paper's search; one that is kept already, if it is by the same versions."""
     case, which = piece.case, piece.which
     assert which is not None
+    assert piece.seed is not None
     path = folder and folder / f"{re.sub(r'[^a-z0-9.-]+', '-', piece.name.lower())}.json"
     if path is not None and path.exists():
         front = Front.load(path)

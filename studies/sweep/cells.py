@@ -72,7 +72,7 @@ def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) 
     solved = np.flatnonzero(cells["energy"].notna())
     some, coefficients = (
         [tasks[k] for k in solved],
-        np.stack(cells[COEFFICIENTS].to_numpy()[solved]),
+        np.array(cells[COEFFICIENTS].to_numpy()[solved].tolist()),
     )
     changes = sensitivities_of_moves(some, definition.profile, coefficients)
     for name, (energy, residual) in changes.items():
