@@ -93,7 +93,8 @@ class Given:
         parameters = read_parameters(kind, self.parameters)
         plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
         uncertainty = build_uncertainty(kind, self.errors, parameters)
-        given: dict[str, Any] = self.pick(*_OTHERS) | {name: (value,) for name, value in known.items()}
+        given: dict[str, Any] = self.pick(*_OTHERS)
+        given |= {name: (value,) for name, value in known.items()}
         typed = [name for name in _OF_JOINT if name not in known]
         given |= {name: self.read_of_joint(name, plant.joint) for name in typed}
         if plant.joint != ROTARY and given["torque_speed"] is not None:
