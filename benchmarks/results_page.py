@@ -2,7 +2,7 @@
 
     python benchmarks/results_page.py FOLDER [--workers N] [--page docs/results]
 
-Goes on where it stopped; some 25 minutes of one core. Seven named moves that share nothing but
+Goes on where it stopped; about an hour of one core. Seven named moves that share nothing but
 their plants, and three on which the gradient should have a hard time: Gaussians and a network as
 profiles, whose coefficients enter nonlinearly, and an energy in stages, flat in many places. Their
 reference fronts are the best of long runs of both kinds.
