@@ -1,6 +1,6 @@
 """Two problems that the gradient cannot take as they are: a black box, and an integer.
 
-    python benchmarks/black_box.py [--seeds 9]
+    python benchmarks/black_box.py [--seeds 15]
 
 - The electric energy of a motor known from a map: efficiencies of a table's cells, friction with a
   sign, braking that is fed back above a speed. A function of arrays without derivatives, and with
