@@ -1,7 +1,8 @@
 """The independent answer: a problem written down in CasADi as it stands, and solved by IPOPT.
 
-All derivatives are CasADi's own. It shares with `Sqp` the symbolic simulation and what a task says:
-weights, limits, the rows of the residual, how multipliers become shadow prices.
+All derivatives are CasADi's own, and so are scales, residual and peaks, read off the constraints.
+It shares with `Sqp` the symbolic simulation and what a task says: weights, limits, the rows of tip
+displacements after arrival, how multipliers become shadow prices.
 Unknowns are the coefficients a and, where a peak is minimised, that peak p:
 
     minimise    weight * energy(a) + weight * p
@@ -30,7 +31,6 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.simulation.objective import integrated
 from quietarm.ocp.simulation.rollout import Simulation, SymbolicRollout
-from quietarm.ocp.solvers.batch import Values
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
 from quietarm.ocp.uncertainty import Scenario
@@ -87,8 +87,8 @@ class Ipopt:
 class _Program(NamedTuple):
     """A nonlinear program: IPOPT for it; how many values each constraint has, in their order.
 
-    The figures are a function of coefficients and the row of a task: energy, state on arrival and
-    limited quantities in every scenario, as of `Values`.
+    The figures are a function of coefficients, the row of a task, the wanted states and the tip
+    rows: energy, what is missed on arrival, tip displacements and limited quantities in SI units.
     """
 
     solver: ca.Function
@@ -102,6 +102,7 @@ def compile_program(
     scenarios: tuple[Scenario, ...],
     tip_rows: tuple[int, ...],
     at_rest: bool,
+    bounds_residual: bool,
     peak: str | None,
     warm: bool,
     print_level: int,
@@ -111,26 +112,25 @@ def compile_program(
     a, p = ca.MX.sym("a", simulation.profile.size), ca.MX.sym("p", peak is not None)
     row, wanted = ca.MX.sym("row", 3 + modes), ca.MX.sym("wanted", modes, len(scenarios))
     tips = [ca.MX.sym("tips", rows, modes) for rows in tip_rows]
-    scale, scales = ca.MX.sym("scale", modes), ca.MX.sym("scales", len(quantities))
+    scale, scales = ca.MX.sym("scale", modes), ca.MX.sym("scales", 1 + len(quantities))
     sides, weights, width = ca.MX.sym("sides", 2), ca.MX.sym("weights", 2), ca.MX.sym("width")
 
     rollouts = [simulation.rollout(a, ca.vertsplit(row), errors) for errors in scenarios]
     nominal, arrival = rollouts[0], ca.horzcat(*(one.arrival.T for one in rollouts))
     missed = arrival - wanted
-    sampled = [[ca.horzcat(*one.values(quantity)) for quantity in quantities] for one in rollouts]
     energy = ca.if_else(width > 0, _round_off(simulation.energy, nominal, width), nominal.energy)
+    values = {RESIDUAL: ca.vertcat(*(rows @ missed[:, i] for i, rows in enumerate(tips)))}
+    for quantity in quantities:
+        counted = rollouts if quantity.in_scenarios else rollouts[:1]
+        values[quantity.name] = ca.veccat(*(ca.horzcat(*one.values(quantity)) for one in counted))
 
-    bounded = {RESIDUAL: ca.vertcat(*(rows @ missed[:, i] for i, rows in enumerate(tips)))}
-    for k, quantity in enumerate(quantities):
-        counted = sampled if quantity.in_scenarios else sampled[:1]
-        bounded[quantity.name] = ca.veccat(*(values[k] for values in counted)) / scales[k]
     constraints = {"arrival": missed[:, 0] / scale if at_rest else ca.MX(0, 1)}
-    for name, values in bounded.items():
+    for k, (name, value) in enumerate(values.items()):
         if name == peak:
-            constraints["below peak"] = values - sides[1] * p
-            constraints["above peak"] = values - sides[0] * p
-        else:
-            constraints[name] = values
+            constraints["below peak"] = value / scales[k] - sides[1] * p
+            constraints["above peak"] = value / scales[k] - sides[0] * p
+        elif name != RESIDUAL or bounds_residual:
+            constraints[name] = value / scales[k]
     nlp = {
         "x": ca.veccat(a, p),
         "p": ca.veccat(row, wanted, *tips, scale, scales, sides, weights, width),
@@ -138,11 +138,12 @@ def compile_program(
         "g": ca.vertcat(*constraints.values()),
     }
     options = {**(_WARM if warm else _OPTIONS), "print_level": print_level}
-    limited = ca.vertcat(*(ca.horzcat(ca.MX(1, 0), *values) for values in sampled))
     return _Program(
         compile_nlp(nlp, options),
-        {name: values.numel() for name, values in constraints.items()},
-        ca.Function("figures", [a, row], [nominal.energy, arrival.T, limited]),
+        {name: value.numel() for name, value in constraints.items()},
+        ca.Function(
+            "figures", [a, row, wanted, *tips], [nominal.energy, missed.T, *values.values()]
+        ),
     )
 
 
@@ -160,30 +161,34 @@ class _Run:
     def __init__(self, problem: Problem, warm: bool, print_level: int) -> None:
         self.problem, self.widths = problem, _WIDTHS[-1:] if warm else _WIDTHS
         (transcription, asked), task = problem, problem.transcription.task
-        tips = [rows if asked.bounds_residual else rows[:0] for rows in transcription.tip_rows]
+        tips = transcription.tip_rows
         self.program = compile_program(
             transcription.batch.simulation, task.scenarios, tuple(map(len, tips)), asked.at_rest,
-            asked.peak, warm, print_level,
+            asked.bounds_residual, asked.peak, warm, print_level,
         )  # fmt: skip
-        plain = self.figures(transcription.profile.plain)
-        peaks = transcription.peaks(plain, asked.offset)
-        wanted = np.broadcast_to(transcription.wanted - asked.offset, plain.arrival.shape)
-        swing = np.abs(plain.arrival - wanted).max(axis=0)
-        self.scale, self.energy = np.where(swing > 0, swing, 1.0), float(plain.energy[0]) or 1.0
+        shape = len(task.scenarios), transcription.wanted.size
+        wanted = np.broadcast_to(transcription.wanted - asked.offset, shape)
+        self.given = [task.row, wanted.T, *tips]
+        energy, missed, peaks = self.figures(transcription.profile.plain)
+        swing = np.abs(missed).max(axis=0)
+        self.scale, self.energy = np.where(swing > 0, swing, 1.0), energy or 1.0
         self.scales = {name: peak or 1.0 for name, peak in peaks.items()}
         of_energy, of_peak = asked.weights(self.energy, self.scales.get(asked.peak or "", 0.0))
         self.of_energy = of_energy / self.energy
-        self.parameters = [
-            task.row, wanted, *(rows.T / self.scales[RESIDUAL] for rows in tips), self.scale,
-            [self.scales[limit.name] for limit in task.limits],
-            transcription.limits[asked.peak or RESIDUAL].sides, [self.of_energy, of_peak],
-        ]  # fmt: skip
+        sides = transcription.limits[asked.peak or RESIDUAL].sides
+        numbers = self.scale, [*self.scales.values()], sides, [self.of_energy, of_peak]
+        self.parameters = [*self.given, *numbers]
 
-    def figures(self, coefficients: Array) -> Values:
-        """Of coefficients, in all scenarios."""
-        row = self.problem.transcription.task.row
-        energy, arrival, limited = self.program.figures.call([coefficients, row])
-        return Values(energy.full()[0], arrival.full(), limited.full())
+    def figures(self, coefficients: Array) -> tuple[float, Array, dict[str, float]]:
+        """Energy [J], what is missed on arrival in every scenario, residual and peaks by name."""
+        energy, missed, *values = self.program.figures.call([coefficients, *self.given])
+        transcription = self.problem.transcription
+        names = RESIDUAL, *(limit.name for limit in transcription.task.limits)
+        peaks = {
+            name: float(transcription.limits[name].peak(value.min(), value.max()))
+            for name, value in zip(names, (value.full() for value in values), strict=True)
+        }
+        return float(energy), missed.full(), peaks
 
     def solve(self, start: Array) -> Solution:
         """Run IPOPT for one width after another."""
@@ -191,25 +196,27 @@ class _Run:
         box = transcription.profile.box(asked.bound)
         x, (lower, upper), iterations, stop = np.clip(start, *box), box, 0, None
         if asked.peak is not None:
-            peak = transcription.peaks(self.figures(x), asked.offset)[asked.peak]
-            x = np.append(x, peak / self.scales[asked.peak])
+            x = np.append(x, self.figures(x)[-1][asked.peak] / self.scales[asked.peak])
             lower, upper = np.append(lower, -np.inf), np.append(upper, np.inf)
         for width in self.widths:
             given = [*self.parameters, [width * self.energy / transcription.task.duration]]
-            parameters = np.concatenate([np.ravel(one) for one in given])
+            parameters = np.concatenate([np.ravel(one, order="F") for one in given])
             bounds = (lower, upper), self.bounds()
             stop = run_ipopt(self.program.solver, x, *bounds, parameters)
             x, iterations = stop.unknowns, iterations + stop.iterations
         assert stop is not None
         coefficients = np.clip(x[: transcription.profile.size], *box)
+        energy, missed, peaks = self.figures(coefficients)
         status = SolveStatus.from_ipopt(stop.return_status)
-        return Solution.of_motion(
-            self.problem,
-            self.figures(coefficients),
-            at_rest=asked.at_rest and status.solved,
-            coefficients=coefficients,
-            status=status,
-            iterations=iterations,
+        if asked.at_rest and status.solved:
+            peaks[RESIDUAL] = 0.0
+        return Solution(
+            coefficients,
+            energy,
+            peaks,
+            status,
+            iterations,
+            arrival=missed + transcription.wanted,
             shadow_prices=self.prices(stop.multipliers),
             reason=stop.return_status.replace("_", " ").lower(),
         )

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import daqp
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.solvers.batch import Values
 from quietarm.ocp.solvers.transcription import ENERGY, Transcription
 
 LEAST_ENERGY = {ENERGY: 1.0}
@@ -121,20 +120,6 @@ class Solution:
     arrival: NDArray[np.float64]
     shadow_prices: Mapping[str, float] = field(default_factory=dict)
     reason: str = ""
-
-    @classmethod
-    def of_motion(
-        cls, problem: Problem, motion: Values, *, at_rest: bool, **ended: Any
-    ) -> Solution:
-        """Of a motion in all scenarios; at rest it counts as without residual."""
-        transcription, asked = problem
-        peaks = transcription.peaks(motion, asked.offset)
-        return cls(
-            energy=float(motion.energy[0]),
-            peaks=peaks | ({RESIDUAL: 0.0} if at_rest else {}),
-            arrival=motion.arrival + asked.offset,
-            **ended,
-        )
 
     @property
     def residual(self) -> float:

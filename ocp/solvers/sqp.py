@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, End, Ended, minimise
 from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
 from quietarm.ocp.solvers.programs import Programs
@@ -111,20 +112,24 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     """The solutions in SI units."""
     coefficients = programs.coefficients(ended.x)
     motions = evaluate([problem.transcription for problem in problems], coefficients)
-    prices = _shadow_prices(programs, ended, problems)
-    return [
-        Solution.of_motion(
-            problem,
-            motions[i],
-            at_rest=problem.scalarization.at_rest and bool(ended.violation[i] <= _NONE),
-            coefficients=coefficients[i],
-            status=_STATUS[ended.ends[i]],
-            iterations=int(ended.iterations[i]),
-            shadow_prices=prices[i],
-            reason=ended.ends[i].value,
+    prices, solutions = _shadow_prices(programs, ended, problems), list[Solution]()
+    for i, ((transcription, asked), motion) in enumerate(zip(problems, motions, strict=True)):
+        peaks, end = transcription.peaks(motion, asked.offset), ended.ends[i]
+        if asked.at_rest and ended.violation[i] <= _NONE:
+            peaks[RESIDUAL] = 0.0
+        solutions.append(
+            Solution(
+                coefficients[i],
+                float(motion.energy[0]),
+                peaks,
+                _STATUS[end],
+                int(ended.iterations[i]),
+                arrival=motion.arrival + asked.offset,
+                shadow_prices=prices[i],
+                reason=end.value,
+            )
         )
-        for i, problem in enumerate(problems)
-    ]
+    return solutions
 
 
 def _shadow_prices(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> list[Prices]:

@@ -182,6 +182,21 @@ def test_a_wrong_derivative_of_the_sqp_does_not_reach_ipopt(link_and_arm, name, 
     assert sqp.energy > right[0].energy * (1 + 1e-4)  # else the SQP would not tell either
 
 
+def test_what_the_sqp_misreads_of_a_motion_does_not_reach_ipopt(link_and_arm, monkeypatch):
+    steps, _, box = link_and_arm["arm"]
+    asked = _ask({RESIDUAL: 2e-3}, box)
+    right = [_solved(steps, asked, solver) for solver in SOLVERS]
+    peaks = Transcription.peaks
+    monkeypatch.setattr(Transcription, "peaks", lambda *given: _halved(peaks(*given)))
+    sqp, ipopt = (_solved(steps, asked, solver) for solver in SOLVERS)
+    assert sqp.residual == right[0].residual / 2
+    assert (ipopt.energy, ipopt.peaks) == (right[1].energy, right[1].peaks)
+
+
+def _halved(peaks):
+    return {name: peak / 2 for name, peak in peaks.items()}
+
+
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_a_wrong_derivative_of_ipopt_does_not_reach_the_sqp(link_and_arm, name, monkeypatch):
     steps, _, box = link_and_arm[name]
