@@ -51,9 +51,8 @@ from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.solvers.nlp import OPTIONS
-from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
+from quietarm.ocp.solvers.problem import RESIDUAL, Problem, Scalarization, Solution, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
-from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
 from rich.table import Table
 from rockit.sampling_method import FunctionGrid
 

@@ -34,9 +34,8 @@ import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
-from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
+from quietarm.ocp.solvers.problem import RESIDUAL, Problem, Scalarization, Solution, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
-from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
 from rich.progress import track
 from rich.table import Table
 

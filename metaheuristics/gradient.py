@@ -17,8 +17,8 @@ from quietarm.ocp.cost import COST, Cost
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
+from quietarm.ocp.planning.best_of_starts import SOLVERS, SolverName
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.solvers.choice import SOLVERS, SolverName
 
 
 def multistart_front(

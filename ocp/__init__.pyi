@@ -9,7 +9,7 @@ from .errors import InfeasibleTaskError as InfeasibleTaskError
 from .errors import QuietarmError as QuietarmError
 from .errors import SolverFailedError as SolverFailedError
 from .errors import SolveStatus as SolveStatus
-from .floor.answer import Floor as Floor
+from .floor.search import Floor as Floor
 from .floor.search import energy_floor as energy_floor
 from .front.cross_check import CrossCheck as CrossCheck
 from .front.cross_check import cross_check as cross_check
@@ -32,7 +32,7 @@ from .planning.many import plan_moves as plan_moves
 from .planning.plan import Plan as Plan
 from .planning.plan import evaluate_coefficients as evaluate_coefficients
 from .planning.plan_move import plan_move as plan_move
-from .planning.shaping import shaped_cycloid as shaped_cycloid
+from .planning.profiles import shaped_cycloid as shaped_cycloid
 from .profiles.cycloid import MAX_TERMS as MAX_TERMS
 from .profiles.cycloid import CycloidPolynomial as CycloidPolynomial
 from .profiles.cycloid import CycloidSpline as CycloidSpline
@@ -44,12 +44,12 @@ from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
 from .record import Record as Record
 from .record import SolveSettings as SolveSettings
 from .record import Verification as Verification
-from .robustness.measures import Figures as Figures
-from .robustness.measures import Robustness as Robustness
-from .robustness.measures import Sweep as Sweep
-from .robustness.measures import evaluate_robustness as evaluate_robustness
-from .robustness.perturbed import Sensitivity as Sensitivity
-from .robustness.perturbed import Worst as Worst
+from .robustness import Figures as Figures
+from .robustness import Robustness as Robustness
+from .robustness import Sensitivity as Sensitivity
+from .robustness import Sweep as Sweep
+from .robustness import Worst as Worst
+from .robustness import evaluate_robustness as evaluate_robustness
 from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
 from .simulation.rollout import SymbolicRollout as SymbolicRollout
@@ -57,6 +57,6 @@ from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .simulation.trajectory import Trajectory as Trajectory
 from .task import ModalState as ModalState
 from .task import PointToPoint as PointToPoint
-from .task_difference import task_difference as task_difference
+from .task import task_difference as task_difference
 from .uncertainty import Uncertainty as Uncertainty
 from .uncertainty import perturb_plant as perturb_plant

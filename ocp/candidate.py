@@ -18,14 +18,12 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import JointMotion
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, Ranged
-from quietarm.ocp.profiles.free_motion import FreeMotion
-from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.validation import check_profile
+from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
+from quietarm.ocp.profiles.joint_profile import JointProfile, check_profile
 from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import Motion
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant

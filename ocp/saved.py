@@ -1,12 +1,13 @@
-"""Answers as JSON files: saved, and loaded to equal values."""
+"""Answers as JSON files, loaded to equal values; and as tables of a notebook."""
 
 from __future__ import annotations
 
 import dataclasses
 import json
 from codecs import BOM_UTF8
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from enum import Enum
+from html import escape
 from pathlib import Path
 from typing import Any, ClassVar, Self, TypeVar
 
@@ -20,6 +21,15 @@ from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Record
 from quietarm.ocp.simulation.objective import Motion
+
+
+def to_html(rows: Iterable[Iterable[str]], head: Iterable[str] = ()) -> str:
+    """A table in HTML, of rows of text."""
+    cells = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows]
+    first = "".join(f"<th>{escape(cell)}</th>" for cell in head)
+    lines = [first, *cells] if first else cells
+    return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
+
 
 T = TypeVar("T")
 _FAMILIES: Mapping[Any, str] = {Plant: "plant", JointProfile: "profile", Energy: "energy"}

@@ -16,9 +16,9 @@ from quietarm.ocp import (
     non_dominated,
 )
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.planning.best_of_starts import SolverName
 from quietarm.ocp.planning.plan_move import plan_from_starts
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.solvers.choice import SolverName
 
 POINTS = 300
 """Points of a reference front, beside those at `LEVELS`: with motions between them, the hypervolume

@@ -18,9 +18,8 @@ from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.certify import judge
 from quietarm.ocp.planning.plan_move import plan_from_starts
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
+from quietarm.ocp.solvers.problem import STILL, Problem, Scalarization, Solution, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
-from quietarm.ocp.solvers.transcription import STILL, Transcription
 
 _TRIED, _STARTS, _SEED = 20, 5, 2000
 """Points that are also tried from so many random starts, others than found the front."""

@@ -14,7 +14,7 @@ from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.limits import quantities_of
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
-from quietarm.ocp.robustness.perturbed import worst_of
+from quietarm.ocp.robustness import worst_of
 from quietarm.ocp.simulation.grid import default_steps
 
 _SAMPLE = 100

@@ -21,7 +21,7 @@ from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODE
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import march
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
-from quietarm.ocp.solvers.transcription import ENERGY
+from quietarm.ocp.solvers.problem import ENERGY
 from quietarm.ocp.task import PointToPoint
 
 _AT_AN_END, _SHRINK = 3, 4.0

@@ -10,9 +10,9 @@ from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.planning.best_of_starts import SolverName
 from quietarm.ocp.planning.certify import OVERRUN, judge
 from quietarm.ocp.record import number_of_points
-from quietarm.ocp.solvers.choice import SolverName
 from quietarm.ocp.solvers.problem import Problem
 
 _SAME = 1e-6

@@ -12,13 +12,11 @@ from numpy.typing import NDArray
 from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.limits import Limit
-from quietarm.ocp.planning.best_of_starts import start_coefficients
+from quietarm.ocp.planning.best_of_starts import SolverName, solver_of, start_coefficients
 from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, SolveSettings
-from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution
-from quietarm.ocp.solvers.transcription import Transcription
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution, Solver, Transcription
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]

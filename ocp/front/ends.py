@@ -7,11 +7,21 @@ from dataclasses import dataclass, replace
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.planning.best_of_starts import SAME, best_of_starts, solve_from_starts
+from quietarm.ocp.planning.best_of_starts import (
+    SAME,
+    best_of_starts,
+    least_peaks_of,
+    solve_from_starts,
+)
 from quietarm.ocp.planning.certify import OF_A_PLAN, Tolerances, certify_one
-from quietarm.ocp.planning.feasibility import least_peaks_of
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution
-from quietarm.ocp.solvers.transcription import ENERGY, STILL, Transcription
+from quietarm.ocp.solvers.problem import (
+    ENERGY,
+    LEAST_ENERGY,
+    STILL,
+    Problem,
+    Solution,
+    Transcription,
+)
 
 _ENERGY_WEIGHTS = (1.0, 0.1, 0.02, 2e-3)
 """Weights of the energy beside the residual, one solve after the other, on the way to the end of

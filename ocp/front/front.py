@@ -25,8 +25,7 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, Record, Setting
-from quietarm.ocp.saved import Answer
-from quietarm.ocp.tables import to_html
+from quietarm.ocp.saved import Answer, to_html
 from quietarm.ocp.task import PointToPoint
 
 if TYPE_CHECKING:

@@ -14,13 +14,11 @@ from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.planning.best_of_starts import best_of_starts, objective_of
+from quietarm.ocp.planning.best_of_starts import SolverName, best_of_starts, objective_of
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings, digits, number_of_points
-from quietarm.ocp.solvers.choice import SolverName
-from quietarm.ocp.solvers.problem import Solution
-from quietarm.ocp.solvers.transcription import ENERGY
+from quietarm.ocp.solvers.problem import ENERGY, Solution
 from quietarm.ocp.task import PointToPoint
 
 _FLAT = 1e-5

@@ -1,24 +1,37 @@
-"""Where a solver starts, and the best of what it finds, certified."""
+"""Where a solver starts, the best of what it finds, and what would be feasible if it finds none."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
+from typing import Literal, Protocol, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.planning.feasibility import explain, least_peaks_of
+from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
+from quietarm.ocp.limits import Limit, Ranged
+from quietarm.ocp.planning.certify import judge
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.solvers.choice import Solver
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem, Scalarization, Solution
-from quietarm.ocp.solvers.transcription import ENERGY
+from quietarm.ocp.solvers.problem import ENERGY, STILL, Problem, Scalarization, Solution, Solver
+from quietarm.ocp.solvers.sqp import Sqp
 
 Array = NDArray[np.float64]
+SolverName = Literal["sqp", "ipopt"]
+SOLVERS: tuple[str, ...] = get_args(SolverName)
 SAME = 1e-5
 """Solutions whose objectives differ by less than this share count as one motion."""
+_ROOM = 1.001
+"""A least value is quoted with this margin, so that a user who asks for it gets a plan."""
+
+
+def solver_of(settings: SolveSettings) -> Solver:
+    """The solver that settings ask for."""
+    if settings.solver == "sqp":
+        return Sqp(log=settings.log)
+    return Ipopt(print_level=5 if settings.log else 0)
 
 
 def start_coefficients(profile: JointProfile, settings: SolveSettings) -> list[Array]:
@@ -106,3 +119,109 @@ def solve_from_starts(
     if not solved:
         raise explain(problem, tried, least)
     return replace(solved[0], iterations=sum(one.iterations for one in tried)), solved
+
+
+class Attempt(Protocol):
+    """A run of the solver: over coefficients, or over all joint motions."""
+
+    @property
+    def status(self) -> SolveStatus:
+        """How it ended."""
+        ...
+
+    @property
+    def peaks(self) -> Mapping[str, float]:
+        """Each limited quantity [SI units]."""
+        ...
+
+
+Found = TypeVar("Found", bound=Attempt)
+
+
+def least_peaks(
+    limits: Sequence[Limit], solve_least: Callable[[Sequence[Limit], str], Sequence[Found]]
+) -> dict[str, Found]:
+    """Make each limited quantity in turn as small as it can be while the other limits are kept."""
+    best: dict[str, Found] = {}
+    for name in (limit.name for limit in limits):
+        others = [other for other in limits if other.name != name]
+        solved = [one for one in solve_least(others, name) if one.status.solved]
+        if solved:
+            best[name] = min(solved, key=lambda one, name=name: one.peaks[name])
+    return best
+
+
+def least_peaks_of(problem: Problem, starts: Sequence[NDArray[np.float64]]) -> dict[str, Solution]:
+    """The same of a problem, from several starts."""
+    transcription, asked = problem
+
+    def solve_least(others: Sequence[Limit], name: str) -> list[Solution]:
+        alone = Problem(transcription, asked._replace(limits=tuple(others), minimise={name: 1.0}))
+        return Sqp().solve([alone] * len(starts), starts)
+
+    return least_peaks(asked.limits, solve_least)
+
+
+def true_peaks(
+    limits: Sequence[Limit], least: Mapping[str, Found], resimulated: Callable[[Found], Ranged]
+) -> dict[str, float]:
+    """The least peaks as they are between the nodes as well, by what simulates a run's motion."""
+
+    def peak_of(limit: Limit, found: Found) -> float:
+        try:
+            return max(found.peaks[limit.name], limit.peak_of(resimulated(found)))
+        except SolverFailedError:
+            return found.peaks[limit.name]
+
+    return {one.name: peak_of(one, least[one.name]) for one in limits if one.name in least}
+
+
+def explain(
+    problem: Problem, tried: Sequence[Solution], least: Mapping[str, Solution]
+) -> SolverFailedError:
+    """The error for a problem that no start solved; other arguments as for `unmet`."""
+    transcription, asked = problem
+    return unmet(
+        f"motion of {transcription.profile.amount}",
+        asked.limits,
+        tried,
+        true_peaks(asked.limits, least, lambda one: judge(transcription, one.coefficients)),
+        f"more {transcription.profile.term}s or a longer duration",
+        "" if asked.bound is None else f", coefficients within +-{asked.bound:g}",
+    )
+
+
+def unmet(
+    motion: str,
+    limits: Sequence[Limit],
+    runs: Sequence[Attempt],
+    least: Mapping[str, float],
+    remedy: str,
+    box: str = "",
+    otherwise: str = "",
+) -> SolverFailedError:
+    """The error for limits that no start met, in words, to be raised by the caller."""
+    statuses = [run.status for run in runs]
+    if SolveStatus.INFEASIBLE not in statuses:
+        ended = statuses[0].text
+        if otherwise:
+            ended = f"{ended.partition(';')[0]}; {otherwise}"
+        return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
+    asked = ", ".join(
+        f"{one.name} {'<=' if one.is_peak else 'within'} {one.bounds}"
+        for one in limits
+        if one.size < np.inf
+    )
+    remedies = [
+        f"{one.name} limit {one.describe(least[one.name] * _ROOM)}"
+        for one in limits
+        if one.name in least and not one.keeps(least[one.name], at_rest=STILL)
+    ]
+    feasible = (
+        f"feasible with all else unchanged: {' or '.join(remedies)}"
+        if remedies
+        else "removing any single one of these limits does not help, so widen several"
+    )
+    return InfeasibleTaskError(
+        f"found no {motion} with {asked}{box}; {feasible}; {remedy} may also do"
+    )

@@ -18,12 +18,13 @@ from quietarm.ocp.limits import QUANTITIES, Limit, Quantity, Ranged
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Batch, Values, batch
-from quietarm.ocp.solvers.choice import Solver
-from quietarm.ocp.solvers.problem import Problem, Solution
-from quietarm.ocp.solvers.transcription import (
+from quietarm.ocp.solvers.problem import (
     MOST_SOLVER_STEPS,
     STILL,
     STILL_SHARE,
+    Problem,
+    Solution,
+    Solver,
     Transcription,
     evaluate,
     transcribe,

@@ -12,17 +12,15 @@ from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES, TorqueSpeedLine
-from quietarm.ocp.planning.best_of_starts import best_of_starts
-from quietarm.ocp.planning.feasibility import explain, least_peaks_of
+from quietarm.ocp.planning.best_of_starts import best_of_starts, explain, least_peaks_of
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_move import plan_move
-from quietarm.ocp.planning.terms import CHOSEN, SIX
+from quietarm.ocp.planning.profiles import CHOSEN, SIX
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import FreeVibration
-from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.problem import Problem, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
-from quietarm.ocp.solvers.transcription import Transcription
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 TOLERANCE = 1e-3

@@ -12,19 +12,19 @@ from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.best_of_starts import (
+    SolverName,
     best_of_starts,
+    solver_of,
     start_coefficients,
 )
 from quietarm.ocp.planning.certify import certify, finer_peaks
-from quietarm.ocp.planning.terms import choose_profile
+from quietarm.ocp.planning.profiles import choose_profile
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
-from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem, Solution
-from quietarm.ocp.solvers.transcription import first_steps, transcribe
+from quietarm.ocp.solvers.problem import Problem, Solution, Solver, first_steps, transcribe
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]

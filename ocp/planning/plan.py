@@ -24,15 +24,14 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import REST, Record, Setting, Verification
-from quietarm.ocp.robustness.perturbed import Sensitivity, Worst, sensitivities, worst_of
-from quietarm.ocp.saved import MotionAnswer
+from quietarm.ocp.robustness import Sensitivity, Worst, sensitivities, worst_of
+from quietarm.ocp.saved import MotionAnswer, to_html
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.batch import batch
-from quietarm.ocp.solvers.transcription import STILL
-from quietarm.ocp.tables import to_html
+from quietarm.ocp.solvers.problem import STILL
 from quietarm.ocp.task import PointToPoint
 
 _LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000

@@ -17,21 +17,20 @@ from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import (
+    SolverName,
     best_of_starts,
     solve_from_starts,
+    solver_of,
     start_coefficients,
 )
 from quietarm.ocp.planning.certify import OVERRUN, certify_one
 from quietarm.ocp.planning.plan import Plan, only_motion
-from quietarm.ocp.planning.terms import plan_with_chosen_terms
+from quietarm.ocp.planning.profiles import plan_with_chosen_terms
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, SolveSettings, Verification
-from quietarm.ocp.robustness.measures import quiet_residual
-from quietarm.ocp.robustness.perturbed import Worst, peaks_between
-from quietarm.ocp.solvers.choice import SolverName, solver_of
-from quietarm.ocp.solvers.problem import Problem
-from quietarm.ocp.solvers.transcription import Transcription
+from quietarm.ocp.robustness import Worst, peaks_between, quiet_residual
+from quietarm.ocp.solvers.problem import Problem, Transcription
 from quietarm.ocp.task import PointToPoint
 
 EXCESS = 0.05
@@ -91,7 +90,7 @@ def plan_move(
         The move and its limits.
     profile : JointProfile, optional
         How the joint moves; by default the cycloid of a polynomial, of six terms without limits,
-        and of 18 or 24 with limits (`ocp.planning.terms`); the plan's record then has the energy of
+        and of 18 or 24 with limits (`choose_profile`); the plan's record then has the energy of
         six. The only motion of a profile without coefficients, such as `shaped_cycloid`, is
         evaluated, not optimised.
     residual_limit : float, optional

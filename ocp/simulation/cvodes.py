@@ -20,11 +20,11 @@ from quietarm.ocp.cost import COST
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time, silent_errors
+from quietarm.ocp.profiles.free_motion import Law, PiecewiseMotion
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import integrated, spent
-from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
 from quietarm.ocp.simulation.trajectory import outputs_of, rates_of
 from quietarm.ocp.uncertainty import perturb_plant
 

@@ -12,9 +12,8 @@ from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, End, Ended, minimise
-from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
+from quietarm.ocp.solvers.problem import Problem, Solution, evaluate, shadow_prices
 from quietarm.ocp.solvers.programs import Programs
-from quietarm.ocp.solvers.transcription import evaluate
 
 Array = NDArray[np.float64]
 Prices = dict[str, float]

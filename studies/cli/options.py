@@ -11,8 +11,8 @@ from typing import Any
 import click
 from quietarm.models import load_plant_file
 from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.planning.best_of_starts import SOLVERS
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
-from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.quantities import (

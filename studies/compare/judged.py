@@ -19,7 +19,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.robustness.perturbed import worst_case, worst_of
+from quietarm.ocp.robustness import worst_case, worst_of
 
 SAMPLES = 2000
 """Random plants for the percentiles."""

@@ -10,7 +10,7 @@ from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervo
 from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.robustness.perturbed import worst_of
+from quietarm.ocp.robustness import worst_of
 from quietarm.studies.report.moves import worst_in_words
 from quietarm.studies.report.words import (
     counted,

@@ -14,7 +14,7 @@ from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
-from quietarm.ocp.planning.terms import CHOSEN, OF_SIX
+from quietarm.ocp.planning.profiles import CHOSEN, OF_SIX
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.studies.report.words import millimetres, move_of, moved, state_words
 

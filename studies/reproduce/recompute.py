@@ -27,7 +27,7 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.ocp.record import versions
-from quietarm.ocp.robustness.measures import tolerated_residual
+from quietarm.ocp.robustness import tolerated_residual
 from quietarm.studies.compare.judged import Judged, judge
 from quietarm.studies.compare.plans import compare_plans
 from quietarm.studies.reading.profiles import OTHERS

@@ -19,7 +19,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
-from quietarm.ocp.robustness.perturbed import sensitivities_of_moves
+from quietarm.ocp.robustness import sensitivities_of_moves
 from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
 
 Rows = Iterator[dict[str, Any]]

@@ -13,7 +13,7 @@ from quietarm.ocp import SolveSettings, SolveStatus
 from quietarm.ocp.checks import positive
 from quietarm.ocp.limits import RESIDUAL, TORQUE_SPEED, quantities_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.robustness.perturbed import OF_MODES
+from quietarm.ocp.robustness import OF_MODES
 from quietarm.studies.sweep.grid import Grid
 
 STATUS, COEFFICIENTS, JUMP = "status", "coefficients", "jump"

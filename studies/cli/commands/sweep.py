@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 from quietarm.ocp import QuietarmError, SolveSettings
-from quietarm.ocp.planning.terms import choose_profile
+from quietarm.ocp.planning.profiles import choose_profile
 from quietarm.studies.cli.files import (
     DATASET,
     PICTURE,

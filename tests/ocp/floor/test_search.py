@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from floors import coarse_floors
 from moves import ARM
-from quietarm.ocp.floor.answer import Level
+from quietarm.ocp.floor.search import Level
 
 import quietarm as qa
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from moves import CASES
-from quietarm.ocp.solvers.transcription import STILL
+from quietarm.ocp.solvers.problem import STILL
 
 import quietarm as qa
 

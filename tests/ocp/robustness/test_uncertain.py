@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 import pytest
 from fixed_steps import rollout
-from quietarm.ocp.robustness.perturbed import perturbed_figures
+from quietarm.ocp.robustness import perturbed_figures
 
 import quietarm as qa
 

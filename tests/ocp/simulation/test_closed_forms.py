@@ -6,8 +6,8 @@ from math import cos, sin
 
 import numpy as np
 import pytest
+from quietarm.ocp.profiles.free_motion import PiecewiseMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 
 import quietarm as qa
 

@@ -15,7 +15,7 @@ from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
     resolved_energy,
 )
-from quietarm.ocp.solvers.energy import differentiate_absolute
+from quietarm.ocp.solvers.derivatives import differentiate_absolute
 
 import quietarm as qa
 

@@ -2,7 +2,7 @@
 
 import pytest
 from quietarm.ocp import CycloidPolynomial
-from quietarm.ocp.solvers.transcription import Transcription
+from quietarm.ocp.solvers.problem import Transcription
 
 
 @pytest.fixture(params=["single link", "arm", "two links"])

@@ -8,9 +8,8 @@ import pytest
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, TorqueSpeedLine
 from quietarm.ocp.solvers import ipopt as ipopt_module
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.problem import Problem, Scalarization, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
-from quietarm.ocp.solvers.transcription import Transcription
 
 import quietarm as qa
 

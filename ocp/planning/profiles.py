@@ -1,4 +1,4 @@
-"""How many terms a move within limits takes, where nobody says it.
+"""Profiles that follow from a task: the number of terms it takes, and the shaper for its plant.
 
 Without limits six terms are the paper's, and more only make the starts harder. Within the limits of
 a drive they cost up to twice the least energy, or find no motion. Two terms more often save
@@ -11,22 +11,26 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.planning.best_of_starts import best_of_starts, start_coefficients
+from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.planning.best_of_starts import best_of_starts, solver_of, start_coefficients
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
 from quietarm.ocp.record import Setting, SolveSettings
-from quietarm.ocp.solvers.choice import solver_of
-from quietarm.ocp.solvers.problem import Problem, Solution
-from quietarm.ocp.solvers.transcription import Transcription
+from quietarm.ocp.simulation.free_vibration import FreeVibration
+from quietarm.ocp.solvers.problem import Problem, Solution, Transcription
 from quietarm.ocp.task import PointToPoint
 
 SIX = CycloidPolynomial()
 FEW, MANY = 18, 24
 """Terms within limits: of plants with one mode, and with several. Where one mode swings for more
 than seven periods 24 come 2 % nearer to the floor, but the solver may take minutes."""
+_SAMPLES = 200
+"""Joint angles along the plain cycloid, at even times, over which `average` is taken."""
 CHOSEN, OF_SIX = "chosen_terms", "energy_of_six_terms"
 """What a plan's record says of them."""
 
@@ -85,3 +89,51 @@ def _solve_with_six(task: PointToPoint, settings: SolveSettings) -> Solution:
     starts = start_coefficients(SIX, settings)
     (six,) = best_of_starts([problem], [starts], solver_of(settings))
     return six
+
+
+@one_at_a_time
+def shaped_cycloid(
+    task: PointToPoint, shaper: str, at: Literal["target", "average"] = "target"
+) -> ShapedCycloid:
+    """The cycloid through an input shaper for the modes of a task's plant.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move; of an uncertain task the nominal plant counts.
+    shaper : str
+        ``"zv"``, ``"zvd"`` or ``"ei"``.
+    at : str, optional
+        Where the plant's frequencies and damping are taken: with the joint at the target, or as
+        the average over time along the plain cycloid. They differ if the frequencies depend on
+        the joint angle; docs/physics.md, 'Input shaping', compares the two.
+
+    Returns
+    -------
+    ShapedCycloid
+        The profile; it has no coefficients.
+
+    Raises
+    ------
+    ValueError
+        When the task's duration is too short for the shaper, an argument is not known, or the
+        plant does not vibrate.
+    """
+    if at not in ("target", "average"):
+        raise ValueError(f"at is {at!r}; give 'target' or 'average'")
+    angles = [task.target] if at == "target" else _along(task)
+    modes = [FreeVibration(task.plant, angle).modes for angle in angles]
+    if not modes[0] or len({len(each) for each in modes}) > 1:
+        raise ValueError(
+            f"plant {task.plant.name!r} has modes that do not vibrate, for which there is "
+            "no shaper; take another profile"
+        )
+    frequencies, damping_ratios = np.mean(modes, axis=0).T
+    profile = ShapedCycloid(shaper, tuple(frequencies), tuple(damping_ratios))
+    profile.checked([], task.duration)
+    return profile
+
+
+def _along(task: PointToPoint) -> list[float]:
+    times = (np.arange(_SAMPLES) + 0.5) / _SAMPLES * task.duration
+    return CycloidPolynomial(0).path([], *task.move)(times).tolist()
