@@ -24,16 +24,9 @@ _NEWTON = 12
 class BeamModes(NamedTuple):
     """Modes of a beam with a tip mass; each is 1 at the tip.
 
-    Attributes
-    ----------
-    wave_numbers : list
-        k of each mode: its frequency is that of the first times (k / k of the first)^2.
-    masses : list
-        Modal mass.
-    pushes : list
-        Integral of distance from the axis times mode shape: what a turning hub moves.
-    stiffenings : list of lists
-        By the centrifugal tension, for a joint speed of 1.
+    Wave numbers k, whose squares are as the frequencies; modal masses; integrals of distance from
+    the axis times mode shape, by which a turning hub excites each; and stiffening of two modes by
+    the centrifugal tension, for a joint speed of 1.
     """
 
     wave_numbers: list[Expression]

@@ -88,13 +88,7 @@ def solve_from_starts(
     """The best solution from several starts, and all, the best first.
 
     Where none of them leads to a solution, motions of least peaks are tried as starts, then IPOPT.
-
-    Raises
-    ------
-    InfeasibleTaskError
-        When no motion of the profile keeps the limits; the text says what would be feasible.
-    SolverFailedError
-        When nothing was solved for another reason.
+    InfeasibleTaskError says what would be feasible; SolverFailedError has another reason.
     """
     tried, least = list[Solution](), dict[str, Solution]()
 

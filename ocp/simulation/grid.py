@@ -28,14 +28,8 @@ class Grid:
     """Steps of a move, or of a smooth piece of it, as fractions of its duration.
 
     Steps are finer at the ends, where the powers of T in the profile change fastest: in the paper's
-    boxes the error is a tenth to a thirtieth of that of even steps.
-
-    Parameters
-    ----------
-    steps : int
-        Number of steps; with breaks, somewhat more.
-    breaks : tuple of float
-        Fractions at which the motion is not smooth; there a step ends.
+    boxes the error is a tenth to a thirtieth of that of even steps. A step ends at each of the
+    `breaks`, where the motion is not smooth: then there are somewhat more than `steps`.
     """
 
     steps: int

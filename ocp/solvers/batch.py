@@ -68,18 +68,10 @@ class Multipliers:
 
 @dataclass(frozen=True)
 class Derivatives(Values):
-    """The same with derivatives by the coefficients.
+    """The same with derivatives by the coefficients, along a last axis of each.
 
-    Attributes
-    ----------
-    gradient : ndarray, shape (rows, coefficients)
-        Of the energy, with the zeros of the power held fixed, which is exact.
-    arrival_jacobian : ndarray, shape (rows, 2 * modes, coefficients)
-        Of the arrival.
-    limited_jacobian : ndarray, shape (rows, values, coefficients)
-        Of the limited quantities.
-    hessian : ndarray, shape (rows, coefficients, coefficients)
-        Of the sum that the multipliers weigh.
+    The Hessian, (rows, coefficients, coefficients), is of the sum that the multipliers weigh. The
+    energy's gradient has the zeros of the power fixed, which is exact.
     """
 
     gradient: Array

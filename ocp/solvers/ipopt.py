@@ -59,10 +59,7 @@ _WARM = {
 class Ipopt:
     """IPOPT (Waechter and Biegler, 2006), one problem after another.
 
-    Parameters
-    ----------
-    print_level : int
-        How much of its log IPOPT prints, 0 to 12; 5 shows every iteration.
+    Its `print_level`, 0 to 12, is how much of its log is printed; 5 shows every iteration.
     """
 
     name: ClassVar[str] = "ipopt"

@@ -87,14 +87,8 @@ class Path:
     """The values y(a, t) through which a profile's coefficients a enter the joint's motion.
 
     Where the jerk is asked for, y stands once more at the times of `Grid.stretch`, with its rates
-    by the fraction of the duration. Coefficients and the move are arrays like the times.
-
-    Attributes
-    ----------
-    linear : bool
-        Whether y is linear in the coefficients, with a Jacobian that only depends on the time.
-    count : int
-        Number of values.
+    by the fraction of the duration. Coefficients and the move are arrays like the times. There are
+    `count` values, `linear` in the coefficients or not: then the Jacobian depends on time alone.
     """
 
     def __init__(self, profile: JointProfile, grid: Grid, jerk: bool, rows: int) -> None:
@@ -155,14 +149,7 @@ class Node:
     """A Gauss node: what forces the modes, f, and the outputs o of the point v = (y, W, W', W'').
 
     The outputs are the power, the energy's smooth part where it has one, and the values of the
-    limited quantities.
-
-    Attributes
-    ----------
-    count : int
-        Number of outputs.
-    own : int
-        How many of them, the first, belong to the energy.
+    limited quantities: `count` in all, of which the first `own` belong to the energy.
     """
 
     def __init__(

@@ -25,14 +25,8 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 
-class Constraint(ABC):
-    """Values within bounds.
-
-    Attributes
-    ----------
-    lower, upper : ndarray, shape (problems, values)
-        Their bounds.
-    """
+class _Constraint(ABC):
+    """Values within bounds, both of shape (problems, values)."""
 
     lower: Array
     upper: Array
@@ -54,7 +48,7 @@ class Constraint(ABC):
         """Add multipliers of the values (rows, count) to those of the motions, by scenario."""
 
 
-class ResidualLimit(Constraint):
+class _ResidualLimit(_Constraint):
     """The tip displacements after arrival in every scenario, at the times that can be largest."""
 
     def __init__(self, tips: Array, limit: Array) -> None:
@@ -64,18 +58,16 @@ class ResidualLimit(Constraint):
         self.lower = -self.upper
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
-        """As of `Constraint`."""
         tips, count, n = self._tips[rows], len(rows), x.shape[1]
         values = np.einsum("rstk,rsk->rst", tips, motions.arrival).reshape(count, self.count)
         return values, (tips @ motions.arrival_jacobian).reshape(count, self.count, n)
 
     def pull_back(self, rows: Index, multipliers: Array, onto: MotionMultipliers) -> None:
-        """As of `Constraint`."""
         tips = self._tips[rows]
         onto.arrival[:] += np.einsum("rst,rstk->rsk", multipliers.reshape(tips.shape[:3]), tips)
 
 
-class QuantityLimit(Constraint):
+class _QuantityLimit(_Constraint):
     """A quantity at the nodes of the steps, of the nominal plant or in all scenarios."""
 
     def __init__(self, place: slice, scenarios: int, bounds: Array, scale: Array) -> None:
@@ -87,7 +79,6 @@ class QuantityLimit(Constraint):
         )
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
-        """As of `Constraint`."""
         del x
         count, scale = len(rows), self._scale[rows]
         values = motions.limited[:, self._scenarios, self._place].reshape(count, self.count) / scale
@@ -95,21 +86,19 @@ class QuantityLimit(Constraint):
         return values, jacobian.reshape(*values.shape, jacobian.shape[-1]) / scale[:, :, None]
 
     def pull_back(self, rows: Index, multipliers: Array, onto: MotionMultipliers) -> None:
-        """As of `Constraint`."""
         part = onto.limited[:, self._scenarios, self._place]
         part += (multipliers / self._scale[rows]).reshape(part.shape)
 
 
-class Peak(Constraint):
+class _Peak(_Constraint):
     """A constraint whose peak p is the last unknown: v - p <= 0 <= v + p, as of `Limit.peak`."""
 
-    def __init__(self, of: Constraint, limit: Limit) -> None:
+    def __init__(self, of: _Constraint, limit: Limit) -> None:
         self._of, self._limit = of, limit
         zero, free = np.zeros(of.upper.shape), np.full(of.upper.shape, np.inf)
         self.upper, self.lower = np.hstack([zero, free]), np.hstack([-free, zero])
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
-        """As of `Constraint`."""
         values, jacobian = self._of.evaluate(rows, motions, x)
         one, peak, (below, above) = np.ones((*values.shape, 1)), x[:, -1:], self._limit.sides
         by_peak = [
@@ -119,7 +108,6 @@ class Peak(Constraint):
         return bounded, np.concatenate(by_peak, axis=1)
 
     def pull_back(self, rows: Index, multipliers: Array, onto: MotionMultipliers) -> None:
-        """As of `Constraint`."""
         below, above = np.split(multipliers, 2, axis=1)
         self._of.pull_back(rows, below + above, onto)
 
@@ -129,7 +117,7 @@ class Peak(Constraint):
         return self._limit.peak(values.min(axis=1), values.max(axis=1))
 
 
-class Box(Constraint):
+class _Box(_Constraint):
     """The coefficients that have bounds of their own, linear in the unknowns."""
 
     def __init__(self, lower: Array, upper: Array, axes: Array) -> None:
@@ -138,27 +126,19 @@ class Box(Constraint):
         self.lower, self.upper, self._axes = lower[:, bounded], upper[:, bounded], axes[bounded]
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
-        """As of `Constraint`."""
         jacobian = np.repeat(self._axes[None], len(rows), axis=0)
         return x @ self._axes.T, jacobian
 
     def pull_back(self, rows: Index, multipliers: Array, onto: MotionMultipliers) -> None:
-        """As of `Constraint`: it is linear."""
+        """Nothing, as it is linear."""
 
 
 class Programs:
     """Problems of the same profile, steps, limited quantities, and kinds of residual and peak.
 
-    Attributes
-    ----------
-    lower, upper : ndarray, shape (problems, bounded)
-        Bounds of what is bounded.
-    linear, unknowns, equalities : int
-        How many of these, the last, are linear in the unknowns; how many of each a problem has.
-    constraints : dict of str to Constraint
-        What is bounded: the residual and each limited quantity by name, and the box.
-    weights : ndarray, shape (problems, 2)
-        Of the scaled energy and of the scaled peak, the larger of them 1.
+    Bounded values have bounds `lower` and `upper`, (problems, bounded), and are those of the
+    `constraints` one after another: of the residual and each limited quantity by name, and of the
+    box, the last `linear` ones. The `weights`, (problems, 2), are of the scaled energy and peak.
     """
 
     def __init__(self, problems: Sequence[Problem]) -> None:
@@ -185,24 +165,24 @@ class Programs:
 
     def _constrain(self, bounds_residual: bool) -> None:
         """Everything that is bounded, the box last."""
-        constraints = dict[str, Constraint]()
+        constraints = dict[str, _Constraint]()
         if bounds_residual:
             limit = np.array([each.residual_limit for each in self._scalarizations])
-            constraints[RESIDUAL] = ResidualLimit(self._tips(), limit / self._scales(RESIDUAL))
+            constraints[RESIDUAL] = _ResidualLimit(self._tips(), limit / self._scales(RESIDUAL))
         limits = self._transcriptions[0].limits
         for name, place in self._batch.places.items():
             scenarios = self._scenarios if limits[name].quantity.in_scenarios else 1
             own = place, scenarios, self._bounds(name), self._scales(name)
-            constraints[name] = QuantityLimit(*own)
+            constraints[name] = _QuantityLimit(*own)
         if self._peak is not None:
-            constraints[self._peak] = Peak(constraints[self._peak], limits[self._peak])
+            constraints[self._peak] = _Peak(constraints[self._peak], limits[self._peak])
         boxes = [each.profile.box(asked.bound) for each, asked in zip(
             self._transcriptions, self._scalarizations, strict=True)]  # fmt: skip
         self._box = np.array(boxes).transpose(1, 0, 2)
         self._axes = self._batch.even_axes(boxed=bool(np.isfinite(self._box).any()))
         # the coefficients by all unknowns
         self._along = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
-        box = Box(self._box[0], self._box[1], self._along)
+        box = _Box(self._box[0], self._box[1], self._along)
         self.linear, self.constraints = box.count, {**constraints, "box": box}
         stops = np.cumsum([each.count for each in self.constraints.values()]).tolist()
         ends = pairwise([0, *stops])
@@ -238,7 +218,7 @@ class Programs:
         if self._peak is not None:
             rows, peak = np.arange(len(x)), self.constraints[self._peak]
             x = np.column_stack([x, np.zeros(len(x))])
-            assert isinstance(peak, Peak)
+            assert isinstance(peak, _Peak)
             x[:, -1] = peak.largest(rows, self._simulate(rows, x, None, np.zeros(len(x))), x)
         return x
 

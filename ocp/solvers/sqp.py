@@ -37,10 +37,7 @@ _STATUS = {
 class Sqp:
     """Sequential quadratic programming, as `funnel` has it; all problems of one form at once.
 
-    Parameters
-    ----------
-    log : bool
-        Whether a line is printed for each iteration.
+    With a `log` a line is printed for each iteration.
     """
 
     name: ClassVar[str] = "sqp"
