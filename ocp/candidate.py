@@ -150,10 +150,6 @@ class Candidate(Ranged):
         """Least and largest value of each row of samples."""
         return extremes(self._grid.samples, rows)
 
-    def peak(self, name: str) -> float:
-        """The residual, or the peak of a quantity, by name: infinite where it is not known."""
-        return self.residual if name == RESIDUAL else self.motion.peak(name)
-
     @property
     def trajectory(self) -> Trajectory:
         """The move and the residual window; where two pieces meet, two samples of one time."""

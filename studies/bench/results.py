@@ -11,12 +11,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics import Job, NamedProblem
-from quietarm.metaheuristics.jobs import POLISH
 from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front
 from quietarm.ocp.front.points import LEVELS, beyond
-from quietarm.studies.report.methods import is_gradient, label_of
+from quietarm.studies.report.methods import is_gradient, label_of, unpolished
 
 Array = NDArray[np.float64]
 AT_REST = LEVELS[0]
@@ -231,7 +230,8 @@ def _drawn_again(runs: int) -> NDArray[np.int64]:
 
 def derivative_free(method: str) -> bool:
     """Whether all of a method's work is candidates simulated without derivatives."""
-    return not is_gradient(method) and not method.partition("(")[0].endswith(POLISH)
+    name = method.partition("(")[0]
+    return not is_gradient(method) and unpolished(name) == name
 
 
 bench_label = partial(label_of, solver="sqp")

@@ -37,7 +37,10 @@ class Given:
         self._context = context
 
     def __getattr__(self, name: str) -> Any:
-        return self._context.params[name]
+        try:
+            return self._context.params[name]
+        except KeyError:
+            raise AttributeError(name) from None
 
     def pick(self, *names: str) -> dict[str, Any]:
         """Some options, by name."""
@@ -109,9 +112,9 @@ class Given:
             for name, values in {**parameters, **moves}.items()
             if len(values) > 1
         ]
-        # one that moves
-        first: dict[str, Any] = {name: max(values, key=abs) for name, values in moves.items()}
-        task = PointToPoint(plant, **first, **given, uncertainty=uncertainty)
+        # of several values the furthest from 0, so that the grid's own task is a move
+        furthest: dict[str, Any] = {name: max(values, key=abs) for name, values in moves.items()}
+        task = PointToPoint(plant, **furthest, **given, uncertainty=uncertainty)
         warn_of_payload(kind, plant, parameters)
         return Grid(task, tuple(axes))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.quantities import (
     parse_energy,
     parse_error,
-    parse_part,
+    parse_share_of_work,
     parse_state,
     parse_torque_speed,
 )
@@ -131,14 +131,14 @@ SOLVER = option("--solver", type=Named("solver", SOLVERS), default=SOLVERS[0],
 SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "
                        "change with each parameter of the plant.")  # fmt: skip
 METHOD_SETTING = option("--setting", "settings", type=SETTING, multiple=True, metavar="NAME=VALUE",
-                        help="Another setting of a method, of quietarm list METHOD, as "
-                        "crossover=0.7, in a bench nsga2.crossover=0.7.")  # fmt: skip
+                        help="A setting of the method, as crossover=0.7, or in a bench "
+                        "nsga2.crossover=0.7; quietarm list METHOD has them all.")  # fmt: skip
 WORKERS = option("--workers", type=int, default=1,
                  help="Processes of this machine that share the work.")  # fmt: skip
 SCHEDULER = option("--scheduler", metavar="ADDRESS", help="Let the workers of this dask scheduler "
                    "share the work, as in tcp://host:8786.")  # fmt: skip
-PART = option("--part", type=Parsed("i/n", parse_part), default="1/1", help="Do every n-th piece "
-              "of the work alone, as 2/8 in a queue's array job.")  # fmt: skip
+PART = option("--part", type=Parsed("i/n", parse_share_of_work), default="1/1",
+              help="Do every n-th piece of the work alone, as 2/8 in a queue's array job.")  # fmt: skip
 
 
 def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.Option]:
@@ -159,8 +159,7 @@ def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.
 
 
 def method_option(
-    own: Iterable[str], others: Iterable[str], remedy: str, default: str, words: str
+    own: Iterable[str], others: Mapping[str, str], default: str, words: str
 ) -> click.Option:
     """--method; an error says of others what they are, and which command has them."""
-    told = {name: f"{name} is {remedy} --method {name}" for name in others}
-    return option("--method", type=Named("method", own, told), default=default, help=words)
+    return option("--method", type=Named("method", own, others), default=default, help=words)

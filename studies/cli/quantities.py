@@ -145,7 +145,7 @@ def is_number(text: str) -> bool:
     return True
 
 
-def two(
+def _two(
     mark: str,
     first: Callable[[str], S],
     second: Callable[[str], T],
@@ -173,20 +173,20 @@ def _lengths(text: str) -> tuple[float, ...]:
     return tuple(parse_quantity(one, "m", "a length") for one in lengths)
 
 
-parse_weights = two(":", float, float, "pair of weights; give those of residual and energy as 1:3")
+parse_weights = _two(":", float, float, "pair of weights; give those of residual and energy as 1:3")
 """Read the weights of residual and energy: ``1:3``."""
-parse_part = two(
+parse_share_of_work = _two(
     "/", int, int, "part; give the second of eight as 2/8", lambda number, of: 1 <= number <= of
 )
 """Read a part of the work: ``2/8``."""
-parse_interval = two(":", float, float, "part; give its begin and end in seconds, as 3.2:7.3", lt)
+parse_interval = _two(":", float, float, "part; give its begin and end in seconds, as 3.2:7.3", lt)
 """Read begin and end of a part of a recording [s]: ``3.2:7.3``."""
-_state = two(
+_state = _two(
     ":", _lengths, _lengths,
     "state; give W [m] of each mode, a colon, and W' [m/s] of each, as 5mm:-0.3 or 0,0:0.1,0",
 )  # fmt: skip
 _torque, _speed = (partial(parse_quantity, unit=unit, what="one") for unit in ("N m", "rad/s"))
-_torque_at_speed = two(
+_torque_at_speed = _two(
     "@", _torque, _speed,
     "torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with speeds in rad/s, or as 190rpm",
 )  # fmt: skip

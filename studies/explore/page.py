@@ -49,7 +49,12 @@ class Page:
 
     def __init__(self, document: Document, explored: Explored, plants: Mapping[str, Plant]) -> None:
         self._document, self._explored = document, explored
-        self._pending, self._fields = dict[str, Change](), dict[str, Any]()
+        self._typed, self._fields = dict[str, Any](), dict[str, Any]()
+        self._choices: dict[str, Callable[[Explored, Any], Explored]] = {
+            "plant": lambda now, words: now.choose_plant(plants[words]),
+            "profile": Explored.choose_profile,
+            "terms": lambda now, terms: now.choose_profile(now.profile, terms),
+        }
         self._sliders: tuple[list[str], float] = [], 0.0
         self._plots = Plots(document, explored.task.plant.joint, self._pick)
         self._file = ColumnDataSource({"name": [], "text": [], "time": []})
@@ -81,9 +86,8 @@ class Page:
         plant = Select(title="plant", options=list(plants))
         profile = Select(title="profile", options=families)
         terms = Spinner(title="terms", low=1, step=1)
-        self._watch("plant", plant, lambda now, words: now.choose_plant(plants[words]))
-        self._watch("profile", profile, Explored.choose_profile)
-        self._watch("terms", terms, lambda now, terms: now.choose_profile(now.profile, terms))
+        for name, field in {"plant": plant, "profile": profile, "terms": terms}.items():
+            self._watch(name, field)
         move, limits = self._group("move"), _in_twos(self._group("limits"), "limits")
         files = [_button(name, partial(self._save, name)) for name in FILES]
         answers = [plant, Row(children=[profile, terms]), _in_twos(self._buttons)]
@@ -93,16 +97,16 @@ class Page:
             _in_twos(files, "files"),
         ]  # fmt: skip
 
-    def _watch(self, name: str, field: Any, choose: Callable[[Explored, Any], Explored]) -> None:
+    def _watch(self, name: str, field: Any) -> None:
         """Take what is set in a field, with all that is set within a moment."""
 
         def typed(_: str, old: Any, new: Any) -> None:
             if new == self._explored.shown[name]:
                 return  # it was set by the page
-            if not self._pending:
+            if not self._typed:
                 change: Any = self._change  # what it returns is not asked for
                 self._document.add_timeout_callback(change, _WAIT)
-            self._pending[name] = lambda explored: choose(explored, new)
+            self._typed[name] = new
 
         self._fields[name] = field
         field.on_change("value", typed)
@@ -114,7 +118,7 @@ class Page:
     def _field(self, name: str, dial: Dial) -> UIElement:
         """A number; but for a limit with a slider that follows it and is followed."""
         field = Spinner(title=dial.label, format="0[.][0000]", placeholder="none")
-        self._watch(name, field, lambda explored, value: explored.change({name: value}))
+        self._watch(name, field)
         if dial.group == "limits":
             return field
         step = float(10 ** math.floor(math.log10((dial.most - dial.least) / 500)))
@@ -164,12 +168,17 @@ class Page:
             button.disabled = at_work
 
     def _change(self, change: Change = lambda same: same, then: str = "") -> bool:
-        """Change the motion in hand, after what was gathered; False where it is said why not."""
-        changes, words, colour = [*self._pending.values(), change], then, GREY
-        self._pending = {}
+        """Change the motion in hand, after what was typed; False where it is said why not."""
+        typed, words, colour = self._typed, then, GREY
+        self._typed = {}
+        dials = {name: value for name, value in typed.items() if name not in self._choices}
         try:
-            for one in changes:
-                self._explored = one(self._explored)
+            if dials:  # all at once: one after another could pass a move that is none
+                self._explored = self._explored.change(dials)
+            for name, choose in self._choices.items():
+                if name in typed:
+                    self._explored = choose(self._explored, typed[name])
+            self._explored = change(self._explored)
         except (ValueError, QuietarmError) as error:
             words, colour = str(error), RED
         self._show()

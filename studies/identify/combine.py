@@ -27,10 +27,8 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> tuple[list[Estimate]
     found, wide = list[Estimate](), dict[str, str]()
     recordings = np.unique([part.recording for part in parts], return_inverse=True)[1]
     for name in names:
-        values, deviations = (
-            np.array([of[name] for of in columns])
-            for columns in ([part.values for part in parts], [part.deviations for part in parts])
-        )
+        values = np.array([part.values[name] for part in parts])
+        deviations = np.array([part.deviations[name] for part in parts])
         one = estimate(name, values, deviations, recordings)
         if one.value == 0 or one.error >= 1:
             low, high = one.widest

@@ -10,8 +10,8 @@ from quietarm.metaheuristics import PRESETS
 from quietarm.metaheuristics.problems.card import card_of
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant
-from quietarm.ocp.checks import unknown
-from quietarm.studies.report.methods import GRADIENT, label_of
+from quietarm.ocp.checks import spelling, unknown
+from quietarm.studies.report.methods import GRADIENT_LABELS, label_of
 from quietarm.studies.report.words import error_words
 
 Row = tuple[str, str]
@@ -20,9 +20,11 @@ KINDS = ("plants", "problems", "methods")
 
 def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, list[Row]]:
     """A title, and rows of one of `KINDS` or of an entry by its name; ValueError of no other."""
-    known = [*KINDS, *plants, *PROBLEMS, *GRADIENT, *PRESETS]
-    if name not in known:
+    known = [*KINDS, *plants, *PROBLEMS, *GRADIENT_LABELS, *PRESETS]
+    spelt = {spelling(one): one for one in known}
+    if spelling(name) not in spelt:
         raise ValueError(unknown("name", name, known))
+    name = spelt[spelling(name)]
     if name == "plants":
         rows = [(one, (kind.__doc__ or "").partition("\n")[0]) for one, kind in plants.items()]
         return "plants, with `quietarm list NAME` for the parameters", rows
@@ -30,7 +32,7 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
         rows = [(one, _problem(problem)) for one, problem in PROBLEMS.items()]
         return "problems, each with a reference front", rows
     if name == "methods":
-        rows = [(one, label_of(one)) for one in (*GRADIENT, *PRESETS)]
+        rows = [(one, label_of(one)) for one in (*GRADIENT_LABELS, *PRESETS)]
         return "methods, with `quietarm list NAME` for the settings", rows
     if name in plants:
         rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
@@ -39,7 +41,8 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
         return name, [("problem", _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]
     if name not in PRESETS:
         command = "bench" if name == "multistart" else "front"
-        return name, [(f"by quietarm {command}", label_of(name))]
+        words = f"{label_of(name)}, by the gradient; its options: quietarm {command} --help"
+        return name, [("method", words)]
     preset = PRESETS[name]
     settings = [
         (one.name, f"{'-' if one.default is None else one.default}: {one.meaning}")

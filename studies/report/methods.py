@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from quietarm.metaheuristics import PRESETS
 
-GRADIENT = {
+GRADIENT_LABELS = {
     "epsilon": "epsilon constraint", "weighted": "weighted sum", "multistart": "multistart",
 }  # fmt: skip
 """Methods of the gradient, which may name their solver, as ``epsilon:ipopt``."""
@@ -13,21 +13,27 @@ _POLISHED = ", polished", "+polish"
 """What `polish_front` and a job add to the name of a method."""
 
 
+def unpolished(name: str) -> str:
+    """The method whose front was polished, without its settings; any other name as it is."""
+    for ending in _POLISHED:
+        name = name.removesuffix(ending)
+    return name
+
+
 def is_gradient(method: str) -> bool:
     """Whether a method is the gradient's alone, by the name in a front or a job's label."""
-    return method.partition("(")[0].partition(":")[0] in GRADIENT
+    return unpolished(method.partition("(")[0]).partition(":")[0] in GRADIENT_LABELS
 
 
 def label_of(method: str, solver: str = "") -> str:
     """A method in tables and pictures; of the gradient with its solver, named or given."""
     name, bracket, settings = method.partition("(")
-    for ending in _POLISHED:
-        if name.endswith(ending):
-            words = f"{label_of(name.removesuffix(ending), solver)}, polished"
-            break
-    else:
-        way, _, named = name.partition(":")
-        solver = _SOLVERS.get(named or solver, "") if way in GRADIENT else ""
-        known = GRADIENT | {one: preset.label for one, preset in PRESETS.items()}
-        words = f"{known.get(way, name)}{', ' if solver else ''}{solver}"
+    way, _, named = unpolished(name).partition(":")
+    words = {**GRADIENT_LABELS, **{one: preset.label for one, preset in PRESETS.items()}}.get(
+        way, unpolished(name)
+    )
+    if way in GRADIENT_LABELS and (solver := _SOLVERS.get(named or solver, "")):
+        words += f", {solver}"
+    if unpolished(name) != name:
+        words += ", polished"
     return f"{words} {bracket}{settings}" if bracket else words

@@ -64,10 +64,15 @@ class Row:
 @cache
 def _case(plant: str, start: str, target: str, duration: str) -> Case:
     """A driving condition: start and target as pi/6, duration [s]."""
-    ends = [Fraction(end.replace("pi", "1")) for end in (target, start)]
-    target_angle, start_angle = (pi * end.numerator / end.denominator for end in ends)
-    task = PointToPoint(_PLANTS[plant], target_angle, float(duration), start_angle)
+    task = PointToPoint(_PLANTS[plant], _angle(target), float(duration), _angle(start))
     return Case(task, f"{start} to {target}, {duration} s", *_OF_PLANT[plant])
+
+
+def _angle(text: str) -> float:
+    """An angle [rad] as 0, -pi/6 or 3pi/4."""
+    before, _, after = text.partition("pi")
+    share = Fraction({"": "1", "-": "-1"}.get(before, before) + after)
+    return pi * share.numerator / share.denominator
 
 
 def _row(cells: dict[str, str]) -> Row:

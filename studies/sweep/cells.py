@@ -22,7 +22,7 @@ from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.robustness import sensitivities_of_moves
 from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
 
-Rows = Iterator[dict[str, Any]]
+Cells = Iterator[dict[str, Any]]
 _CHECKED, _COLD_STARTS = 10, 4
 """One cell in so many, at random, is planned from so many starts of its own as well."""
 _ABOVE = 1e-4
@@ -62,26 +62,24 @@ def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) 
         return cells
     random = np.random.default_rng(seed)
     checked = random.choice(solved, -(-len(solved) // _CHECKED), replace=False)
-    some = [tasks[k] for k in checked]
-    cold = plan_cells(definition, some, _COLD_STARTS)["energy"].to_numpy()
+    cold = plan_cells(definition, [tasks[k] for k in checked], _COLD_STARTS)["energy"].to_numpy()
     if (cells["energy"].to_numpy()[checked] > (1 + _ABOVE) * cold).any():
         others = plan_cells(definition, tasks, _COLD_STARTS)
         cheaper = others["energy"] < cells["energy"].fillna(np.inf)
-        cells = cells.mask(cheaper, others)
+        both = cells.columns.union(others.columns, sort=False)
+        cells = cells.reindex(columns=both).mask(cheaper, others.reindex(columns=both))
     cells.loc[checked, "cold_excess"] = cells["energy"].to_numpy()[checked] / cold - 1
     solved = np.flatnonzero(cells["energy"].notna())
-    some, coefficients = (
-        [tasks[k] for k in solved],
-        np.array(cells[COEFFICIENTS].to_numpy()[solved].tolist()),
-    )
-    changes = sensitivities_of_moves(some, definition.profile, coefficients)
+    coefficients = np.array(cells[COEFFICIENTS].to_numpy()[solved].tolist())
+    solved_tasks = [tasks[k] for k in solved]
+    changes = sensitivities_of_moves(solved_tasks, definition.profile, coefficients)
     for name, (energy, residual) in changes.items():
         cells.loc[solved, f"energy_by_{name}"] = energy
         cells.loc[solved, f"residual_by_{name}"] = residual
     return cells
 
 
-def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Rows:
+def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Cells:
     """Plans of certain plants, all at once."""
     least, bound = definition.settings.residual_limit, definition.settings.bound
     moves = plan_moves(tasks, definition.profile, residual_limit=least, bound=bound, starts=starts)
@@ -95,7 +93,7 @@ def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], starts:
         yield row
 
 
-def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Rows:
+def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Cells:
     """Plans of uncertain plants one after another, each from the last one's coefficients."""
     least, bound = definition.settings.residual_limit or None, definition.settings.bound
     guess = None

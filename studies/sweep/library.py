@@ -121,7 +121,7 @@ class MoveLibrary:
         columns = np.broadcast_arrays(*(np.asarray(at[name], float) for name in self.grid.names))
         for axis, values in zip(self.grid.axes, columns, strict=True):
             low, high = axis.values[0], axis.values[-1]
-            if beyond := values[(values < low) | (values > high)].tolist():
+            if beyond := values[~((low <= values) & (values <= high))].tolist():
                 raise ValueError(
                     f"{axis.name} is {beyond[0]:g} {axis.unit}, and the grid has {low:g} to "
                     f"{high:g}; sweep a wider one, or {_ALONE}"

@@ -77,7 +77,7 @@ def bench(given: Given) -> None:
             )  # fmt: skip
         except LostJobsError as error:
             fronts, trouble = dict(error.fronts), error
-    if fronts:
+    if fronts or trouble is None:
         results = Results.of_jobs(fronts, imported)
         files = bench_report(results, given.line).files(given.output)
         for path, write in files:

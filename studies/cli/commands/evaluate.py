@@ -74,6 +74,7 @@ def evaluate(given: Given) -> None:
     elif given.coefficients is None:
         raise click.UsageError("Missing option '--coefficients'.")
     else:
+        given.refuse(["terms"], "follows from the number of --coefficients")
         motions = FAMILIES[given.profile].of_size(len(given.coefficients))
     with busy("integrating"):
         found = evaluate_coefficients(task, given.coefficients or [], profile=motions)

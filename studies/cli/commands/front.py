@@ -35,13 +35,16 @@ from quietarm.studies.reading.saved import load_front
 from quietarm.studies.report.fronts import failure_lines, gradient_lines, polish_lines
 
 _METHODS = {"epsilon": partial(epsilon_front, at=LEVELS), "weighted": weighted_front}
+_SEARCHES = {
+    name: f"{name} is a metaheuristic; give quietarm search --method {name}" for name in PRESETS
+}
 _CHECKED = 7
 """Points that the other solver finds again."""
 
 
 @command(
     *TASK,
-    method_option(_METHODS, PRESETS, "a metaheuristic; give quietarm search", "epsilon",
+    method_option(_METHODS, _SEARCHES, "epsilon",
                   "Least energy at one residual limit after another (epsilon), or the least "
                   "weighted sum for one pair of weights after another."),
     *profile_options(), BOUND,
@@ -95,7 +98,10 @@ def front(given: Given) -> None:
 
 
 def _polish(given: Given) -> None:
-    given.refuse_others({"polish", "output"}, "is in the front of --polish")
+    given.refuse_others(
+        {"polish", "output"},
+        "is not for --polish, which keeps the task, profile and bound of its front",
+    )
     with busy("checking"):
         before = load_front(given.polish)
     with counting(len(before.points), "points") as report:

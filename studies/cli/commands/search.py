@@ -33,10 +33,19 @@ from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.saving import STDOUT, File
 from quietarm.studies.report.search_progress import search_display
 
+_WHERE = {
+    "epsilon": "front --method",
+    "weighted": "front --method",
+    "multistart": "bench --methods",
+}
+_BY_GRADIENT = {
+    name: f"{name} is by the gradient; give quietarm {line} {name}" for name, line in _WHERE.items()
+}
+
 
 @command(
     *TASK,
-    method_option(PRESETS, ("epsilon", "weighted"), "by the gradient; give quietarm front", "nsga2",
+    method_option(PRESETS, _BY_GRADIENT, "nsga2",
                   "The metaheuristic; quietarm list methods has them."),
     *profile_options(), BOUND,
     option("--population", type=int, help="Individuals, or particles in a swarm."),

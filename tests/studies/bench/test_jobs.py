@@ -105,6 +105,9 @@ def test_workers_find_the_same_and_a_part_goes_on(call, tmp_path):
     line = f"bench {NAME} --methods random,gde3 --runs 2 --evaluations 200 --quiet"
     one, two = tmp_path / "one", tmp_path / "two"
     assert call(f"{line} --output {one}")[0] == 0
+    code, _, said = call(f"{line} --output {two} --part 8/8")  # there are four jobs
+    assert code != 0
+    assert "no run was done; give jobs, or a folder that has some" in said
     assert call(f"{line} --output {two} --part 1/2")[0] == 0
     assert len(list(two.glob("single*/*/*.json"))) == 2
     assert call(f"{line} --output {two} --workers 2")[0] == 0

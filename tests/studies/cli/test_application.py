@@ -86,7 +86,7 @@ def test_plants_problems_and_methods_are_listed(call, done, crane_file):
     out = done("list")
     assert all(f"  {name} " in out for name in ("dual-link", "single-link-30deg-0.8s", "nsga2"))
     assert "omega   10.43 rad/s: frequency of the mode, hub held" in call("list single-link")[1]
-    assert "crossover_eta " in call("list nsga2")[1]
+    assert "crossover_eta " in call("list NSGA-II")[1]
     assert "  crane " in call("list plants --plant-file crane.py")[1]
 
 

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from bokeh.document import Document
 from quietarm.models import LinearAxis, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -16,6 +17,7 @@ from quietarm.ocp import (
 from quietarm.studies.cli import main
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.explore.opening import menu, open_file, open_plant
+from quietarm.studies.explore.page import Page
 from quietarm.studies.sweep.library import MoveLibrary
 
 LINK = SingleLinkManipulator()
@@ -35,6 +37,17 @@ def test_it_begins_with_the_papers_first_move_and_what_is_set_is_evaluated(begun
     assert now.task == task
     assert now.plan.motion == evaluate_coefficients(task, [0, -0.2, 0, 0, 0, 0]).motion
     assert now.change({"deflection_limit": None}).task.limits == ()
+
+
+def test_fields_that_are_set_within_a_moment_are_one_change(begun):
+    document = Document()
+    Page(document, begun, menu(LINK))
+    for title, angle in {"start [deg]": 30.0, "target [deg]": 0.0}.items():
+        document.select_one({"title": title}).value = angle
+    (gathered,) = document.session_callbacks
+    gathered.callback()
+    # with the first alone there would be no move, from 30 to 30 deg
+    assert "single-link, 30 to 0 deg" in document.select_one({"name": "figures"}).text
 
 
 def test_values_outside_their_range_are_held(begun):

@@ -4,6 +4,7 @@ import math
 from functools import partial
 
 import pytest
+from quietarm.studies.bench.results import derivative_free
 from quietarm.studies.report.methods import is_gradient, label_of
 
 import quietarm as qa
@@ -23,7 +24,10 @@ def test_a_front_and_its_polished_one_name_their_method(find, label):
     polished = qa.polish_front(front).front.record.method
     assert label_of(front.record.method) == label
     assert label_of(polished) == f"{label}, polished"
-    assert is_gradient(front.record.method) == (label != "NSGA-II")
+    by_gradient = label != "NSGA-II"
+    assert is_gradient(front.record.method) == is_gradient(polished) == by_gradient
+    assert derivative_free(front.record.method) == (not by_gradient)
+    assert not derivative_free(polished)
 
 
 @pytest.mark.parametrize(

@@ -119,6 +119,7 @@ def test_a_damaged_dataset_is_told_in_one_line(tmp_path, broken):
 
 def test_what_is_not_in_the_dataset_is_refused_with_a_remedy():
     library = MoveLibrary("moves.zarr")
-    for at, why in (({"target": 1.3}, "the grid has 0.349066 to 1.0472"), ({}, "each axis")):
+    within = "the grid has 0.349066 to 1.0472"
+    for at, why in (({"target": 1.3}, within), ({"target": math.nan}, within), ({}, "each axis")):
         with pytest.raises(ValueError, match=why):
             library.coefficients(duration=0.9, **at)
