@@ -138,7 +138,7 @@ WORKERS = option("--workers", type=int, default=1,
 SCHEDULER = option("--scheduler", metavar="ADDRESS", help="Let the workers of this dask scheduler "
                    "share the work, as in tcp://host:8786.")  # fmt: skip
 PART = option("--part", type=Parsed("i/n", parse_share_of_work), default="1/1",
-              help="Do every n-th piece of the work alone, as 2/8 in a queue's array job.")  # fmt: skip
+              help="Do every n-th piece alone, as 2/8 in a queue's array job.")  # fmt: skip
 
 
 def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.Option]:
