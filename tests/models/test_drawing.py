@@ -94,3 +94,10 @@ def test_the_arm_turns_as_the_signs_of_its_equations_say():
     assert arm(np.pi / 2, 0.0) == pytest.approx([0, 0.21])
     slope = np.arctan(TIP_SLOPE * 0.03 / 0.55)
     assert arm(slope, 0.03) == pytest.approx(arm(0.0, 0.0))
+
+
+@pytest.mark.parametrize("plant", [qa.SingleLinkManipulator(), qa.DualLinkManipulator()])
+def test_the_hub_is_a_rigid_disc_on_the_axis_and_the_links_bend(plant):
+    *links, hub = plant.structure(0.4, [0.05] * plant.tips)
+    assert (hub.rigid, hub.tip, hub.points.tolist()) == (True, False, [[0.0, 0.0]])
+    assert [(link.rigid, link.tip) for link in links] == [(False, True)] * plant.tips

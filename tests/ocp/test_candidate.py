@@ -2,7 +2,9 @@
 
 import math
 
+import numpy as np
 import pytest
+from quietarm.ocp.limits import Limit
 from third_opinion import COEFFICIENTS
 
 import quietarm as qa
@@ -65,3 +67,21 @@ def test_the_printed_coefficients_give_what_another_simulation_gave(
 def test_the_printed_energies_are_found_again(motion, name, row, printed, digit):
     # One unit of the last digit, as the printed coefficients are rounded too.
     assert motion(name, row).energy == pytest.approx(printed, abs=digit)
+
+
+def test_what_is_seen_after_arrival_reaches_the_residual(tasks):
+    candidate = qa.Candidate.of_profile(tasks["single link"], qa.CycloidPolynomial(0), [])
+    trajectory, residual = candidate.trajectory, candidate.residual
+    later = trajectory.time >= tasks["single link"].duration
+    seen = np.abs(trajectory.tips[later]).max()
+    assert residual * (1 - 1.2e-6) <= seen <= residual * (1 + 1e-9)  # 0.003 rad apart: 0.003^2 / 8
+    assert candidate.range_of(Limit.of_residual(1.0).quantity) == (-residual, residual)
+
+
+@pytest.mark.parametrize(
+    "times", [[-0.5, 0.2], [0.3, 0.2], [0.2, 0.2], [], [[0.1, 0.2]], [0.1, np.nan]]
+)
+def test_times_that_do_not_increase_from_the_start_are_refused(tasks, times):
+    candidate = qa.Candidate.of_profile(tasks["single link"], qa.CycloidPolynomial(0), [])
+    with pytest.raises(ValueError, match="give finite ones that increase from 0 or later"):
+        candidate.sample(times)

@@ -88,3 +88,10 @@ def test_derivatives_are_those_of_the_angle(a, start, target, duration, fraction
         assert path(fraction * duration, order) == pytest.approx(
             float(by_casadi[order]), abs=1e-11 * size + 1e-300
         )
+
+
+def test_a_profile_without_coefficients_has_nothing_to_choose():
+    with pytest.raises(ValueError, match="of 0 terms has one motion for a move"):
+        CycloidPolynomial(0).refuse_no_choice()
+    CycloidPolynomial(1).refuse_no_choice()
+    assert [CycloidPolynomial(n).amount for n in (1, 2)] == ["1 term", "2 terms"]

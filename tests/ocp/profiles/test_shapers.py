@@ -5,6 +5,7 @@ Formulas: docs/physics.md, 'Input shaping', after Singer and Seering (1990) and 
 """
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -147,3 +148,12 @@ def test_the_jerk_is_the_limit_of_differences(shaper):
 def test_bad_numbers_are_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
         ShapedCycloid(*arguments)
+
+
+def test_the_shortest_duration_that_is_named_is_long_enough():
+    profile = ShapedCycloid("zvd", (10.0,), (0.0,))  # its length is the period, 0.63 s
+    with pytest.raises(ValueError, match="too short for the zvd shaper") as refused:
+        profile.checked([], 0.6)
+    named = float(re.search(r"give ([\d.]+) s or more", str(refused.value))[1])
+    assert profile.checked([], named) == ()
+    assert named == pytest.approx(0.2 * math.pi / 0.95, abs=1e-4)  # 5 % are left for the cycloid

@@ -118,3 +118,8 @@ def test_the_rows_hold_the_largest_displacement_of_any_state(plants, name, targe
     kept = np.abs(states @ vibration.rows.T).max(axis=1)
     np.testing.assert_allclose(kept, vibration.peak(states), rtol=6e-5)
     assert len(vibration.rows) < vibration.fastest / 0.02
+
+
+def test_in_a_window_of_no_length_the_displacement_on_arrival_counts():
+    vibration = qa.FreeVibration(qa.SingleLinkManipulator(), 1.0)
+    assert vibration.peak([0.01, 5.0]) == pytest.approx(2.28 * 0.01, rel=1e-12)

@@ -2,6 +2,7 @@
 
 import math
 
+import casadi as ca
 import numpy as np
 import pytest
 from fixed_steps import rollout
@@ -107,3 +108,11 @@ def test_the_error_falls_with_the_sixth_power_of_the_step():
 def test_the_weights_integrate_up_to_degree_five_exactly(power):
     integral = sum(w * x**power for w, x in zip(GAUSS_WEIGHTS, GAUSS_NODES, strict=True))
     assert integral == pytest.approx(1 / (power + 1), abs=1e-15)
+
+
+def test_the_weights_of_a_rollout_sum_to_the_duration(tasks):
+    task, profile = tasks["arm"], qa.CycloidPolynomial(2)
+    motion = qa.symbolic_rollout(task.plant, profile, ca.DM([-0.1, -0.4]), task.move, 20)
+    assert sum(float(ca.sum2(one)) for one in motion.weights) == pytest.approx(
+        task.duration, rel=1e-12
+    )
