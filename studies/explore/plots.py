@@ -50,7 +50,7 @@ class Plots:
         self._sources = {
             name: ColumnDataSource({one: [] for one in of}) for name, of in _COLUMNS.items()
         }
-        titles = {"robustness": ("residual if the frequency is wrong [mm]", "its error [%]")}
+        titles = {"robustness": ("residual over the frequency error [mm]", "frequency error [%]")}
         titles |= {name: (heading(name, joint), "time [s]  (dotted: arrival)") for name in PANELS}
         self._front = self._tradeoff(pick)
         panels = [self._panel(name, *words) for name, words in titles.items()]
