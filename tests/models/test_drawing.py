@@ -101,3 +101,8 @@ def test_the_hub_is_a_rigid_disc_on_the_axis_and_the_links_bend(plant):
     *links, hub = plant.structure(0.4, [0.05] * plant.tips)
     assert (hub.rigid, hub.tip, hub.points.tolist()) == (True, False, [[0.0, 0.0]])
     assert [(link.rigid, link.tip) for link in links] == [(False, True)] * plant.tips
+
+
+def test_a_deflection_is_small_up_to_a_tenth_of_the_length():
+    # of 0.475 m, section 3.1: beyond it a warning says that the equations are linear
+    assert qa.SingleLinkManipulator.small_deflection == pytest.approx(0.0475)

@@ -72,6 +72,8 @@ def test_the_printed_energies_are_found_again(motion, name, row, printed, digit)
 def test_what_is_seen_after_arrival_reaches_the_residual(tasks):
     candidate = qa.Candidate.of_profile(tasks["single link"], qa.CycloidPolynomial(0), [])
     trajectory, residual = candidate.trajectory, candidate.residual
+    path = qa.CycloidPolynomial(0).path([], *tasks["single link"].move)
+    assert trajectory.joint[:, 0] == pytest.approx(path(trajectory.time), abs=1e-12)
     later = trajectory.time >= tasks["single link"].duration
     seen = np.abs(trajectory.tips[later]).max()
     assert residual * (1 - 1.2e-6) <= seen <= residual * (1 + 1e-9)  # 0.003 rad apart: 0.003^2 / 8
