@@ -76,6 +76,11 @@ def test_each_derivative_is_that_of_the_one_before(profile):
         assert path(times, order + 1) == pytest.approx(slope, rel=1e-6, abs=1e-6)
 
 
+def test_a_profile_is_called_by_its_name_and_size():
+    labels = [_Waves(n).label for n in (1, 2)]
+    assert labels == ["waves-of-a-test of 1 coefficient", "waves-of-a-test of 2 coefficients"]
+
+
 def test_a_profile_says_that_its_coefficients_enter_linearly():
     linear = [Path(kind(4), Grid(8), False, 1).linear for kind in (_Waves, _LinearWaves)]
     assert linear == [False, True]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from quietarm.ocp import CycloidPolynomial
+from quietarm.ocp import CycloidPolynomial, CycloidSpline
 
 angles = st.floats(-2 * math.pi, 2 * math.pi)
 durations = st.floats(0.1, 10.0)
@@ -95,3 +95,10 @@ def test_a_profile_without_coefficients_has_nothing_to_choose():
         CycloidPolynomial(0).refuse_no_choice()
     CycloidPolynomial(1).refuse_no_choice()
     assert [CycloidPolynomial(n).amount for n in (1, 2)] == ["1 term", "2 terms"]
+
+
+def test_there_are_at_most_32_terms_and_28_of_a_polynomial():
+    assert (CycloidSpline(32).size, CycloidPolynomial(28).size) == (32, 28)
+    for family, terms in ((CycloidSpline, 33), (CycloidPolynomial, 29)):
+        with pytest.raises(ValueError, match=f"terms is {terms}; give at most {terms - 1}"):
+            family(terms)

@@ -151,9 +151,9 @@ def test_bad_numbers_are_refused(arguments, message):
 
 
 def test_the_shortest_duration_that_is_named_is_long_enough():
-    profile = ShapedCycloid("zvd", (10.0,), (0.0,))  # its length is the period, 0.63 s
+    profile = ShapedCycloid("zvd", (1.0,), (0.0,))  # its length is the period, 6.3 s
     with pytest.raises(ValueError, match="too short for the zvd shaper") as refused:
-        profile.checked([], 0.6)
+        profile.checked([], 6.0)
     named = float(re.search(r"give ([\d.]+) s or more", str(refused.value))[1])
     assert profile.checked([], named) == ()
-    assert named == pytest.approx(0.2 * math.pi / 0.95, abs=1e-4)  # 5 % are left for the cycloid
+    assert named == pytest.approx(2 * math.pi / 0.95, abs=1e-4)  # 5 % are left for the cycloid

@@ -123,3 +123,10 @@ def test_the_rows_hold_the_largest_displacement_of_any_state(plants, name, targe
 def test_in_a_window_of_no_length_the_displacement_on_arrival_counts():
     vibration = qa.FreeVibration(qa.SingleLinkManipulator(), 1.0)
     assert vibration.peak([0.01, 5.0]) == pytest.approx(2.28 * 0.01, rel=1e-12)
+    assert np.abs(vibration.rows @ [0.01, 5.0]).max() == pytest.approx(2.28 * 0.01, rel=1e-12)
+
+
+def test_modes_are_those_that_swing_be_they_slow():
+    assert qa.FreeVibration(qa.SingleLinkManipulator(omega=5.0, zeta=1.2), 0.0).modes == []
+    slow = qa.FreeVibration(qa.SingleLinkManipulator(omega=0.5, zeta=0.1), 0.0)
+    assert slow.modes == [pytest.approx((0.5, 0.1), rel=1e-9)]

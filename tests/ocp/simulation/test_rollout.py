@@ -116,3 +116,5 @@ def test_the_weights_of_a_rollout_sum_to_the_duration(tasks):
     assert sum(float(ca.sum2(one)) for one in motion.weights) == pytest.approx(
         task.duration, rel=1e-12
     )
+    broken = qa.symbolic_rollout(task.plant, profile, [0.0, 0.0], task.move, 20, breaks=(0.5,))
+    assert (motion.unbroken, broken.unbroken) == (True, False)
