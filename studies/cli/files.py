@@ -14,8 +14,7 @@ from quietarm.ocp.files import check_writable, unwritable
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
-from quietarm.studies.report.pictures import SUFFIXES
-from quietarm.studies.report.saving import STDOUT, File, drawing
+from quietarm.studies.report.saving import STDOUT, SUFFIXES, File, drawing
 from quietarm.studies.report.terminal import show, show_facts
 from quietarm.studies.report.words import print_lines
 from rich.console import Console

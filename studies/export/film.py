@@ -28,7 +28,7 @@ from quietarm.studies.export.formats import FORMATS, FRAMES, WIDTHS, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
 from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
 from quietarm.studies.figures.structure import Structure, structures_of
-from quietarm.studies.report.pictures import as_written
+from quietarm.studies.report.saving import as_written
 from quietarm.studies.report.words import move_of, moved, residual_words, title_of
 
 _MOST_MOTIONS, _MOST_FRAMES = 6, 500

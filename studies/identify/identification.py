@@ -14,8 +14,7 @@ from quietarm.ocp.uncertainty import refuse_unknown
 from quietarm.studies.identify.combine import combine
 from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
-from quietarm.studies.identify.machine import Identified, Part, in_torque_alone
-from quietarm.studies.identify.parameters import is_modal
+from quietarm.studies.identify.machine import Identified, Part, in_torque_alone, is_modal
 from quietarm.studies.identify.parts import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.ring_downs import moves

@@ -1,8 +1,8 @@
-"""A plant with the parameters that recordings tell, and how sure they are."""
+"""An identified plant, the intervals of its parameters, and what kinds of parameters there are."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -14,6 +14,10 @@ from quietarm.ocp.saved import Saved
 from quietarm.ocp.uncertainty import with_values
 from quietarm.studies.identify.words import say
 
+Array = NDArray[np.float64]
+_DAMPING = "zeta"
+"""How the name of a damping ratio begins."""
+_MOST_DAMPING = 0.9
 _LEAST_ERROR = 1e-6
 """Of a parameter known without error, as of a simulation: a range of none is no range."""
 
@@ -195,3 +199,29 @@ def in_torque_alone(plant: Plant, name: str) -> bool:
     moves = ca.SX(ca.vertcat(*ddW, *changed.tip_displacements(W)))
     torque = ca.SX(changed.torque(joint, W, dW, ddW))
     return not ca.depends_on(moves, symbol) and ca.depends_on(torque, symbol)
+
+
+def is_frequency(plant: Plant, name: str) -> bool:
+    """Whether a parameter is the frequency of a mode, by its unit."""
+    return plant.units()[name] == "rad/s"
+
+
+def is_modal(plant: Plant, name: str) -> bool:
+    """Whether a parameter is the frequency or the damping ratio of a mode."""
+    return is_frequency(plant, name) or name.startswith(_DAMPING)
+
+
+def values_of(plant: Plant, names: Sequence[str]) -> Array:
+    """The values of some parameters."""
+    return np.array([getattr(plant, name) for name in names])
+
+
+def bounds_of(plant: Plant, names: Sequence[str], start: Array) -> tuple[Array, Array]:
+    """How far parameters may go from a start: dampings a little below 0, as an estimate may."""
+    lower, upper = np.full(len(names), -np.inf), np.full(len(names), np.inf)
+    for k, name in enumerate(names):
+        if is_frequency(plant, name):
+            lower[k], upper[k] = 0.3 * start[k], 3 * start[k]
+        elif is_modal(plant, name):
+            lower[k], upper[k] = -0.3, _MOST_DAMPING
+    return lower, upper

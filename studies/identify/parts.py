@@ -13,8 +13,7 @@ from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY
 from quietarm.studies.identify.diagnosis import doubt, doubt_of, exceeds, saturated
 from quietarm.studies.identify.fitting import Fit, Model, fit
-from quietarm.studies.identify.machine import Part
-from quietarm.studies.identify.parameters import bounds_of, is_frequency, is_modal, values_of
+from quietarm.studies.identify.machine import Part, bounds_of, is_frequency, is_modal, values_of
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
 from quietarm.studies.identify.response import Driven, FreeDecay, Response, smooth
 from quietarm.studies.identify.ring_downs import LEAST_PERIODS, find_ring_downs, moves

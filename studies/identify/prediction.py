@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import find_frequencies
-from quietarm.studies.identify.machine import Part
-from quietarm.studies.identify.parameters import is_modal, values_of
+from quietarm.studies.identify.machine import Part, is_modal, values_of
 from quietarm.studies.identify.parts import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.words import say

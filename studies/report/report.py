@@ -136,7 +136,7 @@ def _environment() -> Environment:
 
 def _svg(figure: Figure) -> str:
     """A picture as an address that holds it."""
-    from quietarm.studies.report.pictures import as_written
+    from quietarm.studies.report.saving import as_written
 
     content = io.BytesIO()
     with as_written(figure):

@@ -1,11 +1,16 @@
-"""Files that are asked for, and what writes each."""
+"""Files that are asked for, and what writes each: pictures whole or not at all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import io
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
+
+from quietarm.ocp.files import check_writable, write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -14,17 +19,13 @@ File = tuple[Path, Callable[[Path], object]]
 """A file that was asked for, and what writes it."""
 STDOUT = Path("-")
 """Stands for standard output; a file of this name is given as ./-"""
+SUFFIXES = (".png", ".pdf", ".svg")
+"""Of pictures."""
 
 
 def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
-    """A function that writes a picture, and imports the drawing library only then."""
-
-    def write(path: Path) -> None:
-        from quietarm.studies.report.pictures import save_figure
-
-        save_figure(draw(), path)
-
-    return write
+    """What draws a picture and writes it, and does nothing before."""
+    return lambda path: save_figure(draw(), path)
 
 
 def inside(folder: Path, writes: Mapping[str, Callable[[Path], object]]) -> list[File]:
@@ -35,3 +36,39 @@ def inside(folder: Path, writes: Mapping[str, Callable[[Path], object]]) -> list
         write(path)
 
     return [(folder / name, partial(write_inside, write)) for name, write in writes.items()]
+
+
+def check_figure(path: str | Path) -> Path:
+    """Make sure that a picture can be written under this name; ValueError otherwise."""
+    target = check_writable(path)
+    if target.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"{target} is no picture; end its name in {', '.join(SUFFIXES)}")
+    return target
+
+
+def save_figure(figure: Figure, path: str | Path) -> None:
+    """Write a picture whole or not at all."""
+    target = check_figure(path)
+    content = io.BytesIO()
+    try:
+        with as_written(figure):
+            figure.savefig(content, format=target.suffix[1:].lower(), dpi=150)
+    except (RuntimeError, ValueError, ImportError) as error:  # by the user's settings alone
+        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        raise ValueError(
+            f"{target} cannot be drawn ({reason}); check matplotlib's settings: matplotlibrc, "
+            "MPLBACKEND, SOURCE_DATE_EPOCH"
+        ) from error
+    write_whole(target, content.getvalue())
+
+
+@contextmanager
+def as_written(figure: Figure) -> Iterator[None]:
+    """Let the block draw names as they are: no formula at a dollar, a box for what no font has."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        cast("Text", text).set_parse_math(False)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from font")
+        yield

@@ -14,7 +14,7 @@ COARSELY = [
     sys.executable,
     "-c",
     f"from quietarm.ocp.floor import search; search.FIRST_INTERVALS = {INTERVALS}\n"
-    "from quietarm.studies.report import search_progress; search_progress.PLAIN_SECONDS = 0.1\n"
+    "from quietarm.studies.report import progress; progress.PLAIN_SECONDS = 0.1\n"
     "from quietarm.studies.cli import main; main()",
 ]
 """The command as a process, which says where a search is without delay, and finds coarser

@@ -30,8 +30,8 @@ from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT
 from quietarm.studies.reading.saved import load_front
 from quietarm.studies.report.fronts import search_lines
+from quietarm.studies.report.progress import search_display
 from quietarm.studies.report.saving import STDOUT, File
-from quietarm.studies.report.search_progress import search_display
 
 _WHERE = {
     "epsilon": "front --method",

@@ -12,7 +12,7 @@ from quietarm.studies.figures import (
     draw_quantity,
     motion_figure,
 )
-from quietarm.studies.report.pictures import SUFFIXES, save_figure
+from quietarm.studies.report.saving import SUFFIXES, save_figure
 
 HEADS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 TAILS = {".png": b"IEND\xaeB`\x82", ".pdf": b"%%EOF\n", ".svg": b"</svg>\n"}
