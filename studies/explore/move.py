@@ -27,7 +27,6 @@ _SHORTEST, _LONGEST, _FURTHEST, _LEAST, _MOST = 0.1, 5.0, 2.0, 1e-3, 1e4
 """Ranges of durations [s], of a linear axis [m], and of limits in the unit that is shown."""
 _SHOWN = {"rad": ("deg", degrees(1.0)), "m": ("mm", 1e3)}
 """Units that are shown in the place of SI's, and the factors to them."""
-CHOICES = ("plant", "profile", "terms")
 FILES: Mapping[str, Callable[[Plan, Path], object]] = {
     "plan.json": Plan.save,
     "move.csv": Plan.save_csv,

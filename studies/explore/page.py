@@ -29,7 +29,7 @@ from bokeh.themes import Theme
 from jinja2 import Environment, PackageLoader
 from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
-from quietarm.studies.explore.move import CHOICES, FILES, Dial, Explored
+from quietarm.studies.explore.move import FILES, Dial, Explored
 from quietarm.studies.explore.plots import GREY, PANELS, Plots
 from quietarm.studies.figures.looks import RED
 from quietarm.studies.reading.profiles import FAMILIES
@@ -162,7 +162,7 @@ class Page:
 
     def _disable(self, at_work: bool) -> None:
         for name, field in self._fields.items():
-            fixed = name in CHOICES and self._explored.library is not None
+            fixed = name in self._choices and self._explored.library is not None
             field.disabled = at_work or fixed
         for button in self._buttons:
             button.disabled = at_work

@@ -28,12 +28,12 @@ def is_gradient(method: str) -> bool:
 def label_of(method: str, solver: str = "") -> str:
     """A method in tables and pictures; of the gradient with its solver, named or given."""
     name, bracket, settings = method.partition("(")
-    way, _, named = unpolished(name).partition(":")
-    words = {**GRADIENT_LABELS, **{one: preset.label for one, preset in PRESETS.items()}}.get(
-        way, unpolished(name)
-    )
+    alone = unpolished(name)
+    way, _, named = alone.partition(":")
+    known = GRADIENT_LABELS | {one: preset.label for one, preset in PRESETS.items()}
+    words = known.get(way, alone)
     if way in GRADIENT_LABELS and (solver := _SOLVERS.get(named or solver, "")):
         words += f", {solver}"
-    if unpolished(name) != name:
+    if alone != name:
         words += ", polished"
     return f"{words} {bracket}{settings}" if bracket else words
