@@ -48,12 +48,13 @@ class ArmOnFlexibleLink(Plant):
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W'' from eq (13) [m/s^2]."""
+        (w,), (dw,) = W, dW
         sine, cosine = ca.sin(joint.angle), ca.cos(joint.angle)
         force = (
-            2 * self.zeta * self.omega * dW[0]
-            + self.omega**2 * W[0]
+            2 * self.zeta * self.omega * dw
+            + self.omega**2 * w
             + (self.alpha2 + self.alpha3 * cosine) * joint.acceleration
-            + (self.alpha4 * dW[0] * joint.speed - self.alpha3 * joint.speed**2) * sine
+            + (self.alpha4 * dw * joint.speed - self.alpha3 * joint.speed**2) * sine
         )
         return [-force / (1 + self.alpha1 * cosine)]
 
@@ -64,7 +65,7 @@ class ArmOnFlexibleLink(Plant):
 
     def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """w(t, l) = phi W [m]."""
-        return [self.phi * W[0]]
+        return [self.phi * w for w in W]
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The link from its clamp along the x axis, the motor at its tip, and the arm.

@@ -71,7 +71,7 @@ class DualLinkManipulator(Plant):
 
     def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """Displacement of either tip, phi W_i [m]."""
-        return [self.phi * W[0], self.phi * W[1]]
+        return [self.phi * w for w in W]
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """Two links on one hub, the second opposite the first: how they stand is not published."""

@@ -16,6 +16,7 @@ from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any, ClassVar
 
+import numpy as np
 from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.joint_motion import ROTARY, Expression, JointMotion, Modes
 from quietarm.models.validation import check_contract, check_passive
@@ -100,7 +101,7 @@ class Plant(ABC):
         The joint's angle is in rad; the tips are `tip_displacements` [m], scaled for the picture.
         """
         links = [Body(rigid_link(1.0, angle, tip), rigid=True, tip=True) for tip in tips]
-        return [*links, Body(rigid_link(1.0, angle)[:1], rigid=True)]
+        return [*links, Body(np.zeros((1, 2)), rigid=True)]
 
     @property
     def parameters(self) -> dict[str, float]:

@@ -41,11 +41,10 @@ class SingleLinkManipulator(Plant):
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W'' from eq (9) [m/s^2]."""
-        return [
-            -2 * self.zeta * self.omega * dW[0]
-            - (self.omega**2 + self.beta2 * joint.speed**2) * W[0]
-            - self.beta1 * joint.acceleration
-        ]
+        (w,), (dw,) = W, dW
+        stiffness = self.omega**2 + self.beta2 * joint.speed**2
+        damping = 2 * self.zeta * self.omega
+        return [-damping * dw - stiffness * w - self.beta1 * joint.acceleration]
 
     def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque from eq (8) [N m]."""
@@ -53,7 +52,7 @@ class SingleLinkManipulator(Plant):
 
     def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """w(t, l) = phi W [m]."""
-        return [self.phi * W[0]]
+        return [self.phi * w for w in W]
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The plate on its hub; it begins on the axis, since the hub's radius is not printed."""

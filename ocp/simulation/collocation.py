@@ -187,11 +187,11 @@ def at_each_node(entry: Expression, h: Expression) -> list[Expression]:
 
 def _held(h: Expression, k: Expression, d: Expression, once: float, twice: float) -> Expression:
     """What W'' at a node adds to the spring and damper forces at another."""
-    return 0.0 if is_zero(k) and is_zero(d) else h * (once * d + twice * h * k)
+    return 0.0 if is_zero(k) else h * (once * d + twice * h * k)
 
 
 def _negative(d: Expression, time: Expression, k: Expression) -> Expression:
-    return 0.0 if is_zero(k) and is_zero(d) else -d - time * k
+    return 0.0 if is_zero(k) else -d - time * k
 
 
 def is_zero(entry: Expression) -> bool:

@@ -196,9 +196,8 @@ def _largest(tips: Array, rates: Array) -> Array:
     most = np.abs(tips).max(axis=(1, 2))
     turns = np.nonzero(rates[:, :-1] * rates[:, 1:] < 0)
     (w, after), (v, v_after) = ((one[:, :-1][turns], one[:, 1:][turns]) for one in (tips, rates))
-    at, rise = v / (v - v_after), after - w
+    at, rise = v / (v - v_after), after - w  # where the rate, nearly a line, is zero
     second, third = 3 * rise - 2 * v - v_after, v + v_after - 2 * rise
-    at -= (v + at * (2 * second + 3 * at * third)) / (2 * second + 6 * at * third)  # Newton
     np.maximum.at(most, turns[0], np.abs(w + at * (v + at * (second + at * third))))
     return most
 

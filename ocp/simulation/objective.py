@@ -16,8 +16,6 @@ from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, TO_QUADRAT
 from quietarm.ocp.simulation.grid import Grid
 
 _TINY = 1e-300
-_MOST_KEPT = 4000
-"""Steps up to which `beyond_quadratic` is kept, in 160 bytes a step: at most 20 MB in all."""
 
 
 def spent(
@@ -84,16 +82,13 @@ def _parted_energy(
     return ca.fabs(work[0]) + ca.fabs(work[1] - work[0]) + ca.fabs(whole - work[1])
 
 
+@lru_cache(maxsize=4)  # of a long recording they take 160 bytes a step
 def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
-    """What neighbouring steps say of the power on a step; kept, but for long recordings.
+    """What neighbouring steps say of the power on a step.
 
     The quartic through five nodes in a row, the step's own three in the middle, is the quadratic
     through these plus (x - node 1)(x - node 2)(x - node 3) (cubic + quartic (x - 1/2)).
     """
-    return (_kept_beyond if steps <= _MOST_KEPT else _beyond)(steps)
-
-
-def _beyond(steps: int) -> tuple[ca.DM, ca.DM]:
     if steps == 1:
         return ca.DM(NODES, 1), ca.DM(NODES, 1)  # no neighbour
     grid = Grid(steps)
@@ -109,9 +104,6 @@ def _beyond(steps: int) -> tuple[ca.DM, ca.DM]:
         ca.DM.triplet(*at, cubic.ravel().tolist(), len(nodes), steps),
         ca.DM.triplet(*at, quartic.ravel().tolist(), len(nodes), steps),
     )
-
-
-_kept_beyond = lru_cache(maxsize=32)(_beyond)
 
 
 @dataclass(frozen=True)

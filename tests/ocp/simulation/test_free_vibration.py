@@ -110,11 +110,12 @@ def test_the_arms_fastest_mode_is_at_the_angle_of_least_mass(start, target):
     assert fastest == pytest.approx(7.320 / math.sqrt(1 - 1.055e-1))
 
 
-@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+@pytest.mark.parametrize("name", ["single link", "arm", "two links", "damped link"])
 @pytest.mark.parametrize("target", [math.pi / 6, -1.0])
 def test_the_rows_hold_the_largest_displacement_of_any_state(plants, name, target):
-    vibration = qa.FreeVibration(plants[name], target, 1.0)
-    states = np.random.default_rng(0).standard_normal((500, 2 * plants[name].modes))
+    plant = {**plants, "damped link": qa.SingleLinkManipulator(zeta=0.1)}[name]
+    vibration = qa.FreeVibration(plant, target, 1.0)
+    states = np.random.default_rng(0).standard_normal((500, 2 * plant.modes))
     kept = np.abs(states @ vibration.rows.T).max(axis=1)
     np.testing.assert_allclose(kept, vibration.peak(states), rtol=6e-5)
     assert len(vibration.rows) < vibration.fastest / 0.02

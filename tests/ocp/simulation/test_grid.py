@@ -1,4 +1,4 @@
-"""How many steps a move takes, and what is kept of a grid for the next simulation."""
+"""How many steps a move takes."""
 
 import math
 from dataclasses import dataclass
@@ -8,7 +8,6 @@ import casadi as ca
 import pytest
 from fixed_steps import rollout
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.simulation.objective import beyond_quadratic
 
 import quietarm as qa
 
@@ -40,9 +39,3 @@ def test_steps_resolve_the_fastest_mode_on_the_way():
     fixed, exact = rollout(task, PLAIN, []).motion, qa.Candidate.of_profile(task, PLAIN, []).motion
     assert fixed.residual == pytest.approx(exact.residual, rel=1e-3)
     assert fixed.energy == pytest.approx(exact.energy, rel=1e-5)
-
-
-def test_what_a_long_recording_takes_is_not_kept():
-    # 160 bytes a step: 32 recordings of 200,000 samples would take 1 GB.
-    assert beyond_quadratic(140)[0] is beyond_quadratic(140)[0]
-    assert beyond_quadratic(9_000)[0] is not beyond_quadratic(9_000)[0]
