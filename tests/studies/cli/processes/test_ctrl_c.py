@@ -5,8 +5,6 @@ import signal
 
 import pytest
 from lines import MOVE
-from quietarm.ocp import Front
-from quietarm.studies.reproduce.paper import ARM_HALF
 
 INTERRUPTED = "quietarm: interrupted; what was written until then is kept"
 SEARCH = f"search {MOVE} --method vepso --bound 0.2 --terms 2 --population 8 --generations 100000"
@@ -40,13 +38,3 @@ def test_what_is_stopped_writes_nothing(at_a_terminal, stop, folder, plan, line,
     assert (process.returncode, out) == (1, "")
     assert err.splitlines()[-1] == INTERRUPTED
     assert [path.name for path in folder.iterdir()] == ["plan.json"]
-
-
-def test_a_reproduction_keeps_its_fronts(at_a_terminal, stop, folder):
-    process = at_a_terminal("reproduce --workers 1 --output results")
-    begin(process, r"\[1/")
-    out, err = stop(process)
-    assert (process.returncode, out) == (1, "")
-    assert err.splitlines()[-1] == INTERRUPTED
-    first = min((folder / "results" / "fronts").iterdir(), key=lambda path: path.stat().st_mtime)
-    assert Front.load(first).task == ARM_HALF.task

@@ -1,9 +1,10 @@
 """Some forty questions with known answers, asked by public functions only.
 
-    PYTHONPATH=. python tests/ocp/goldens/questions.py [name ...]
+    python tests/helpers/golden_questions.py [name ...]
 
-writes the answers of this version to `answers.json`, all or those named; `test_answers.py` holds
-every later version against it. The answers are those of commit 9b4f93f8.
+writes the answers of this version to `tests/ocp/golden_answers.json`, all or those named;
+`tests/ocp/test_golden_answers.py` holds every later version against them. They are those of
+commit 9b4f93f8.
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import quietarm as qa
 
-ANSWERS = Path(__file__).with_name("answers.json")
+ANSWERS = Path(__file__).parents[1] / "ocp" / "golden_answers.json"
 PEAKS = "torque", "speed", "acceleration", "jerk", "deflection"
 KEPT, SOLVED, REPLACED, ROBUST = 1e-9, 1e-7, 1e-6, 1e-4
 """Relative tolerances: of what is only computed; of energies by the same solver, which ends up to
@@ -83,19 +83,12 @@ def arm(**options: Any) -> qa.PointToPoint:
 
 def uncertain(plant: Any, target: float, duration: float, **ranges: float) -> qa.PointToPoint:
     """A move of a plant whose parameters are known within ranges."""
-    if hasattr(qa, "Uncertainty"):
-        return qa.PointToPoint(plant, target, duration, uncertainty=qa.Uncertainty(ranges))
-    return qa.PointToPoint(qa.UncertainPlant(plant, ranges), target, duration)
-
-
-def peak(motion: Any, name: str) -> float:
-    """A largest absolute value on the way."""
-    return float(motion.peak(name))
+    return qa.PointToPoint(plant, target, duration, uncertainty=qa.Uncertainty(ranges))
 
 
 def figures(plan: Any) -> Answer:
     """Energy, residual and peaks of a plan."""
-    peaks = {f"peak_{name}": peak(plan.motion, name) for name in PEAKS}
+    peaks = {f"peak_{name}": plan.motion.peak(name) for name in PEAKS}
     return {"energy": plan.energy, "residual": plan.residual, **peaks}
 
 
@@ -134,9 +127,9 @@ def weighted(task: qa.PointToPoint, bound: float) -> Answer:
     return {"sums": (scaled @ np.transpose(weights)).min(axis=0).tolist()}
 
 
-def floor(task: qa.PointToPoint, **options: Any) -> Answer:
+def floor(task: qa.PointToPoint) -> Answer:
     """The energy of the best free motion, and its residual."""
-    found = qa.energy_floor(task, **options)
+    found = qa.energy_floor(task)
     return {"energy": found.energy, "residual": found.residual}
 
 
@@ -175,8 +168,7 @@ def swing(omega: float, zeta: float, rate: float, seconds: float) -> tuple[NDArr
 def identified(plant: Any, omega: float, zeta: float) -> Answer:
     """Parameters from a made-up ring-down."""
     time, tip = swing(omega, zeta, 200.0, 6.0)
-    package = qa if hasattr(qa, "identify") else import_module("quietarm.studies.identify")
-    found = package.identify([package.Recording(time, tip=tip)], plant)
+    found = qa.identify([qa.Recording(time, tip=tip)], plant)
     return {one.parameter: one.value for one in found.estimates}
 
 
@@ -226,7 +218,6 @@ def _searches() -> dict[str, Question]:
     }
     asked |= {
         "weighted front": Question(partial(weighted, HALF, 0.5), REPLACED),
-        "floor smooth": Question(partial(floor, SIXTH, smooth=True), REPLACED),
         "floor limited": Question(partial(floor, arm(acceleration_limit=100.0)), REPLACED),
         "robust link": Question(
             partial(robust, uncertain(LINK, math.pi / 6, 0.8, frequency=0.1), residual_limit=4e-3),
