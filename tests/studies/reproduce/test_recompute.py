@@ -33,7 +33,7 @@ from quietarm.studies.reproduce.searched import OLD_CONSTANTS
 SHORT = Effort(
     full=True,
     searches={
-        "vepso": {"population": 20, "generations": 40},
+        "vepso": {"population": 20, "generations": 8},
         "nsga2-paper": {"population": 20, "generations": 3},
     },
     starts=1,
