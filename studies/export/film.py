@@ -74,14 +74,13 @@ class Film:
     def save(
         self,
         path: str | Path,
-        format: str | None = None,  # noqa: A002  # as other libraries call it
         report: Callable[[int, int], object] = lambda done, total: None,
     ) -> None:
         """Write a film as gif, mp4 (by the program ffmpeg) or html, whole or not at all.
 
         ValueError where the name ends in something else, or there is no ffmpeg.
         """
-        name = format_of(Path(path), format)
+        name = format_of(Path(path))
         if not FORMATS[name].is_film:
             raise ValueError(f"{path} is no film; end its name in .gif, .mp4 or .html")
         write_whole(path, self._content(name, report))

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from quietarm.ocp import InfeasibleTaskError, Plan
-from quietarm.ocp.checks import positive, unknown
+from quietarm.ocp.checks import positive
 from quietarm.ocp.files import write_whole
-from quietarm.studies.export.tables import columns_of, csv_text, mat_bytes, ros_text, table
+from quietarm.studies.export.tables import csv_text, mat_bytes, ros_text
 
 COLUMNS, RATE, FRAMES, JOINT = "time,angle,speed,acceleration", 1000.0, 25.0, "joint"
 WIDTHS = 200, 2000
@@ -19,10 +20,14 @@ _FILM = ("speed", "deflection_scale", "width", "rate")
 
 @dataclass(frozen=True)
 class Format:
-    """The endings of a format's files, and what of `export` it takes."""
+    """The endings of a format's files, and what of `export` it takes.
+
+    `content` is (plan, what it takes) -> text or bytes; None of C, which has two files, and films.
+    """
 
     endings: tuple[str, ...]
-    takes: tuple[str, ...] = field(default=())
+    takes: tuple[str, ...] = ()
+    content: Callable[..., str | bytes] | None = None
 
     @property
     def is_film(self) -> bool:
@@ -31,37 +36,31 @@ class Format:
 
 
 FORMATS = {
-    "csv": Format((".csv",), ("columns", "rate")),
+    "csv": Format((".csv",), ("columns", "rate"), csv_text),
     "c": Format((".c",)),
-    "ros": Format((".yaml", ".yml"), ("rate", "joint")),
-    "mat": Format((".mat",), ("columns", "rate")),
+    "ros": Format((".yaml", ".yml"), ("rate", "joint"), ros_text),
+    "mat": Format((".mat",), ("columns", "rate"), mat_bytes),
     "gif": Format((".gif",), _FILM),
     "mp4": Format((".mp4",), _FILM),
     "html": Format((".html",), _FILM),
 }
 
 
-def format_of(path: Path, format: str | None = None) -> str:  # noqa: A002
-    """The format of a file: the one that is given, or by its ending; ValueError where neither."""
+def format_of(path: Path) -> str:
+    """The format of a file by the ending of its name; ValueError where there is none."""
     ending = path.suffix.lower()
-    by_ending = next((name for name, form in FORMATS.items() if ending in form.endings), None)
-    if format is not None and format not in FORMATS:
-        raise ValueError(unknown("format", format, FORMATS))
-    name = format or by_ending
+    for name, form in FORMATS.items():
+        if ending in form.endings:
+            return name
     if ending == ".h":
         raise ValueError(f"{path} is written beside its C source; give {path.with_suffix('.c')}")
-    if name is None:
-        known = ", ".join(one for form in FORMATS.values() for one in form.endings)
-        raise ValueError(f"{path} does not say in which form it is; end its name in one of {known}")
-    if by_ending not in (None, name):
-        raise ValueError(f"{path} is no name for {name}; end it in {FORMATS[name].endings[0]}")
-    return name
+    known = ", ".join(one for form in FORMATS.values() for one in form.endings)
+    raise ValueError(f"{path} does not say in which form it is; end its name in one of {known}")
 
 
 def export_plan(
     plan: Plan,
     path: str | Path,
-    format: str | None = None,  # noqa: A002  # as other libraries call it
     *,
     columns: str = COLUMNS,
     rate: float = RATE,
@@ -74,10 +73,8 @@ def export_plan(
     plan : Plan
         The move.
     path : str or Path
-        The file; beside a C source `move.c` its header `move.h` is written.
-    format : {"csv", "c", "ros", "mat"}, optional
-        A table, C source, a ROS 2 JointTrajectory in YAML, or MATLAB v5; by the file's ending
-        where none is given.
+        The file: a table (.csv), C source (.c, with its header beside it), a JointTrajectory of
+        ROS 2 (.yaml) or MATLAB v5 (.mat).
     columns : str
         Of a table, with units: ``"time:ms,angle:deg,torque"``. A robust plan has a column ``tip``
         for every scenario.
@@ -94,19 +91,16 @@ def export_plan(
     Raises
     ------
     ValueError
-        When a name, a unit or a rate is out of range.
+        When a name, a unit or a rate is out of range, or the file is a film.
     """
     path = Path(path)
-    name, rate = format_of(path, format), positive("sample rate", rate, "Hz")
-    if name == "c":
+    form = FORMATS[format_of(path)]
+    if form.is_film:
+        raise ValueError(f"{path} is a film; make it by animate(plan).save(path)")
+    if form.content is None:
         return _write_c(plan, path)
-    if name == "ros":
-        content: str | bytes = ros_text(plan, joint, rate)
-    else:
-        rows = table(plan, columns_of(columns, plan.task.plant.joint), rate)
-        facts = {"coefficients": plan.coefficients, "duration_s": plan.task.duration}
-        content = csv_text(rows) if name == "csv" else mat_bytes(rows, facts)
-    write_whole(path, content)
+    given = {"columns": columns, "rate": positive("sample rate", rate, "Hz"), "joint": joint}
+    write_whole(path, form.content(plan, **{one: given[one] for one in form.takes}))
     return [path]
 
 

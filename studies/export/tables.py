@@ -62,8 +62,8 @@ def columns_of(text: str, joint: str) -> dict[str, tuple[str, float]]:
     return columns
 
 
-def table(plan: Plan, columns: Mapping[str, tuple[str, float]], rate: float) -> dict[str, Array]:
-    """Columns by their headings, as `angle_deg`, at a rate [Hz].
+def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
+    """Columns, as `columns_of` reads them, by their headings, as `angle_deg`, at a rate [Hz].
 
     The last row is the first tick at or after arrival. Each tip has a column of its own, and of a
     robust plan in each scenario, which its heading names.
@@ -77,7 +77,7 @@ def table(plan: Plan, columns: Mapping[str, tuple[str, float]], rate: float) -> 
     }  # fmt: skip
     names = {} if plan.task.plant.joint == ROTARY else _LINEAR_NAMES
     found: dict[str, Array] = {}
-    for name, (unit, factor) in columns.items():
+    for name, (unit, factor) in columns_of(columns, plan.task.plant.joint).items():
         ending = unit.replace("/", "_").replace("^", "")
         of_name = tips if name == "tip" else {(names.get(name, name), ""): values[name]}
         found |= {f"{one}_{ending}{after}": factor * v for (one, after), v in of_name.items()}
@@ -100,26 +100,28 @@ def _ticks(plan: Plan, rate: float) -> Array:
     return np.arange(ticks_of_move(plan.task.duration, rate) + 1) / rate
 
 
-def csv_text(columns: Mapping[str, Array]) -> str:
+def csv_text(plan: Plan, columns: str, rate: float) -> str:
     """Comma-separated values under a heading."""
     import pandas  # not at the top: it takes half a second to load
 
-    return pandas.DataFrame(columns).to_csv(index=False, float_format="%.12g", lineterminator="\n")
+    rows = pandas.DataFrame(table(plan, columns, rate))
+    return rows.to_csv(index=False, float_format="%.12g", lineterminator="\n")
 
 
-def mat_bytes(columns: Mapping[str, Array], facts: Mapping[str, Any]) -> bytes:
-    """A MATLAB v5 file: a column vector for each column, and some facts."""
+def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
+    """A MATLAB v5 file: a column vector for each column, the coefficients and the duration."""
     from scipy.io import savemat  # slow to load
 
-    file, vectors = io.BytesIO(), dict[str, Array]()
-    for name, column in columns.items():
+    file, vectors = io.BytesIO(), dict[str, Any]()
+    for name, column in table(plan, columns, rate).items():
         words = name.replace("-", "minus ").replace("+", "plus ").replace(" %", "")
         vectors[re.sub(r"\W+", "_", words)] = column
+    facts = {"coefficients": plan.coefficients, "duration_s": plan.task.duration}
     savemat(file, {**facts, **vectors}, oned_as="column")
     return file.getvalue()
 
 
-def ros_text(plan: Plan, joint: str, rate: float) -> str:
+def ros_text(plan: Plan, rate: float, joint: str) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, for one joint."""
     motion = plan.sampled(_ticks(plan, rate))
     points = [

@@ -74,19 +74,19 @@ def export(given: Given) -> None:
             raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
         written = export_moves(plans[0], output)
     elif known.is_film:
-        notes = [_write_film(plans, output, name, settings)]
+        notes = [_write_film(plans, output, settings)]
     else:
         (plan,) = load_plans(plans).values()
-        written = export_plan(plan, output, name, **settings)
+        written = export_plan(plan, output, **settings)
     finish([], *notes, *(f"wrote {path}" for path in written))
 
 
-def _write_film(plans: tuple[Path, ...], output: Path, form: str, settings: dict[str, Any]) -> str:
+def _write_film(plans: tuple[Path, ...], output: Path, settings: dict[str, Any]) -> str:
     """Write a film of plans; how long and how large it is."""
     from quietarm.studies.export.film import animate
 
     lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
     film = animate(lines if len(lines) > 1 else lines[0].plan, **settings)
     with counting(film.frames, "frames") as report:
-        film.save(output, form, report)
+        film.save(output, report)
     return f"{film.frames} frames, {film.seconds:.1f} s, {output.stat().st_size / 1e3:.0f} kB"

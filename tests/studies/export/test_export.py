@@ -122,3 +122,8 @@ def test_the_tips_of_a_robust_plan_are_named_by_their_scenarios(tmp_path):
     assert found == pytest.approx(1e3 * softer.tips[:, 0], abs=1e-9)
     export_plan(plan, tmp_path / "move.mat", columns="tip:mm", rate=50)
     assert "tip_mm_frequency_minus_5" in loadmat(tmp_path / "move.mat")
+
+
+def test_a_film_is_not_written_as_a_table(plan, tmp_path):
+    with pytest.raises(ValueError, match=r"is a film; make it by animate\(plan\)"):
+        export_plan(plan, tmp_path / "move.gif")
