@@ -83,12 +83,11 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
         how, energy = look(number), judged.motion.energy
         worst = judged.motion.residual if judged.worst is None else judged.worst.residual
         ends = [1e3 * max(residual, REST) for residual in (judged.motion.residual, worst)]
-        ax.plot(ends, [energy] * 2, color=how.colour, linewidth=1)
-        for end, fill in zip(ends, ("none", "full"), strict=True):
-            ax.plot(end, energy, how.mark, color=how.colour, markersize=5, fillstyle=fill)
-        ax.annotate(f" {judged.name}", (ends[1], energy), va="center", fontsize=8)
+        line = {"color": how.colour, "marker": how.mark, "markersize": 5}
+        ax.plot(ends[0], energy, fillstyle="none", **line)
+        ax.plot(ends, [energy] * 2, linestyle=how.dash, linewidth=1, label=judged.name,
+                markevery=[1], **line)  # fmt: skip
     logarithmic(ax, [REST, 1.0])
-    ax.margins(x=0.18)
     name_objectives(ax)
     return ax
 
@@ -103,6 +102,5 @@ def motions_figure(motions: Sequence[Judged], title: str) -> Figure:
         axes[0].set_xlabel("residual F1 [mm] (open: nominal plant, filled: worst case)")
     for name, ax in zip(names, axes[1:], strict=True):
         draw_robustness(curves, name, ax)
-    if names:
-        figure.legend(*legend_of(axes[1:]), loc="outside lower center", ncols=4, fontsize=8)
+    figure.legend(*legend_of(axes), loc="outside lower center", ncols=4, fontsize=8)
     return figure
