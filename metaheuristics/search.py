@@ -186,7 +186,7 @@ def _generations(algorithm: Any, first: NDArray[np.float64]) -> Iterator[None]:
             algorithm.advance()
             continue
         if len(first):
-            for individual, row in zip(infills, first, strict=False):
+            for individual, row in zip(infills, first):
                 individual.X = row.copy()
             first = first[:0]
         algorithm.evaluator.eval(algorithm.problem, infills, algorithm=algorithm)

@@ -85,4 +85,4 @@ def _wave_number(index: int, ratio: Expression) -> Expression:
 
 def _integral(*factors: Sequence[Expression]) -> Expression:
     """Of a product along the beam, each factor given at the places."""
-    return sum(prod(at) for at in zip(_WEIGHTS, *factors, strict=True))
+    return sum(prod(at) for at in zip(_WEIGHTS, *factors))

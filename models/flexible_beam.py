@@ -122,7 +122,7 @@ class FlexibleBeam(Plant):
         """Second derivatives of what each mode displaces the tip by [m/s^2]."""
         first, *_ = self._modes.wave_numbers
         found: list[Expression] = []
-        for i, (k, mass, push, stiffening) in enumerate(zip(*self._modes, strict=True)):
+        for i, (k, mass, push, stiffening) in enumerate(zip(*self._modes)):
             omega = self.omega * (k / first) ** 2
             by_speed = sum(map(mul, stiffening, W)) / mass - W[i]
             vibration = -2 * self.zeta * omega * dW[i] - omega**2 * W[i]

@@ -114,7 +114,7 @@ def _equations(plant: Plant) -> ca.Function:
     outputs_of(plant, [ca.MX.sym("x") for _ in range(size)])  # math.cos makes a nan of an SX
     x = ca.SX.sym("x", size)
     outputs = outputs_of(plant, ca.vertsplit(x))
-    for method, output in zip(_methods(plant), outputs, strict=True):
+    for method, output in zip(_methods(plant), outputs):
         if method != "torque" and not ca.is_linear(output, x[3:]):
             raise _wrong(plant, method, "is not affine in W and W'", "linearise it")
     column = ca.densify(ca.vertcat(*outputs))
@@ -175,7 +175,7 @@ def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
     """Many motions that stand side by side in matrices give what each gives alone."""
     outputs = outputs_of(plant, [ca.DM(column.ravel()) for column in np.moveaxis(motions, 2, 0)])
     each = np.moveaxis(values, 2, 0).reshape(len(outputs), -1)
-    for method, output, alone in zip(_methods(plant), outputs, each, strict=True):
+    for method, output, alone in zip(_methods(plant), outputs, each):
         found = ca.DM(output).full().T
         least = 1e-9 * np.abs(alone).max()
         if len(found) > 1 or not np.allclose(found, alone, rtol=1e-9, atol=least):

@@ -86,10 +86,7 @@ class Candidate(Ranged):
     @cached_property
     def scenarios(self) -> tuple[Candidate, ...]:
         """The motion in every scenario of the task, itself the first."""
-        named = (
-            dict(zip(self.task.error_names, errors, strict=True))
-            for errors in self.task.scenarios[1:]
-        )
+        named = (dict(zip(self.task.error_names, errors)) for errors in self.task.scenarios[1:])
         return (self, *map(self.perturbed, named))
 
     @property
@@ -101,7 +98,7 @@ class Candidate(Ranged):
     def residual(self) -> float:
         """Largest tip displacement after arrival from the wanted free vibration, F1 [m]."""
         missed = self.task.missed(self.arrival)
-        each = zip(self.scenarios, missed, strict=True)
+        each = zip(self.scenarios, missed)
         return max(float(one._vibration.peak(state)) for one, state in each)
 
     @cached_property

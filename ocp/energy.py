@@ -122,7 +122,7 @@ class Mix(Energy):
         """The labels of the parts with their weights, as they are typed."""
         weights = ("" if weight == 1 else f"{weight:.12g}*" for weight, _ in self.parts)
         labels = (part.label for _, part in self.parts)
-        return "+".join(map("".join, zip(weights, labels, strict=True)))
+        return "+".join(map("".join, zip(weights, labels)))
 
 
 def _parts(energy: Energy) -> tuple[tuple[float, Energy], ...]:

@@ -69,7 +69,7 @@ def perturbed_figures(
         block = errors[first : first + _BLOCK]
         candidates, moves = (np.tile(one, (len(block), 1)) for one in (motion, task.row))
         found = rows.values(candidates, moves, block)
-        plants = perturb_plant(task.plant, dict(zip(names, map(ca.DM, block.T), strict=True)))
+        plants = perturb_plant(task.plant, dict(zip(names, map(ca.DM, block.T))))
         vibrations = FreeVibration(plants, [task.target] * len(block), task.residual_window)
         residual = vibrations.peak(task.missed(found.arrival))
         torque = np.abs(found.limited).max(axis=1)
@@ -96,7 +96,7 @@ def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
     """The same within ranges of errors for a motion that has no profile, by CVODES alone."""
 
     def residuals(errors: Array) -> Array:
-        found = (dict(zip(ranges, one, strict=True)) for one in errors.tolist())
+        found = (dict(zip(ranges, one)) for one in errors.tolist())
         return np.array([candidate.perturbed(one).residual for one in found])
 
     return _peaks(residuals, candidate, ranges, _ALONG_BY_CVODES[len(ranges)])[0]
@@ -129,7 +129,7 @@ def _peaks(
             step = 2 / (along - 1) / 2**finer
             around = np.clip(peak + step * _grid(_BESIDE, count), -1, 1)
             peak = around[np.argmax(residuals(around * largest))]
-        errors = dict(zip(ranges, (peak * largest).tolist(), strict=True))
+        errors = dict(zip(ranges, (peak * largest).tolist()))
         return Worst(errors, candidate.perturbed(errors).residual)
 
     shares = _grid(np.linspace(-1, 1, along), count)
@@ -204,7 +204,7 @@ def sensitivities_of_moves(
         above, below = (rows.values(coefficients, moves, each) for each in (errors, -errors))
         return _slopes(above, below, vibrations)
 
-    return dict(zip(OF_MODES, map(of, np.eye(2)), strict=True))
+    return dict(zip(OF_MODES, map(of, np.eye(2))))
 
 
 def _slopes(above: Simulated, below: Simulated, vibration: FreeVibration) -> tuple[Any, Array]:
@@ -351,7 +351,7 @@ def evaluate_robustness(
         assumed=Figures(*swept[0][[_SIDE]].T),
         sweeps=tuple(
             _sweep(name, size * shares, Figures(*rows.T), TOLERATED * cycloid)
-            for (name, size), rows in zip(ranges.items(), swept, strict=True)
+            for (name, size), rows in zip(ranges.items(), swept)
         ),
         errors=random,
         samples=Figures(*sampled.T),

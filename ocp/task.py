@@ -226,7 +226,7 @@ class PointToPoint:
     @cached_property
     def perturbed_plants(self) -> tuple[Plant, ...]:
         """The plant in every scenario, the nominal one first."""
-        others = (dict(zip(self.ranges, one, strict=True)) for one in self.scenarios[1:])
+        others = (dict(zip(self.ranges, one)) for one in self.scenarios[1:])
         return (self.plant, *(perturb_plant(self.plant, errors) for errors in others))
 
     @property

@@ -55,10 +55,10 @@ def _check_points(front: Front, table: NDArray[np.float64]) -> None:
     places = np.unique(np.linspace(0, count - 1, min(count, _SAMPLE)).round().astype(int))
     with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused below
         values = objective_of(front.task, front.profile)(table[places])
-    rows = zip(places.tolist(), values.residual, values.energy, values.violations, strict=True)
+    rows = zip(places.tolist(), values.residual, values.energy, values.violations)
     for i, *both, violations in rows:
         which = f"point {i + 1} of {count}"
-        for (figure, unit, least), found in zip(FIGURES, both, strict=True):
+        for (figure, unit, least), found in zip(FIGURES, both):
             stated = getattr(front.points[i], figure)
             if not agrees(stated, found, least):
                 gives = f"{found:.4g} {unit}" if np.isfinite(found) else "no finite figure"
@@ -66,7 +66,7 @@ def _check_points(front: Front, table: NDArray[np.float64]) -> None:
                     f"{which} states {figure} {stated:.4g} {unit}, but its coefficients give "
                     f"{gives}"
                 )
-        for limit, passed in zip(limits, violations, strict=True):
+        for limit, passed in zip(limits, violations):
             if not passed <= OVERRUN:
                 raise ValueError(
                     f"{which} breaks the {limit.name} limit of {limit.bounds}: its coefficients "

@@ -123,7 +123,7 @@ class PopulationObjective:
         found = self._batch.values(rows, move, errors, self.threads)
         missed = self.task.missed(found.arrival)
         missed = missed.reshape(scenarios, count, len(self.task.final_state))
-        each = zip(missed, self._tip_rows, strict=True)
+        each = zip(missed, self._tip_rows)
         residual = np.max([np.abs(z @ tips.T).max(axis=1) for z, tips in each], axis=0)
         violations = np.empty((count, len(self.task.limits)))
         for i, limit in enumerate(self.task.limits):

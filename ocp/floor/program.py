@@ -76,15 +76,15 @@ def _interval(
     one = Step(h, [], modes)
     equations, power, rest = list[Expression](), list[Expression](), list[Expression]()
     limited = [[] if one.derivative is None else [begun[one.derivative]] for one in quantities]
-    for share, node in zip(GAUSS_NODES, one.nodes(W, dW, ddW), strict=True):
+    for share, node in zip(GAUSS_NODES, one.nodes(W, dW, ddW)):
         joint = joint_after(begun, share * h)
         by_plant = plant.modal_accelerations(joint, node.W, node.dW)
-        equations += [own - other for own, other in zip(node.ddW, by_plant, strict=True)]
+        equations += [own - other for own, other in zip(node.ddW, by_plant)]
         torque = plant.torque(joint, node.W, node.dW, node.ddW)
         power.append(power_of(torque, joint.speed))
         rest.append(energy.smooth(torque, joint.speed))
         tips = plant.tip_displacements(node.W)
-        for quantity, values in zip(quantities, limited, strict=True):
+        for quantity, values in zip(quantities, limited):
             if quantity.derivative is None:
                 values += quantity.of(joint, tips, torque)
     W_after, dW_after = one.end(W, dW, ddW)
@@ -134,7 +134,7 @@ class FloorProgram:
 
     def _peaks(self, limited: Sequence[Array]) -> list[float]:
         """The peak of each limited quantity, of its values."""
-        each = zip(self._limits, limited, strict=True)
+        each = zip(self._limits, limited)
         return [float(limit.peak(values.min(), values.max())) for limit, values in each]
 
     def _build(self, steps: int, warm: bool) -> tuple[ca.Function, Array]:
@@ -158,9 +158,7 @@ class FloorProgram:
             spent += self.task.energy.absolute * (forward + backward)
             equal.append(forward - backward - power / of_energy)
         positive = list[ca.MX]()
-        for limit, peak, value, of in zip(
-            self._limits, ca.vertsplit(peaks), values, measures, strict=True
-        ):
+        for limit, peak, value, of in zip(self._limits, ca.vertsplit(peaks), values, measures):
             below, above = limit.sides
             positive += [above * peak - value / of, value / of - below * peak]
         mean = ca.dot(lengths, (ca.DM(GAUSS_WEIGHTS).T @ spent).T) / ca.sum1(lengths)
@@ -209,7 +207,7 @@ class FloorProgram:
         return FreeSolution(
             free=FreeMotion(free.times, acceleration, jerk),
             energy=float(mean * self.task.duration * self._measures[0]),
-            peaks=dict(zip(names, (peaks * self._measures[1:]).tolist(), strict=True)),
+            peaks=dict(zip(names, (peaks * self._measures[1:]).tolist())),
             status=SolveStatus.from_ipopt(stop.return_status),
         )
 

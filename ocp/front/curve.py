@@ -101,7 +101,7 @@ class Curve:
             self.point_of(outcome)
             if isinstance(outcome, Certified)
             else Certificate(FailedPoint(asked, str(outcome)), solution.iterations)
-            for (solution, asked), outcome in zip(found, ended, strict=True)
+            for (solution, asked), outcome in zip(found, ended)
         ]
 
     def point_of(self, found: Certified) -> Certificate:

@@ -188,11 +188,11 @@ def _improve(
     )
     changed = {
         limit
-        for limit, problem, one in zip(limits, problems, found, strict=True)
+        for limit, problem, one in zip(limits, problems, found)
         if limit not in best or better(one, best[limit], problem.scalarization)
     }
     improved = dict(best)
-    for limit, one in zip(limits, found, strict=True):
+    for limit, one in zip(limits, found):
         spent = one.iterations + (best[limit].iterations if limit in best else 0)
         improved[limit] = replace(one if limit in changed else best[limit], iterations=spent)
     return improved, changed

@@ -138,7 +138,7 @@ class Front(Answer):
         ValueError when the file cannot be written.
         """
         columns = self.columns()
-        rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+        rows = zip(*(column.tolist() for column in columns.values()))
         lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
         write_whole(path, "\n".join(lines) + "\n")
 

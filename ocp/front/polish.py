@@ -76,7 +76,7 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     starts = [np.array(point.coefficients) for point in front.points]
     tried = list[list[Certificate]]()
     solved = curve.solver.solve(problems, starts)
-    for point, solution in zip(front.points, solved, strict=True):
+    for point, solution in zip(front.points, solved):
         tried.append(_improve(curve, point, solution))
         report(len(tried), len(front.points))
     found, record = [one for own in tried for one in own], front.record

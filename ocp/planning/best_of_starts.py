@@ -75,7 +75,7 @@ def best_of_starts(
     grouped = groups if leave and len(flat) > len(problems) else None
     found = solver.solve([problems[i] for i in groups], flat, warm=warm, groups=grouped)
     remaining, best = iter(found), list[Solution]()
-    for problem, guesses in zip(problems, starts, strict=True):
+    for problem, guesses in zip(problems, starts):
         own = list(islice(remaining, len(guesses)))
         lowest = min(own, key=lambda one: objective_of(one, problem.scalarization))
         best.append(replace(lowest, iterations=sum(one.iterations for one in own)))

@@ -110,7 +110,7 @@ def certify(
     profile; what has to hold by CVODES are their own limits by default. An error stands for a
     motion that exceeds a limit all the same.
     """
-    pairs = zip(problems, solutions, strict=True)
+    pairs = zip(problems, solutions)
     rows = [_Row(*pair, tolerances, limits) for pair in pairs]
     found = dict[int, Outcome]()
     many = [
@@ -119,10 +119,10 @@ def certify(
     ]  # fmt: skip
     if len(many) >= _EVERY:
         own = _confirm(_settle([rows[i] for i in many], solver, _judge_by_finer_steps))
-        found = dict(zip(many, own, strict=False))
+        found = dict(zip(many, own))
     others = [i for i in range(len(rows)) if not isinstance(found.get(i), Certified)]
     anew = [_Row(problems[i], solutions[i], tolerances, limits) for i in others]
-    found |= dict(zip(others, _settle(anew, solver, _judge_by_cvodes), strict=True))
+    found |= dict(zip(others, _settle(anew, solver, _judge_by_cvodes)))
     return [found[i] for i in range(len(rows))]
 
 
@@ -233,7 +233,7 @@ def _correct(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
         problems = [
             Problem(row.transcription, row.asked._replace(
                 limits=row.tightened, offset=row.figures.arrival - motion.arrival))
-            for row, motion in zip(own, by_steps, strict=True)
+            for row, motion in zip(own, by_steps)
         ]  # fmt: skip
         solved += _solve_again(own, problems, solver)
     return solved
@@ -248,7 +248,7 @@ def _refine(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
         finer = transcribe(tasks, one.profile, 2 * one.steps)
         for row in own:
             row.tightened = row.asked.limits
-        pairs = zip(finer, own, strict=True)
+        pairs = zip(finer, own)
         solved += _solve_again(own, [Problem(each, row.asked) for each, row in pairs], solver)
     return solved
 
@@ -258,7 +258,7 @@ def _solve_again(
 ) -> Iterable[_Row]:
     """The rows that are solved from their solutions, whose iterations count as well."""
     found = solver.solve(problems, [row.best.coefficients for row in rows], warm=True)
-    for row, problem, new in zip(rows, problems, found, strict=True):
+    for row, problem, new in zip(rows, problems, found):
         if new.status.solved:
             row.best = replace(new, iterations=row.best.iterations + new.iterations)
             row.problem = problem
@@ -287,8 +287,8 @@ def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
         window = tasks[0].residual_window
         vibrations = FreeVibration(tasks[0].plant, [task.target for task in tasks], window)
         wanted = np.array([task.final_state for task in tasks])
-        figures = zip(values.energy, vibrations.peak(values.arrival - wanted), strict=True)
-        for row, arrival, (energy, residual) in zip(own, values.arrival, figures, strict=True):
+        figures = zip(values.energy, vibrations.peak(values.arrival - wanted))
+        for row, arrival, (energy, residual) in zip(own, values.arrival, figures):
             row.judged(FinerFigures(float(energy), float(residual), arrival[None]))
 
 

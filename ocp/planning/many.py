@@ -125,7 +125,7 @@ def plan_moves(
             continue
         own = [problems[i] for i in unsolved]
         found = best_of_starts(own, [guesses] * len(own), by)
-        for i, one in zip(unsolved, found, strict=True):
+        for i, one in zip(unsolved, found):
             if one.status.solved:
                 best[i] = one
     return _moves_of(problems, best, chosen)
@@ -165,7 +165,7 @@ def _moves_of(problems: Sequence[Problem], found: Sequence[Solution], solver: So
     coefficients = np.full((count, profile.size), np.nan)
     peaks = {name: np.full(count, np.nan) for name in QUANTITIES}
     finer = list[int]()
-    for i, outcome in zip(solved, outcomes, strict=True):
+    for i, outcome in zip(solved, outcomes):
         if isinstance(outcome, SolverFailedError):
             ended[i] = replace(
                 found[i], status=SolveStatus.NOT_CERTIFIED, reason=str(outcome), shadow_prices={}

@@ -256,7 +256,7 @@ def _by_fixed_steps(
     fixed = batch(task.plant, profile, steps, (), task.error_names, task.energy, breaks)
     motion, row = (np.tile(one, (len(errors), 1)) for one in (coefficients, task.row))
     found = fixed.values(motion, row, errors)
-    each = zip(after_arrival(task), task.missed(found.arrival), strict=True)
+    each = zip(after_arrival(task), task.missed(found.arrival))
     residual = max(float(vibration.peak(state)) for vibration, state in each)
     return steps, float(found.energy[0]), residual
 

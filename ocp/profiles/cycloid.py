@@ -151,7 +151,7 @@ class CycloidSpline(Cycloid):
         found: list[Expression] = []
         for degree in range(DEGREE, DEGREE - 3, -1):
             basis = b_splines(knots, degree, fraction)
-            found.append(sum(p * B for p, B in zip(points, basis, strict=True)))
+            found.append(sum(p * B for p, B in zip(points, basis)))
             knots = knots[1:-1]
             # its derivative's: differences over the length that neighbouring B-splines share
             points = [

@@ -237,7 +237,7 @@ def check_profile(profile: JointProfile) -> None:
         ("acceleration", acceleration, by_speed, "the derivative of the speed"),
     ]
     names = "angle", "speed", "acceleration"
-    for name, other, value in zip(names, others, table.T[:3], strict=True):
+    for name, other, value in zip(names, others, table.T[:3]):
         compared.append(
             (f"{name} by outer(inner(...))", other, value, f"the {name} of derivatives")
         )

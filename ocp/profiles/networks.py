@@ -99,8 +99,8 @@ class CycloidOfUnits(Cycloid):
         n, T = self.terms, 2 * fraction - 1  # eq (7)
         constant, *weights = coefficients[: 1 + n]
         p, dp, ddp = constant + 0 * T, 0 * T, 0 * T
-        own = zip(coefficients[1 + n : 1 + 2 * n], coefficients[1 + 2 * n :], strict=True)
-        for v, (x, y) in zip(weights, own, strict=True):
+        own = zip(coefficients[1 + n : 1 + 2 * n], coefficients[1 + 2 * n :])
+        for v, (x, y) in zip(weights, own):
             g, dg, ddg = self.unit(x, y, T)
             p, dp, ddp = p + v * g, dp + v * dg, ddp + v * ddg
         return with_bump(fraction, p, dp, ddp)

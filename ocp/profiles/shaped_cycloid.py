@@ -126,9 +126,9 @@ def convolved(shapers: Sequence[Impulses]) -> Impulses:
         impulses = [
             (time + later, amplitude * share)
             for time, amplitude in impulses
-            for share, later in zip(*shaper, strict=True)
+            for share, later in zip(*shaper)
         ]
-    times, amplitudes = zip(*sorted(impulses), strict=True)
+    times, amplitudes = zip(*sorted(impulses))
     return Impulses(amplitudes, times)
 
 
@@ -177,7 +177,7 @@ class ShapedCycloid(JointProfile):
                     f"damping ratio is {zeta:g}; give one between -1 and 1: other modes do not "
                     "vibrate"
                 )
-        each = [SHAPERS[self.shaper](*mode) for mode in zip(frequencies, damping, strict=True)]
+        each = [SHAPERS[self.shaper](*mode) for mode in zip(frequencies, damping)]
         if (count := math.prod(len(one.times) for one in each)) > MOST_IMPULSES:
             raise ValueError(
                 f"{self.shaper} for {len(frequencies)} modes has {count} impulses; quietarm goes "
@@ -219,7 +219,7 @@ class ShapedCycloid(JointProfile):
         start, target, duration = move
         cycloid, turn = duration - self.length, 2 * math.pi
         angle = speed = acceleration = 0 * fraction
-        for share, begin in zip(*self.impulses, strict=True):
+        for share, begin in zip(*self.impulses):
             own = (fraction * duration - begin) / cycloid
             # Not fmin and fmax, whose derivative is halved where the move begins and ends.
             own = ca.if_else(ca.logic_and(own >= 0, own <= 1), own, own > 1)

@@ -27,7 +27,7 @@ class BufferedFunction:
 
     def __call__(self, *inputs: ArrayLike) -> list[NDArray[np.float64]]:
         """The outputs, transposed as the inputs are; the next call overwrites them."""
-        for own, values in zip(self._inputs, inputs, strict=True):
+        for own, values in zip(self._inputs, inputs):
             own[...] = values
         self._run()
         return self._outputs

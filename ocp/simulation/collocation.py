@@ -102,7 +102,7 @@ class Step:
 
     def driven_by(self, forcing: Sequence[Expression]) -> Step:
         """The step with another excitation of each node and mode, in the order of `response`."""
-        rows = zip(self.forced, self.response, strict=True)
+        rows = zip(self.forced, self.response)
         return replace(self, response=[[dot(gains, forcing), *row[1:]] for gains, row in rows])
 
     def accelerations(self, W: Modes, dW: Modes) -> list[list[Expression]]:
@@ -115,11 +115,11 @@ class Step:
 
     def end(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> tuple[Modes, Modes]:
         """State after the step, from the state before it and W'' at its nodes."""
-        times, by_mode = [self.h, self.h * self.h], list(zip(*ddW, strict=True))
+        times, by_mode = [self.h, self.h * self.h], list(zip(*ddW))
         ends = [(dot(_ONCE[NODES], own), dot(_TWICE[NODES], own)) for own in by_mode]
         return (
-            [w + dot(times, (v, twice)) for w, v, (_, twice) in zip(W, dW, ends, strict=True)],
-            [v + dot(times[:1], (once,)) for v, (once, _) in zip(dW, ends, strict=True)],
+            [w + dot(times, (v, twice)) for w, v, (_, twice) in zip(W, dW, ends)],
+            [v + dot(times[:1], (once,)) for v, (once, _) in zip(dW, ends)],
         )
 
     def transition(self) -> tuple[list[Expression], list[list[Expression]]]:
@@ -135,12 +135,12 @@ class Step:
 
     def nodes(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> list[NodeState]:
         """The modes at the nodes, from the state before the step and W'' at its nodes."""
-        h, square, by_mode = self.h, self.h * self.h, list(zip(*ddW, strict=True))
+        h, square, by_mode = self.h, self.h * self.h, list(zip(*ddW))
         return [
             NodeState(
                 [w + c * h * v + square * dot(_TWICE[j], own)
-                 for w, v, own in zip(W, dW, by_mode, strict=True)],
-                [v + h * dot(_ONCE[j], own) for v, own in zip(dW, by_mode, strict=True)],
+                 for w, v, own in zip(W, dW, by_mode)],
+                [v + h * dot(_ONCE[j], own) for v, own in zip(dW, by_mode)],
                 list(ddW[j]),
             )
             for j, c in enumerate(GAUSS_NODES)
@@ -149,7 +149,7 @@ class Step:
 
 def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
     """One step of length h [s] from the joint at its nodes."""
-    fields = zip(*(joint[:3] for joint in joints), strict=True)
+    fields = zip(*(joint[:3] for joint in joints))
     joint = JointMotion(*(ca.horzcat(*(0 * h + x for x in field)) for field in fields))
     return collocate(modal_system(plant, joint), h)
 
@@ -167,8 +167,8 @@ def collocate(system: ModalSystem, h: Expression, forced: bool = False) -> Step:
     right: list[list[Expression]] = []
     for j in range(NODES):
         for i in modes:
-            own, terms = len(matrix), [(k[j], d[j]) for k, d in zip(K[i], D[i], strict=True)]
-            weights = zip(_ONCE[j], _TWICE[j], strict=True)
+            own, terms = len(matrix), [(k[j], d[j]) for k, d in zip(K[i], D[i])]
+            weights = zip(_ONCE[j], _TWICE[j])
             implicit = [_held(h, k, d, once, twice) for once, twice in weights for k, d in terms]
             matrix.append([float(own == at) + entry for at, entry in enumerate(implicit)])
             by_rate = [_negative(d, GAUSS_NODES[j] * h, k) for k, d in terms]
@@ -201,7 +201,7 @@ def is_zero(entry: Expression) -> bool:
 
 def dot(factors: Sequence[Expression], entries: Sequence[Expression]) -> Expression:
     """The sum of products, without those that are nothing."""
-    pairs = zip(factors, entries, strict=True)
+    pairs = zip(factors, entries)
     terms = [a * b for a, b in pairs if not (is_zero(a) or is_zero(b))]
     return sum(terms[1:], terms[0]) if terms else 0.0
 
@@ -230,4 +230,4 @@ def eliminate(
 
 def _less(row: list[Expression], factor: Expression, other: list[Expression]) -> list[Expression]:
     """The row less a multiple of another; entries that are nothing cost nothing."""
-    return [a if is_zero(b) else a - factor * b for a, b in zip(row, other, strict=True)]
+    return [a if is_zero(b) else a - factor * b for a, b in zip(row, other)]

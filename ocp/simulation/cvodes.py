@@ -112,7 +112,7 @@ def _figures(
         for samples in (ca.reshape(row, -1, shape[1]) for row in (rows[-1], rows[1]))
     )
     h = given[-1, :].T @ grid.columns()[1]
-    power = [power_of(*node) for node in zip(torque, speed, strict=True)]
+    power = [power_of(*node) for node in zip(torque, speed)]
     energy, net_work = spent(definition, torque, speed, h), integrated(power, h)
     figures = [outputs, states[:, -1], ca.sum1(energy), ca.sum1(net_work)]
     dense = [ca.densify(figure) for figure in figures]  # a plant's output may be zero throughout
@@ -152,7 +152,7 @@ def _over_a_piece(
 
 
 def _perturbed(plant: Plant, names: tuple[str, ...], errors: ca.SX | ca.MX) -> Plant:
-    return perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
+    return perturb_plant(plant, dict(zip(names, ca.vertsplit(errors))))
 
 
 def _options(times: Array) -> dict[str, str | float | int]:

@@ -222,7 +222,7 @@ def _corners(x: Array, y: Array) -> list[int]:
     angle = np.unwrap(np.arctan2(y, x))
     half = np.abs(angle - angle[0]) <= np.pi
     y = np.copysign(1.0, angle[-1] - angle[0]) * y  # anticlockwise
-    points = [*zip(x[half].tolist(), y[half].tolist(), strict=True), (-float(x[0]), -float(y[0]))]
+    points = [*zip(x[half].tolist(), y[half].tolist()), (-float(x[0]), -float(y[0]))]
     corners: list[int] = []
     for i, (u, v) in enumerate(points):
         while len(corners) > 1:

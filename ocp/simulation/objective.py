@@ -27,7 +27,7 @@ def spent(
     unbroken: bool = True,
 ) -> Expression:
     """F2 from torque and speed at the Gauss nodes of every step, a row a candidate."""
-    nodes = list(zip(torque, speed, strict=True))
+    nodes = list(zip(torque, speed))
     power, beyond = [power_of(*node) for node in nodes], list[Expression]()
     if unbroken:  # across a break neighbours say nothing
         beyond = [ca.horzcat(*power) @ weights for weights in beyond_quadratic(h.shape[1])]
@@ -37,7 +37,7 @@ def spent(
 
 def integrated(at_nodes: Sequence[Expression], h: Expression) -> Expression:
     """The integral of a smooth quantity from its values at the Gauss nodes of every step."""
-    return ca.sum2(h * sum(w * x for w, x in zip(GAUSS_WEIGHTS, at_nodes, strict=True)))
+    return ca.sum2(h * sum(w * x for w, x in zip(GAUSS_WEIGHTS, at_nodes)))
 
 
 def resolved_energy(
@@ -54,7 +54,7 @@ def resolved_energy(
 
 def quadratic(power: Sequence[Expression]) -> list[Expression]:
     """Coefficients, lowest first, of the quadratic through the values at a step's nodes."""
-    return [sum(w * p for w, p in zip(row, power, strict=True)) for row in TO_QUADRATIC]
+    return [sum(w * p for w, p in zip(row, power)) for row in TO_QUADRATIC]
 
 
 def quadratic_zeros(c: Sequence[Expression]) -> list[Expression]:

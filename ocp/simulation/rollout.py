@@ -58,7 +58,7 @@ class SymbolicRollout:
     @property
     def power(self) -> list[Expression]:
         """Mechanical power of the joint at each Gauss node [W]."""
-        nodes = zip(self.torque, self.joints, strict=True)
+        nodes = zip(self.torque, self.joints)
         return [power_of(torque, joint.speed) for torque, joint in nodes]
 
     @property
@@ -74,8 +74,8 @@ class SymbolicRollout:
 
     def values(self, quantity: Quantity) -> list[Expression]:
         """A quantity at the nodes, (candidates, steps) each: all nodes of its first value first."""
-        nodes = zip(self.joints, self.tips, self.torque, strict=True)
-        by_value = zip(*(quantity.of(*node) for node in nodes), strict=True)
+        nodes = zip(self.joints, self.tips, self.torque)
+        by_value = zip(*(quantity.of(*node) for node in nodes))
         return [0 * self.h + x for at_nodes in by_value for x in at_nodes]
 
 
@@ -103,7 +103,7 @@ class Simulation(NamedTuple):
     ) -> SymbolicRollout:
         """As of `symbolic_rollout`, of the `row` of a task and relative errors of its plant."""
         return symbolic_rollout(
-            perturb_plant(self.plant, dict(zip(self.errors, errors, strict=True))), self.profile,
+            perturb_plant(self.plant, dict(zip(self.errors, errors))), self.profile,
             coefficients, row[:3], self.steps, candidates, ask_for_jerk(self.quantities),
             self.breaks, row[3:], self.energy,
         )  # fmt: skip
@@ -158,11 +158,11 @@ def symbolic_rollout(
     states = every_step.nodes(W, dW, every_step.accelerations(W, dW))
     modes = modes_at_nodes(states)
     torque, tips = plant.torque(joint, *modes), plant.tip_displacements(modes.W)
-    fields = zip(*(at_each_node(x, h) for x in joint if x is not None), strict=True)
+    fields = zip(*(at_each_node(x, h) for x in joint if x is not None))
     return SymbolicRollout(
         joints=[JointMotion(*field) for field in fields],
         states=states,
-        tips=list(zip(*(at_each_node(x, h) for x in tips), strict=True)),
+        tips=list(zip(*(at_each_node(x, h) for x in tips))),
         torque=at_each_node(torque, h),
         arrival=arrival,
         h=h,
@@ -173,8 +173,8 @@ def symbolic_rollout(
 
 def modes_at_nodes(states: Sequence[NodeState]) -> NodeState:
     """The modes at all nodes of the steps: the first nodes', then the second ones' beside these."""
-    parts = zip(*states, strict=True)
-    return NodeState(*([ca.horzcat(*x) for x in zip(*part, strict=True)] for part in parts))
+    parts = zip(*states)
+    return NodeState(*([ca.horzcat(*x) for x in zip(*part)] for part in parts))
 
 
 def march(
@@ -195,10 +195,10 @@ def march(
     given += [ca.horzsplit(ca.DM.zeros(rows, steps) + columns[k][i], 1) for i, k in acting]
     affine = _affine_step(rows, width, size, acting)
     states = [[ca.DM.zeros(rows, width) + x for x in initial or [0.0] * size]]
-    for at_step in zip(*given, strict=True):
+    for at_step in zip(*given):
         states.append(affine.call([*states[-1], *at_step], True, False))  # inline
     *before, arrival = states
-    by_mode = [ca.horzcat(*state) for state in zip(*before, strict=True)]
+    by_mode = [ca.horzcat(*state) for state in zip(*before)]
     return by_mode[: size // 2], by_mode[size // 2 :], ca.horzcat(*arrival)
 
 
@@ -209,6 +209,6 @@ def _affine_step(
     """(states, constants, entries of the matrix that are not zero) -> states after."""
     before, given = ([ca.MX.sym("x", rows, width) for _ in range(size)] for _ in range(2))
     gains, after = [ca.MX.sym("a", rows) for _ in acting], [*given]
-    for (i, k), gain in zip(acting, gains, strict=True):
+    for (i, k), gain in zip(acting, gains):
         after[i] = after[i] + ca.repmat(gain, 1, width) * before[k]
     return ca.Function("step", [*before, *given, *gains], after)

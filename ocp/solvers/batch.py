@@ -117,7 +117,7 @@ class _Compiled:
                 parts = list(pool.map(self._evaluate, blocks, sizes))
         else:
             parts = list(map(self._evaluate, blocks, sizes))
-        return [np.concatenate(part) for part in zip(*parts, strict=True)]
+        return [np.concatenate(part) for part in zip(*parts)]
 
     def prepare(self, rows: int) -> int:
         """The size of block for so many rows, built; single ones use another for a while."""

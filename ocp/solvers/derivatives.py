@@ -101,14 +101,14 @@ def differentiate_absolute(
     meet, that curvature is without bound, though only there: the slope counts as `least_slope` at
     least.
     """
-    c, basis = quadratic(power), list(zip(*TO_QUADRATIC, strict=True))
+    c, basis = quadratic(power), list(zip(*TO_QUADRATIC))
     places = quadratic_zeros(c)
     integrals = [[x * (a + x * (b / 2 + x * (d / 3))) for a, b, d in basis] for x in places]
     gradient: list[Expression] = [0.0] * NODES
     for begin, end in pairwise([[0.0] * NODES, *integrals, GAUSS_WEIGHTS]):
-        part = [after - before for before, after in zip(begin, end, strict=True)]
-        sign = ca.sign(sum(w * p for w, p in zip(part, power, strict=True)))
-        gradient = [old + sign * w for old, w in zip(gradient, part, strict=True)]
+        part = [after - before for before, after in zip(begin, end)]
+        sign = ca.sign(sum(w * p for w, p in zip(part, power)))
+        gradient = [old + sign * w for old, w in zip(gradient, part)]
     real = c[1] * c[1] > 4 * c[0] * c[2]  # else both stand at the quadratic's extreme
     zeros = [
         MovingZero(
@@ -167,7 +167,7 @@ class _Differentiated:
         self.move, self.initial = row[:3], ca.horzsplit(self.inputs[1], 1)[3:]
         _, self.length = grid.columns(rows)
         self.h = self.move[2][:, :steps] * self.length
-        self.simulate(perturb_plant(plant, dict(zip(names, errors, strict=True))), errors)
+        self.simulate(perturb_plant(plant, dict(zip(names, errors))), errors)
         self.differentiate()
 
     def simulate(self, plant: Plant, errors: list[ca.MX]) -> None:
@@ -189,7 +189,7 @@ class _Differentiated:
         )
         W, dW, self.arrival_a = self.march_along(along)
         nodes = along.nodes(W, dW, along.accelerations(W, dW))
-        self.v_a = [[*y, *node.W, *node.dW, *node.ddW] for y, node in zip(y_a, nodes, strict=True)]
+        self.v_a = [[*y, *node.W, *node.dW, *node.ddW] for y, node in zip(y_a, nodes)]
         self.o_a = [product(o_v[j], self.v_a[j], self.node.count) for j in range(NODES)]
 
     def path_sensitivity(self) -> list[list[ca.MX]]:
@@ -243,9 +243,9 @@ class _Differentiated:
         of_modes = self.point_multipliers(of_outputs)[self.path.count :]
         driven = self.step.driven_by(ca.horzsplit(forcing, steps))
         modes = _modes_at_nodes(driven, z[:m], z[m:])
-        here = sum(ca.dot(w, x) for w, x in zip(of_modes, modes, strict=True))
+        here = sum(ca.dot(w, x) for w, x in zip(of_modes, modes))
         of_state = ca.vertsplit(ca.gradient(here, state), rows)
-        transposed = [list(row) for row in zip(*self.columns, strict=True)]
+        transposed = [list(row) for row in zip(*self.columns)]
         W, dW, _ = march(
             [_reverse(x) for x in of_state],
             [[_reverse(x) for x in column] for column in transposed],
@@ -253,7 +253,7 @@ class _Differentiated:
             ca.horzsplit(self.inputs[5], 1),
         )
         of_after = [_reverse(x) for x in (*W, *dW)]
-        after = sum(ca.dot(w, x) for w, x in zip(of_after, driven.column(0), strict=True))
+        after = sum(ca.dot(w, x) for w, x in zip(of_after, driven.column(0)))
         found = ca.horzsplit(ca.gradient(here + after, forcing), steps)
         return [ca.horzcat(*found[i::m]) for i in range(m)]
 
@@ -268,13 +268,13 @@ class _Differentiated:
         steps, pairs = self.shape[1], list[tuple[Any, Any]]()
         power_a = [outputs[0] for outputs in self.o_a]
         l_vv = self.node.hessian(self.point, [*of_forcing, *of_outputs])
-        for v_a, table in zip(self.v_a, self.along(l_vv), strict=True):
+        for v_a, table in zip(self.v_a, self.along(l_vv)):
             turned = product(table, v_a, self.count)
             pairs += [(v_a[i], turned[i]) for i in sorted({row for row, _ in table})]
         at_nodes = ca.horzsplit(self.of_energy * energy.by_power_twice, steps)
-        bends: list[tuple[Any, Any]] = list(zip(at_nodes, power_a, strict=True))
+        bends: list[tuple[Any, Any]] = list(zip(at_nodes, power_a))
         for weights, bend in energy.zeros:
-            terms = zip(map(self.repeat, weights), power_a, strict=True)
+            terms = zip(map(self.repeat, weights), power_a)
             bends.append((self.of_energy[:, :steps] * bend, sum(w * x for w, x in terms)))
         pairs += [(x, self.repeat(bend) * x) for bend, x in bends]
         return [left for left, _ in pairs], [right for _, right in pairs]
@@ -286,7 +286,7 @@ class _Differentiated:
         count = self.path.count
         by_outputs = self.point_multipliers(of_outputs)[:count]
         by_forcing = product(transpose(self.f_y), of_forcing, count)
-        of_y = [x + y for x, y in zip(by_outputs, by_forcing, strict=True)]
+        of_y = [x + y for x, y in zip(by_outputs, by_forcing)]
         y_aa, zero = self.path.hessian(self.a, self.move, of_y), ca.MX.zeros(self.shape[0], 1)
         every = range(self.size)
         return [ca.sum2(y_aa[i, k]) if (i, k) in y_aa else zero for i in every for k in every]
@@ -304,7 +304,7 @@ class _Differentiated:
         of_forcing = self.forcing_multipliers(of_outputs)
         along = [[self.repeat(x) for x in ca.horzsplit(by, steps)] for by in energy_o]
         energy_a = sum(along[i][j] * self.o_a[j][i] for i in range(own) for j in range(NODES))
-        limited_a = zip(*(outputs[own:] for outputs in self.o_a), strict=True)
+        limited_a = zip(*(outputs[own:] for outputs in self.o_a))
         found = [
             [energy.value],
             [self.arrival],

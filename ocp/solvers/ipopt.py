@@ -77,7 +77,7 @@ class Ipopt:
     ) -> list[Solution]:
         """Solve each problem from its start, as `Sqp.solve` does; groups are not used."""
         del groups
-        pairs = zip(problems, starts, strict=True)
+        pairs = zip(problems, starts)
         return [_Run(one, warm, self.print_level).solve(start) for one, start in pairs]
 
 
@@ -147,7 +147,7 @@ def compile_program(
 def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
     """The energy with the root of power^2 + width^2 [W] in place of |power|."""
     speeds = [joint.speed for joint in rollout.joints]
-    smooth = [energy.smooth(*node) for node in zip(rollout.torque, speeds, strict=True)]
+    smooth = [energy.smooth(*node) for node in zip(rollout.torque, speeds)]
     rounded = [ca.sqrt(power**2 + width**2) for power in rollout.power]
     return energy.absolute * integrated(rounded, rollout.h) + integrated(smooth, rollout.h)
 
@@ -183,7 +183,7 @@ class _Run:
         names = RESIDUAL, *(limit.name for limit in transcription.task.limits)
         peaks = {
             name: float(transcription.limits[name].peak(value.min(), value.max()))
-            for name, value in zip(names, (value.full() for value in values), strict=True)
+            for name, value in zip(names, (value.full() for value in values))
         }
         return float(energy), missed.full(), peaks
 
@@ -234,7 +234,7 @@ class _Run:
         """What the least energy falls by if a limit is widened [J by its unit]."""
         counts, (transcription, asked) = self.program.counts, self.problem
         parts = np.split(multipliers, np.cumsum(list(counts.values()))[:-1])
-        own = dict(zip(counts, parts, strict=True))
+        own = dict(zip(counts, parts))
         bounded = {name: own[name] / self.scales[name] for name in own.keys() & self.scales.keys()}
         of_arrival = own["arrival"] / self.scale if asked.at_rest else own["arrival"]
         return shadow_prices(asked, self.of_energy, bounded, of_arrival, transcription.tip_rows[0])

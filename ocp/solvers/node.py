@@ -106,7 +106,7 @@ class Path:
         self._value, self._jacobian = ca.Function("y", inputs, y), Tables(inputs, y_a)
         if not self.linear:
             multipliers = symbols(self.count, shape)
-            lagrangian = sum(w * x for w, x in zip(multipliers, y, strict=True))
+            lagrangian = sum(w * x for w, x in zip(multipliers, y))
             self._hessian = Tables([*inputs, *multipliers], hessian(lagrangian, a))
 
     def value(self, a: Sequence[ca.MX], move: Sequence[ca.MX]) -> list[ca.MX]:
@@ -166,7 +166,7 @@ class Node:
         errors = symbols(len(names), shape)
         W, dW, ddW = modes[:m], modes[m : 2 * m], modes[2 * m :]
         joint, v = path.motion_with_jerk(y, move), [*y, *modes]
-        perturbed = perturb_plant(plant, dict(zip(names, errors, strict=True)))
+        perturbed = perturb_plant(plant, dict(zip(names, errors)))
         f = [zero + x for x in perturbed.modal_accelerations(joint, W, dW)]
         torque, tips = perturbed.torque(joint, W, dW, ddW), perturbed.tip_displacements(W)
         smooth = energy.smooth(torque, joint.speed)
@@ -178,7 +178,7 @@ class Node:
             inputs, {(i, 0): x for i, x in enumerate(o)}, jacobian(f, y), jacobian(o, v)
         )
         multipliers = symbols(m + self.count, shape)
-        lagrangian = sum(w * x for w, x in zip(multipliers, [*f, *o], strict=True))
+        lagrangian = sum(w * x for w, x in zip(multipliers, [*f, *o]))
         self._second = Tables([*inputs, *multipliers], hessian(lagrangian, v))
 
     def evaluate(self, point: Sequence[ca.MX]) -> tuple[list[ca.MX], Table, Table]:

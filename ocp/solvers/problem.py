@@ -105,7 +105,7 @@ class Transcription:
     def peaks(self, of: Values, offset: Array | float = 0.0) -> dict[str, float]:
         """The largest residual of all scenarios [m], and the peaks of the limited quantities."""
         missed = of.arrival - self.wanted + offset
-        tips = [np.abs(r @ z).max() for r, z in zip(self.tip_rows, missed, strict=True)]
+        tips = [np.abs(r @ z).max() for r, z in zip(self.tip_rows, missed)]
         limited = {name: self.peak(of, name) for name in self.batch.places}
         return {RESIDUAL: float(max(tips)), **limited}
 
@@ -150,7 +150,7 @@ def transcribe(
     """Many tasks of one plant, whose plain motions are evaluated in one call."""
     made = [Transcription(task, profile, steps) for task in tasks]
     plain = np.repeat(profile.plain[None], len(made), axis=0)
-    for one, motion in zip(made, evaluate(made, plain), strict=True):
+    for one, motion in zip(made, evaluate(made, plain)):
         one.__dict__["plain"] = motion
     return made
 

@@ -177,7 +177,7 @@ class Programs:
         if self._peak is not None:
             constraints[self._peak] = _Peak(constraints[self._peak], limits[self._peak])
         boxes = [each.profile.box(asked.bound) for each, asked in zip(
-            self._transcriptions, self._scalarizations, strict=True)]  # fmt: skip
+            self._transcriptions, self._scalarizations)]  # fmt: skip
         self._box = np.array(boxes).transpose(1, 0, 2)
         self._axes = self._batch.even_axes(boxed=bool(np.isfinite(self._box).any()))
         # the coefficients by all unknowns
@@ -186,7 +186,7 @@ class Programs:
         self.linear, self.constraints = box.count, {**constraints, "box": box}
         stops = np.cumsum([each.count for each in self.constraints.values()]).tolist()
         ends = pairwise([0, *stops])
-        self._places = dict(zip(self.constraints, (slice(*one) for one in ends), strict=True))
+        self._places = dict(zip(self.constraints, (slice(*one) for one in ends)))
         self.lower, self.upper = (
             np.hstack([getattr(each, name) for each in self.constraints.values()])
             for name in ("lower", "upper")
@@ -209,7 +209,7 @@ class Programs:
         most = max(len(rows) for each in self._transcriptions for rows in each.tip_rows)
         return np.array([
             [np.pad(rows, ((0, most - len(rows)), (0, 0))) / scale for rows in each.tip_rows]
-            for each, scale in zip(self._transcriptions, self._scales(RESIDUAL), strict=True)
+            for each, scale in zip(self._transcriptions, self._scales(RESIDUAL))
         ])  # fmt: skip
 
     def start(self, coefficients: Array) -> Array:
@@ -236,7 +236,7 @@ class Programs:
         scale, weights = self._arrival[rows], self.weights[rows]
         of_energy, at = weights[:, 0] / self._energy[rows], slice(0, int(self._at_rest))
         found = [each.evaluate(rows, motions, x) for each in self.constraints.values()]
-        bounded, jacobians = zip(*found, strict=True)
+        bounded, jacobians = zip(*found)
         objective = of_energy * motions.energy[:, 0]
         gradient = of_energy[:, None] * motions.gradient[:, 0]
         if self._peak is not None:

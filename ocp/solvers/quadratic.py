@@ -59,7 +59,7 @@ class Model(NamedTuple):
 
     def put(self, rows: Index, other: Model) -> None:
         """Replace rows."""
-        for part, new in zip(self, other, strict=True):
+        for part, new in zip(self, other):
             part[rows] = new
 
     def take(self, rows: Index | NDArray[np.bool_]) -> Model:

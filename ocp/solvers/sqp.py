@@ -91,7 +91,7 @@ class Sqp:
                 reach=_WARM_REACH if warm else _REACH,
                 log=self.log,
             )
-            solutions.update(zip(places, _in_units(programs, ended, own), strict=True))
+            solutions.update(zip(places, _in_units(programs, ended, own)))
         return [solutions[i] for i in range(len(problems))]
 
 
@@ -109,7 +109,7 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     coefficients = programs.coefficients(ended.x)
     motions = evaluate([problem.transcription for problem in problems], coefficients)
     prices, solutions = _shadow_prices(programs, ended, problems), list[Solution]()
-    for i, ((transcription, asked), motion) in enumerate(zip(problems, motions, strict=True)):
+    for i, ((transcription, asked), motion) in enumerate(zip(problems, motions)):
         peaks, end = transcription.peaks(motion, asked.offset), ended.ends[i]
         if asked.at_rest and ended.violation[i] <= _NONE:
             peaks[RESIDUAL] = 0.0

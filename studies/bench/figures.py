@@ -28,7 +28,7 @@ def curves_figure(results: Results, by: str = "seconds") -> Figure:
     figure = new_figure(max(4.2 * columns, 5.5), 3.0 * rows + 0.8)
     axes = list(figure.subplots(rows, columns, squeeze=False).flat)
     methods = [m for m in results.methods if by == "seconds" or derivative_free(m)]
-    for ax, problem in zip(axes, problems, strict=False):
+    for ax, problem in zip(axes, problems):
         costs = [0.0]
         for number, method in enumerate(methods):
             if not results.of(problem.name, method):

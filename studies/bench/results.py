@@ -176,12 +176,12 @@ class Results:
         rows = list[dict[str, Any]]()
         for (problem, method), runs in sorted(self._groups.items()):
             reached = np.isfinite(self.hits(problem, method, TARGETS)).sum(axis=0)
-            for target, count in zip(TARGETS, reached.tolist(), strict=True):
+            for target, count in zip(TARGETS, reached.tolist()):
                 row = {"problem": problem, "method": method, "target": target,
                        "reached": count, "runs": len(runs)}  # fmt: skip
                 for by in ("seconds", "evaluations") if derivative_free(method) else ("seconds",):
                     found = self.expected_running_time(problem, method, target, by)
-                    row |= zip((by, f"{by}_low", f"{by}_high"), found, strict=True)
+                    row |= zip((by, f"{by}_low", f"{by}_high"), found)
                 rows.append(row)
         return pd.DataFrame(rows).replace(np.inf, np.nan)
 
@@ -265,7 +265,7 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     for name, quality in (("", last.quality), ("_between", last.between)):
         row[f"igd_plus{name}"] = np.nan if quality is None else quality.igd_plus
         row[f"epsilon{name}"] = np.nan if quality is None else quality.epsilon
-    for level, least in zip(LEVELS, best, strict=True):
+    for level, least in zip(LEVELS, best):
         row[f"energy_{1e3 * level:g}mm"] = front.least_energy(level) / least - 1
     row["at_rest"] = bool((front.residuals <= AT_REST).any())
     return row | {

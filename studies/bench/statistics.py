@@ -97,7 +97,7 @@ class Ranking:
     def best(self) -> tuple[str, ...]:
         """The first method and those not significantly different from it."""
         near = (rank - self.ranks[0] <= self.critical for rank in self.ranks)
-        return tuple(name for name, one in zip(self.methods, near, strict=True) if one)
+        return tuple(name for name, one in zip(self.methods, near) if one)
 
 
 def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.DataFrame:

@@ -68,7 +68,7 @@ def _refuse_same_file(values: Iterable[object]) -> None:
     every = [one for value in values for one in (value if isinstance(value, tuple) else (value,))]
     paths = [one for one in every if isinstance(one, Path) and one != STDOUT]
     places = list(map(os.path.realpath, paths))  # of a link, too
-    for path, place in zip(paths, places, strict=True):
+    for path, place in zip(paths, places):
         if places.count(place) > 1:
             raise ValueError(f"{path} is given twice; give it once, or another name")
 

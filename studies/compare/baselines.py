@@ -92,7 +92,7 @@ def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
     times = times[np.append(True, np.diff(times) > _SHORTEST)]
     middle = (times[1:] + times[:-1]) / 2
     acceleration, jerk = np.zeros(len(middle)), np.zeros(len(middle))
-    for share, begin in zip(*impulses, strict=True):
+    for share, begin in zip(*impulses):
         own = np.searchsorted(free.times, middle - begin, side="right") - 1
         moving = (own >= 0) & (own < free.steps)
         k = own[moving]

@@ -105,11 +105,11 @@ def fronts_report(
         f"fronts-{i}.png" for i in range(1, len(comparisons) + 1)
     ]  # fmt: skip
     tables = [methods_table(one) for one in comparisons]
-    moves = zip(comparisons, tables, strict=True)
+    moves = zip(comparisons, tables)
     return Report(
         "compare/fronts.md",
         {
-            "parts": list(zip(comparisons, tables, pictures, strict=True)),
+            "parts": list(zip(comparisons, tables, pictures)),
             "title_of": title_of,
             "fill": BETWEEN if comparisons[0].fill else 0,
             "several": any(len(g.runs) > 1 for one in comparisons for g in one.groups),
@@ -123,6 +123,6 @@ def fronts_report(
         },
         {
             name: partial(figures.comparison_figure, one, points)
-            for name, one, points in zip(pictures, comparisons, known, strict=True)
+            for name, one, points in zip(pictures, comparisons, known)
         },
     )  # fmt: skip

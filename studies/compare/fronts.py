@@ -230,7 +230,7 @@ def _frozen(values: object) -> Array:
 
 def _refuse(fronts: Sequence[Front], names: Sequence[str], apart: int) -> None:
     """Refuse fronts without points or of several tasks; of the first ones, also what is twice."""
-    for i, (front, name) in enumerate(zip(fronts, names, strict=True)):
+    for i, (front, name) in enumerate(zip(fronts, names)):
         if not front.points:
             raise ValueError(f"{name} has no finite point; leave it out, or search longer")
         if difference := task_difference(front.task, fronts[0].task):
@@ -256,7 +256,7 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
         _label(
             front, [other for other in firsts if other.record.method == front.record.method]
         ): members
-        for front, members in zip(firsts, groups.values(), strict=True)
+        for front, members in zip(firsts, groups.values())
     }
 
 

@@ -37,7 +37,7 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         task, versions = moves.grid.task, moves.store.note("versions")
         between, axes = moves.interpolation, moves.grid.axes
         title, figures = f"moves of {moved(task)}", moves.between().words
-    move = dict(zip(OF_MOVES, map(repr, task.move), strict=True))
+    move = dict(zip(OF_MOVES, map(repr, task.move)))
     helpers, statements = _path_in_c(moves.profile)
     texts = templates(keep_trailing_newline=True)
     texts.filters["row"] = _row

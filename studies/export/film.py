@@ -208,14 +208,14 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     panels = list(upper.subplots(rows, columns, squeeze=False).flat)
     for spare in panels[len(structures) :]:
         spare.axis("off")
-    for one, title, ax in zip(structures, titles, panels, strict=False):
+    for one, title, ax in zip(structures, titles, panels):
         ax.set_title("\n".join(title), **TITLE)
         name = one.line.plan.task.plant.name
         for other in structures:
             if other.line.plan.task.plant.name == name:
                 ax.update_datalim(other.corners)
         updates += _draw_structure(ax, one)
-    for ax, quantity in zip(lower.subplots(1, len(_CURVES)), _CURVES, strict=True):
+    for ax, quantity in zip(lower.subplots(1, len(_CURVES)), _CURVES):
         draw_quantity([one.line for one in structures], quantity, ax)
         ax.set_xlim(0.0, film.end)
         ax.xaxis.label.set_fontsize(9)

@@ -126,6 +126,6 @@ def _write_c(moves: Any, path: Path) -> list[Path]:
     from quietarm.studies.export.c_source import c_files
 
     files = [path.with_suffix(".h"), path]
-    for file, content in zip(files, c_files(moves, path.stem), strict=True):
+    for file, content in zip(files, c_files(moves, path.stem)):
         write_whole(file, content)
     return files

@@ -87,12 +87,12 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
 def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:
     """Displacements of every tip in every scenario, by what stands before and after the unit."""
     found: dict[tuple[str, str], Array] = {}
-    for candidate, errors in zip(plan.candidate.scenarios, plan.task.scenarios, strict=True):
-        named = zip(plan.task.error_names, errors, strict=True)
+    for candidate, errors in zip(plan.candidate.scenarios, plan.task.scenarios):
+        named = zip(plan.task.error_names, errors)
         scenario = "".join(f" {name} {100 * error:+.4g} %" for name, error in named if error)
         tips = candidate.sample(times).tips.T
         names = ["tip"] if len(tips) == 1 else [f"tip_{i}" for i in range(1, len(tips) + 1)]
-        found |= {(name, scenario): tip for name, tip in zip(names, tips, strict=True)}
+        found |= {(name, scenario): tip for name, tip in zip(names, tips)}
     return found
 
 
@@ -126,7 +126,7 @@ def ros_text(plan: Plan, rate: float, joint: str) -> str:
     motion = plan.sampled(_ticks(plan, rate))
     points = [
         (divmod(round(time * 1e9), 1_000_000_000), map(_decimal, moving))
-        for time, moving in zip(motion.time, motion.joint, strict=True)
+        for time, moving in zip(motion.time, motion.joint)
     ]
     name = joint.replace("'", "''")  # as YAML reads it back
     texts = templates(keep_trailing_newline=True)

@@ -60,7 +60,7 @@ def draw_front(
 
 def letter(axes: Sequence[Axes]) -> None:
     """Put (a), (b) ... before the titles of panels."""
-    for name, ax in zip("abcdefghi", axes, strict=False):
+    for name, ax in zip("abcdefghi", axes):
         ax.set_title(f"({name}) {ax.get_title(loc='left')}", **TITLE)
 
 
@@ -80,7 +80,7 @@ def legend_of(axes: Sequence[Axes]) -> tuple[list[Artist], list[str]]:
     """Handles and labels of several axes, each label once."""
     entries: dict[str, Artist] = {}
     for ax in axes:
-        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+        for handle, label in zip(*ax.get_legend_handles_labels()):
             entries.setdefault(label, handle)
     return list(entries.values()), list(entries)
 

@@ -128,7 +128,7 @@ def draw_comparison(
                 residuals[shown] * 1e3, best[shown], worst[shown], step="post",
                 color=own.colour, alpha=0.2, linewidth=0,
             )  # fmt: skip
-    for point, mark in zip(known, cycle("*Pv"), strict=False):
+    for point, mark in zip(known, cycle("*Pv")):
         if point.residual is None:
             ax.axhline(point.energy, color="black", lw=1, ls=":", label=point.label)
         else:

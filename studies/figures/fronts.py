@@ -64,7 +64,7 @@ def draw_fronts(
         label = "_" if k else "no weight reaches these"  # once in the legend
         ax.axvspan(begin * 1e3, end * 1e3, color="0.5", alpha=0.15, linewidth=0, label=label)
     names = _names(fronts) if labels is None else labels
-    for i, (front, name) in enumerate(zip(fronts, names, strict=True)):
+    for i, (front, name) in enumerate(zip(fronts, names)):
         own = look(i)
         middles = [(begin + end) / 2 for begin, end in front.gaps]
         places = np.searchsorted(front.residuals, middles)  # no line crosses a gap
@@ -95,7 +95,7 @@ def _names(fronts: Sequence[Front]) -> list[str]:
     """What to call every front: its method where there are several; of several runs the seed."""
     methods = [label_of(front.record.method) for front in fronts]
     several, names = len(set(methods)) > 1, list[str]()
-    for i, (front, method) in enumerate(zip(fronts, methods, strict=True), start=1):
+    for i, (front, method) in enumerate(zip(fronts, methods), start=1):
         runs, seed = methods.count(method) > 1, front.record.seed
         run = f"front {i}" if seed is None else f"seed {seed}"
         names.append(", ".join([method] * (several or not runs) + [run] * runs))
@@ -197,7 +197,7 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
         axes[0].plot(1e3 * max(knee.residual, REST), knee.energy, "o", color=BLUE,
                      fillstyle="none", label=label)  # fmt: skip
         axes[0].legend(fontsize=8)
-    for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:], strict=False):
+    for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:]):
         draw(fronts, ax)
     return figure
 

@@ -43,7 +43,7 @@ def grid_figure(store: Store) -> Figure:
     for column, (label, values, least) in enumerate(variables):
         norm = _norm(values)
         panels[0, column].set_title(label)
-        for ax, (place, _) in zip(panels[:, column], slices, strict=True):
+        for ax, (place, _) in zip(panels[:, column], slices):
             ax.patch.set(hatch="///", edgecolor="0.75", facecolor="white")
             ax.pcolormesh(x, y, values[place], norm=norm, cmap="viridis", shading="nearest")
             if not (values > least).any():
@@ -57,7 +57,7 @@ def grid_figure(store: Store) -> Figure:
                                   ticks=ticks, format="{x:g}")  # fmt: skip
             bar.minorticks_off()
     _states(figure, panels[:, -1], x, y, store, places)
-    for row, (_, words) in zip(panels, slices, strict=True):
+    for row, (_, words) in zip(panels, slices):
         row[0].set_ylabel(f"{words}\n{y_name}" if words else y_name)
     for ax in panels[-1]:
         ax.set_xlabel(x_name)
@@ -74,7 +74,7 @@ def fronts_figure(store: Store) -> Figure:
     values, name = _shown(axes[-1])
     norm = Normalize(float(values.min()), float(values.max()))
     colours = ScalarMappable(norm, "viridis")
-    for ax, place in zip(panels, places, strict=True):
+    for ax, place in zip(panels, places):
         for k, value in enumerate(values):
             ax.plot(1e3 * residual[(*place, k)], energy[(*place, k)], color=colours.to_rgba(value))
         ax.set_title(_words(axes, place), loc="left", fontsize=9)
@@ -91,7 +91,7 @@ def _over_one(store: Store, axis: Axis) -> Figure:
     panels = figure.subplots(len(variables), 1, sharex=True)
     values, name = _shown(axis)
     without = np.isnan(store.read("energy"))
-    for number, (ax, (label, shown, _)) in enumerate(zip(panels, variables, strict=True)):
+    for number, (ax, (label, shown, _)) in enumerate(zip(panels, variables)):
         own = look(number)
         ax.plot(values, shown, own.mark + "-", color=own.colour)
         logarithmic(ax, shown, "y")
@@ -114,8 +114,7 @@ def _variables(store: Store) -> list[tuple[str, Array, float]]:
 
 def _words(axes: tuple[Axis, ...], place: tuple[int, ...]) -> str:
     return ", ".join(
-        f"{axis.name} {axis.values[k]:.4g} {axis.unit}"
-        for axis, k in zip(axes, place, strict=False)
+        f"{axis.name} {axis.values[k]:.4g} {axis.unit}" for axis, k in zip(axes, place)
     )
 
 
@@ -139,7 +138,7 @@ def _states(
     numbers = np.searchsorted(present, status)
     norm = BoundaryNorm(np.arange(len(present) + 1) - 0.5, len(present))
     panels[0].set_title("how it ended")
-    for ax, place in zip(panels, places, strict=True):
+    for ax, place in zip(panels, places):
         ax.pcolormesh(x, y, numbers[place], norm=norm, cmap=cmap, shading="nearest")
     bar = figure.colorbar(ScalarMappable(norm, cmap), ax=list(panels), ticks=range(len(present)))
     bar.ax.set_yticklabels([STATES[k] for k in present])

@@ -40,7 +40,7 @@ def identification_figure(found: Identified, recordings: Sequence[Recording]) ->
     several = len(found.parts) > 1 and found.estimates
     figure = new_figure(9.0, 2.5 * len(drawn) + 2.6 * bool(several) + 0.3)
     rows = figure.subfigures(len(drawn) + bool(several), 1, squeeze=False)[:, 0]
-    for row, part in zip(rows, drawn, strict=False):
+    for row, part in zip(rows, drawn):
         _draw_part(row, found, part, recordings)
     figure.axes[0].legend(
         fontsize=7, frameon=False, loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderpad=0
@@ -101,7 +101,7 @@ def _over_parts(row: Any, found: Identified) -> None:
     axes = row.subplots(1, len(found.estimates[:2]), squeeze=False)[0]
     units = found.plant.units()
     number = np.arange(1, len(found.parts) + 1)
-    for ax, one in zip(axes, found.estimates, strict=False):
+    for ax, one in zip(axes, found.estimates):
         hertz = units[one.parameter] == "rad/s"
         size = 2 * pi if hertz else 1.0
         values = np.array([part.values[one.parameter] for part in found.parts]) / size

@@ -174,7 +174,7 @@ def motion_figure(
     figure = new_figure(0.8 + 3.8 * columns, 0.8 + 2.6 * rows)
     axes: list[Axes] = list(figure.subplots(rows, columns, sharex=True, squeeze=False).flat)
     panels, spare = axes[:count], axes[count:]
-    for quantity, ax in zip(quantities, panels, strict=True):
+    for quantity, ax in zip(quantities, panels):
         draw_quantity(lines, quantity, ax).tick_params(labelbottom=True)
     for ax in panels[:-columns]:  # another stands below it
         ax.set_xlabel("")
@@ -214,7 +214,7 @@ def lines_of(motions: Motions) -> list[Line]:
     looks = map(look, range(len(motions)))
     return [
         line if line.colour else replace(line, colour=own.colour, style=own.dash)
-        for line, own in zip(motions, looks, strict=False)
+        for line, own in zip(motions, looks)
     ]
 
 

@@ -51,7 +51,7 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
             linestyle=how.dash, linewidth=1.6, label=label,
         )  # fmt: skip
         if sweep.insensitivity is not None:
-            both = zip(sweep.insensitivity, sweep.open_ends, strict=True)
+            both = zip(sweep.insensitivity, sweep.open_ends)
             ends = [100 * end for end, is_open in both if not is_open]
             ax.plot(ends, [limit] * len(ends), how.mark, color=how.colour, markersize=5)
     ax.axhline(limit, color="0.3", linewidth=0.8, linestyle="--", label=f"{limit:g} %")
@@ -100,7 +100,7 @@ def motions_figure(motions: Sequence[Judged], title: str) -> Figure:
     draw_motions(motions, axes[0])
     if any(judged.worst for judged in motions):
         axes[0].set_xlabel("residual F1 [mm] (open: nominal plant, filled: worst case)")
-    for name, ax in zip(names, axes[1:], strict=True):
+    for name, ax in zip(names, axes[1:]):
         draw_robustness(curves, name, ax)
     figure.legend(*legend_of(axes), loc="outside lower center", ncols=4, fontsize=8)
     return figure

@@ -59,7 +59,7 @@ class Structure:
     def paths(self) -> list[Array]:
         """Where each tip is drawn, shape (frames, 2) [m]."""
         first = self._bodies(self.scale * self.tips)[0]
-        return [part.points[:, -1] for part, body in zip(self.bent, first, strict=True) if body.tip]
+        return [part.points[:, -1] for part, body in zip(self.bent, first) if body.tip]
 
     @property
     def corners(self) -> Array:
@@ -88,13 +88,12 @@ class Structure:
         plant = self.line.plan.task.plant
         angles = self._at_frames(self.trajectory.joint[:, :1])[:, 0]
         return [
-            list(plant.structure(float(angle), row.tolist()))
-            for angle, row in zip(angles, tips, strict=True)
+            list(plant.structure(float(angle), row.tolist())) for angle, row in zip(angles, tips)
         ]
 
     def _parts(self, tips: Array) -> list[Part]:
         parts = list[Part]()
-        for bodies in zip(*self._bodies(tips), strict=True):
+        for bodies in zip(*self._bodies(tips)):
             points, body = np.array([one.points for one in bodies]), bodies[0]
             if points.shape[1] == 1:
                 parts.append(Part(points + _DOT, INK, 16.0))

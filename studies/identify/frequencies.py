@@ -46,7 +46,7 @@ def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
 
     common = max(np.concatenate([f for f, _ in tables]), key=loudness)
     found = list[float]()
-    for one, (f, share) in zip(recordings, shares, strict=True):
+    for one, (f, share) in zip(recordings, shares):
         among = share * near(f, common)
         if among.max(initial=0.0) <= _LOUD * share.max(initial=0.0):
             among = share
@@ -62,7 +62,7 @@ def doubt_units(
 ) -> list[str]:
     """What units may be wrong, of a kind of joint."""
     found = list[str]()
-    for one, frequency in zip(recordings, frequencies, strict=True):
+    for one, frequency in zip(recordings, frequencies):
         turns = 0.0 if one.angle is None else float(np.ptp(one.angle))
         doubts = {
             "slow": one.step >= _COARSE or 0 < frequency < _DOUBTFUL,

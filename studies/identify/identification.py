@@ -67,8 +67,7 @@ def identify(
     names = _sought(plant, free, kinds)
     frequencies = find_frequencies(recordings)
     each = [
-        PartFitter(plant, names, one, frequency)
-        for one, frequency in zip(recordings, frequencies, strict=True)
+        PartFitter(plant, names, one, frequency) for one, frequency in zip(recordings, frequencies)
     ]
     fitted, left_out, unknown = list[Part](), dict[str, str](), dict[str, str]()
     if "torque" not in kinds and all(is_modal(plant, name) for name in names):

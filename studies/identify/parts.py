@@ -242,8 +242,8 @@ class PartFitter:
         noise = float((noise_of(piece.values) / thinned / size).max())
         room = np.minimum(best.p - low, high - best.p) / np.where(high < np.inf, high - low, 1.0)
         facts = {
-            "values": dict(zip(self.names, best.p.tolist(), strict=True)),
-            "deviations": dict(zip(self.names, best.deviations.tolist(), strict=True)),
+            "values": dict(zip(self.names, best.p.tolist())),
+            "deviations": dict(zip(self.names, best.deviations.tolist())),
             "amplitude": float(np.abs(best.swinging[time <= time[0] + 1 / self.frequency]).max()),
             "misfit": best.misfit, "noise": noise, "cause": "", "warning": "",
         }  # fmt: skip

@@ -60,7 +60,7 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
     """
     names = [name for name in plant.measured if is_modal(plant, name)]
     p, found = values_of(plant, names), list[Prediction]()
-    for one, frequency in zip(recordings, find_frequencies(recordings), strict=True):
+    for one, frequency in zip(recordings, find_frequencies(recordings)):
         fitter = PartFitter(plant, names, one, frequency)
         parts, why = fitter.ring_downs()
         if not parts:

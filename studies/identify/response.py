@@ -45,7 +45,7 @@ class Response:
     def __init__(self, plant: Plant, names: Sequence[str], kinds: Sequence[str]) -> None:
         self.plant, self.names, self.kinds = plant, list(names), np.array(kinds)
         modes, size, p = plant.modes, 2 * plant.modes, ca.SX.sym("p", len(names))
-        changed = with_values(plant, dict(zip(names, ca.vertsplit(p), strict=True)))
+        changed = with_values(plant, dict(zip(names, ca.vertsplit(p))))
         angle = ca.SX.sym("angle")
         system = modal_system(changed, JointMotion(angle, 0.0, 0.0))
         K, D = (ca.vertcat(*(ca.horzcat(*row) for row in M)) for M in (system.K, system.D))

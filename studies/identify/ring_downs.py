@@ -82,7 +82,7 @@ def find_ring_downs(recording: Recording, frequency: float) -> list[slice]:
                 among = (swing.time >= begin) & (swing.time <= end)
                 sizes.append(float(swing.size[among].max(initial=0.0)))
                 found.append(rows)
-    return [rows for rows, size in zip(found, sizes, strict=True) if size >= _SMALLEST * max(sizes)]
+    return [rows for rows, size in zip(found, sizes) if size >= _SMALLEST * max(sizes)]
 
 
 def rests(recording: Recording, frequency: float, gap: float = np.inf) -> list[slice]:

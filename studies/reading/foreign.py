@@ -78,7 +78,7 @@ def _uncounted(columns: Sequence[Column], text: bool) -> Sequence[Column]:
     first, rows = table[0], table[:, 0]
     if text and np.isnan(first[0]) and np.array_equal(first[1:], np.arange(len(first) - 1)):
         names = ["", *(str(k) for k in range(len(first) - 1))]
-        return [Column(name, "", one[1:]) for name, one in zip(names, table.T, strict=True)]
+        return [Column(name, "", one[1:]) for name, one in zip(names, table.T)]
     if len(rows) > 1 and np.array_equal(rows, np.arange(len(rows))):
         raise FileFormatError(
             "its first column counts the rows; leave it out, in pandas by index=False"

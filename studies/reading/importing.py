@@ -131,7 +131,7 @@ def _not_beaten(F: Array) -> NDArray[np.bool_]:
 
 def _claims(stated: Array, figures: Array) -> list[str]:
     found = list[str]()
-    for theirs, ours, (figure, unit, least) in zip(stated.T, figures.T, FIGURES, strict=True):
+    for theirs, ours, (figure, unit, least) in zip(stated.T, figures.T, FIGURES):
         known = ~np.isnan(theirs)
         wrong = known & ~agrees(theirs, ours, least)
         if not known.any():

@@ -41,7 +41,7 @@ def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
             raise ValueError(f"{path} is given twice; give it once")
     stems = [path.stem for path in paths]
     names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
-    plans = {name: Plan.load(path) for name, path in zip(names, paths, strict=True)}
-    for plan, path in zip(plans.values(), paths, strict=True):
+    plans = {name: Plan.load(path) for name, path in zip(names, paths)}
+    for plan, path in zip(plans.values(), paths):
         check_plan(plan, str(path))
     return plans

@@ -100,7 +100,7 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
         *_figure_rows(task, candidate.motion),
     ]
     for scenario in task.scenarios[1:]:
-        errors = dict(zip(task.error_names, scenario, strict=True))
+        errors = dict(zip(task.error_names, scenario))
         residual = candidate.perturbed(errors).residual
         rows.append(("residual", f"{millimetres(residual)} with {_signed(errors)}"))
     return [*rows, ("verified", "by CVODES alone, along the spline")]

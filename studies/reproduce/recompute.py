@@ -44,7 +44,7 @@ BEYOND_SIX = (8, 10)
 """Numbers of terms that check the paper's 'no gain above six'."""
 TERMS = (2, 4, SIX_TERMS, *BEYOND_SIX)
 _CONSTANTS = ("inertia", "last_inertia", "constriction", "cognitive", "social")
-VEPSO_2002: dict[str, object] = dict(zip(_CONSTANTS, astuple(INERTIA_2002), strict=True))
+VEPSO_2002: dict[str, object] = dict(zip(_CONSTANTS, astuple(INERTIA_2002)))
 """Settings with the constants of Parsopoulos and Vrahatis; the paper names none."""
 FREQUENCY_ERROR = {"frequency": 0.1}
 _SHAPERS = ("cycloid", "zv", "zvd", "ei")

@@ -36,7 +36,7 @@ def plan_chunk(definition: Definition, number: int) -> tuple[int, pd.DataFrame]:
     found = [_plan_checked(definition, group, number) for group in by_plant(tasks)]
     cells = pd.concat(found, ignore_index=True)
     if definition.front:
-        planned = zip(tasks, cells["energy"].notna(), strict=True)
+        planned = zip(tasks, cells["energy"].notna())
         fronts = [_front_of(definition, task) if solved else {} for task, solved in planned]
         cells = cells.join(pd.DataFrame(fronts, index=cells.index))
     return number, cells

@@ -86,7 +86,7 @@ class Definition:
         """The cells of every chunk."""
         return [*product(*(
             [slice(first, min(first + size, length)) for first in range(0, length, size)]
-            for size, length in zip(self.chunk, self.grid.shape, strict=True)
+            for size, length in zip(self.chunk, self.grid.shape)
         ))]  # fmt: skip
 
     @cached_property

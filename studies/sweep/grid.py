@@ -89,8 +89,8 @@ class Grid:
 
     def tasks(self, chunk: tuple[slice, ...]) -> list[PointToPoint]:
         """The moves of some cells."""
-        parts = (axis.values[cut] for axis, cut in zip(self.axes, chunk, strict=True))
-        return [self.task_at(dict(zip(self.names, values, strict=True)))
+        parts = (axis.values[cut] for axis, cut in zip(self.axes, chunk))
+        return [self.task_at(dict(zip(self.names, values)))
                 for values in product(*parts)]  # fmt: skip
 
     def task_at(self, at: Mapping[str, float]) -> PointToPoint:

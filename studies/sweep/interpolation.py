@@ -83,7 +83,7 @@ class Interpolation:
         sizes = [min(order, len(axis)) for axis in self.axes]
         return tuple(
             np.clip(place - (size // 2 - 1), 0, len(axis) - size)
-            for place, size, axis in zip(box, sizes, self.axes, strict=True)
+            for place, size, axis in zip(box, sizes, self.axes)
         )
 
     def __call__(self, places: Array) -> Array:
@@ -94,9 +94,9 @@ class Interpolation:
         return np.array([self._at(place) for place in places])
 
     def _at(self, place: Array) -> Array:
-        each = [*zip(self.axes, place, strict=True)]
+        each = [*zip(self.axes, place)]
         near = tuple(int(np.abs(axis - at).argmin()) for axis, at in each)
-        values = [axis[k] for axis, k in zip(self.axes, near, strict=True)]
+        values = [axis[k] for axis, k in zip(self.axes, near)]
         if np.allclose(values, place, rtol=_SAME, atol=_SAME):
             return self.cells[near]
         box = tuple(min(np.searchsorted(axis, at, "right"), len(axis) - 1) - 1 for axis, at in each)
@@ -104,6 +104,6 @@ class Interpolation:
             return np.full(self.cells.shape[-1], np.nan)
         window = tuple(slice(first, first + order) for first in self._first(box, order))
         values = self.cells[window]
-        for (axis, at), cut in zip(each, window, strict=True):
+        for (axis, at), cut in zip(each, window):
             values = BarycentricInterpolator(axis[cut], values)(at)
         return values

@@ -119,7 +119,7 @@ class MoveLibrary:
         """
         self._check_names(at)
         columns = np.broadcast_arrays(*(np.asarray(at[name], float) for name in self.grid.names))
-        for axis, values in zip(self.grid.axes, columns, strict=True):
+        for axis, values in zip(self.grid.axes, columns):
             low, high = axis.values[0], axis.values[-1]
             if beyond := values[~((low <= values) & (values <= high))].tolist():
                 raise ValueError(
@@ -170,7 +170,7 @@ class MoveLibrary:
                 f"{self.store.path} has no move between its cells that has coefficients"
             )
         names, definition = self.grid.names, self.store.definition
-        plans = [self.plan(**dict(zip(names, one.tolist(), strict=True))) for one in places]
+        plans = [self.plan(**dict(zip(names, one.tolist()))) for one in places]
         own = [energy for group in by_plant([plan.task for plan in plans])
                for energy in plan_cells(definition, group, _STARTS)["energy"]]  # fmt: skip
         of_limits = [share for plan in plans

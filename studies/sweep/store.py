@@ -64,11 +64,11 @@ class Store:
     def write(self, number: int, cells: pandas.DataFrame) -> None:
         """Write a chunk; its status last, so that a killed run computes it again."""
         names = self.definition.grid.names
-        region = dict(zip(names, self.definition.chunks[number], strict=True))
+        region = dict(zip(names, self.definition.chunks[number]))
         part = self.dataset.drop_vars([*names, JUMP]).isel(region).load()
         for name, column in cells.items():
             places = part[name].to_numpy().reshape(len(cells), -1)
-            for place, value in zip(places, column, strict=True):
+            for place, value in zip(places, column):
                 place[: np.size(value)] = np.ravel(value)
         for some in (part.drop_vars(STATUS), part[[STATUS]]):
             self._write(some, region)

@@ -43,7 +43,7 @@ def list_(given: Given) -> None:
         folder.mkdir(exist_ok=True)
         fronts = dict[str, Front]()
         for name in problems:
-            fronts |= zip(PROBLEMS[name].tasks(), PROBLEMS[name].fronts(), strict=True)
+            fronts |= zip(PROBLEMS[name].tasks(), PROBLEMS[name].fronts())
         for name, front in fronts.items():
             front.save(folder / f"{name}.json")
         shown.append(f"wrote {counted(len(fronts), 'front')} to {folder}")
