@@ -105,8 +105,6 @@ def measured(front: Front, reference: Reference) -> Front:
     points = objectives(front)
     between = with_motions_between(front.task, front.profile, front.coefficients, points)
     last = replace(
-        front.history[-1],
-        quality=reference.quality(points),
-        between=reference.quality(between),
+        front.history[-1], quality=reference.quality(points), between=reference.quality(between)
     )
     return replace(front, history=(*front.history[:-1], last))

@@ -19,11 +19,7 @@ from quietarm.ocp.checks import install
 if TYPE_CHECKING:
     from quietarm.metaheuristics.algorithms.presets import Preset  # which loads this file late
 
-_OPERATORS: dict[str, Callable[..., Any]] = {
-    "crossover": SBX,
-    "mutation": PM,
-    "rule": VelocityRule,
-}
+_OPERATORS: dict[str, Callable[..., Any]] = {"crossover": SBX, "mutation": PM, "rule": VelocityRule}
 
 
 def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algorithm:

@@ -92,10 +92,7 @@ class RecordedFunction(MoveFunction):
         return found, violations
 
     def front(
-        self,
-        method: str,
-        seed: int | None = None,
-        settings: Mapping[str, Setting] | None = None,
+        self, method: str, seed: int | None = None, settings: Mapping[str, Setting] | None = None
     ) -> Front:
         """The candidates until now, as the front of a method; ValueError if there are none."""
         if not self.archive.evaluations:

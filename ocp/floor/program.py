@@ -183,11 +183,7 @@ class FloorProgram:
 
     @keep_interrupts()
     def solve(
-        self,
-        free: FreeMotion,
-        limits: Sequence[Limit],
-        minimise: str = ENERGY,
-        warm: bool = False,
+        self, free: FreeMotion, limits: Sequence[Limit], minimise: str = ENERGY, warm: bool = False
     ) -> FreeSolution:
         """Run the solver from one motion, on its grid."""
         names, units = [one.name for one in self._limits], np.eye(1 + len(self._limits))

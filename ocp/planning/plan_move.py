@@ -149,10 +149,7 @@ def plan_move(
 
 
 def _plan_within(
-    task: PointToPoint,
-    profile: JointProfile,
-    settings: SolveSettings,
-    residual_limit: float | None,
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, residual_limit: float | None
 ) -> Plan:
     """The plan within a residual limit, or within the default one of a task."""
     began, largest = time.perf_counter(), limit_of(task, residual_limit)

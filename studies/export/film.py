@@ -12,12 +12,7 @@ from textwrap import wrap
 from typing import Any
 
 import numpy as np
-from matplotlib.animation import (
-    AbstractMovieWriter,
-    FFMpegWriter,
-    HTMLWriter,
-    PillowWriter,
-)
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -72,9 +67,7 @@ class Film:
         return self.frames / self.rate
 
     def save(
-        self,
-        path: str | Path,
-        report: Callable[[int, int], object] = lambda done, total: None,
+        self, path: str | Path, report: Callable[[int, int], object] = lambda done, total: None
     ) -> None:
         """Write a film as gif, mp4 (by the program ffmpeg) or html, whole or not at all.
 

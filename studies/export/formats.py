@@ -59,12 +59,7 @@ def format_of(path: Path) -> str:
 
 
 def export_plan(
-    plan: Plan,
-    path: str | Path,
-    *,
-    columns: str = COLUMNS,
-    rate: float = RATE,
-    joint: str = JOINT,
+    plan: Plan, path: str | Path, *, columns: str = COLUMNS, rate: float = RATE, joint: str = JOINT
 ) -> list[Path]:
     """Write a plan in a form that a controller reads.
 

@@ -29,7 +29,5 @@ class Look:
 def look(number: int) -> Look:
     """The look of a line by its number, from 0; no two alike among the first 360."""
     return Look(
-        COLOURS[number % len(COLOURS)],
-        _DASHES[number % len(_DASHES)],
-        _MARKS[number % len(_MARKS)],
+        COLOURS[number % len(COLOURS)], _DASHES[number % len(_DASHES)], _MARKS[number % len(_MARKS)]
     )

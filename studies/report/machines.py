@@ -10,11 +10,7 @@ from quietarm.models import Plant
 from quietarm.studies.identify import Estimate, Identified, Part, Prediction
 
 Row = tuple[str, str]
-_HUB = {
-    "": "",
-    "creeps": ", with the hub's motion",
-    "moves": ", all of the hub's motion with it",
-}
+_HUB = {"": "", "creeps": ", with the hub's motion", "moves": ", all of the hub's motion with it"}
 
 
 def machine_rows(found: Identified) -> list[Row]:

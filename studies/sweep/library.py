@@ -11,12 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.ocp import (
-    InfeasibleTaskError,
-    Plan,
-    PointToPoint,
-    evaluate_coefficients,
-)
+from quietarm.ocp import InfeasibleTaskError, Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.studies.sweep.cells import by_plant, plan_cells
 from quietarm.studies.sweep.definition import COEFFICIENTS

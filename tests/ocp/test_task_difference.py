@@ -14,10 +14,7 @@ TASK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8)
     ("change", "words"),
     [
         ({"plant": ArmOnFlexibleLink()}, "plant is arm-on-flexible-link, not single-link"),
-        (
-            {"plant": SingleLinkManipulator(zeta=0.5)},
-            "plant parameter zeta is 0.5, not 0.009636",
-        ),
+        ({"plant": SingleLinkManipulator(zeta=0.5)}, "plant parameter zeta is 0.5, not 0.009636"),
         ({"target": 1.0}, "target is 1 rad, not 0.5235987756 rad"),
         ({"energy": CopperLoss(0.12)}, "energy is copper:0.12, not absolute"),
         ({"speed_limit": 3.0}, "speed limit is 3 rad/s, not none"),

@@ -5,13 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from quietarm.metaheuristics import PRESETS
-from quietarm.ocp import (
-    SolverFailedError,
-    cross_check,
-    epsilon_front,
-    polish_front,
-    weighted_front,
-)
+from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies import figures
 from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_option

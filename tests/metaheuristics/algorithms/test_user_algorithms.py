@@ -55,10 +55,7 @@ def test_the_settings_of_any_algorithm_are_in_the_front():
     assert settings(_moead()) != settings(other)  # by a digest of their directions
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["SMSEMOA", "VEPSO"],
-)
+@pytest.mark.parametrize("name", ["SMSEMOA", "VEPSO"])
 def test_any_algorithm_keeps_the_limits(name):
     task = dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5, jerk_limit=3000.0)
     front = search(task, OTHERS[name](), bound=0.5, generations=6, seed=2)
@@ -70,10 +67,7 @@ def test_any_algorithm_keeps_the_limits(name):
         assert motion.peak_jerk <= 3000.0 * (1 + 1e-6)
 
 
-@pytest.mark.parametrize(
-    "make",
-    [GA, NelderMead],
-)
+@pytest.mark.parametrize("make", [GA, NelderMead])
 def test_an_algorithm_for_one_objective_is_refused_before_the_work(make):
     seen = []
     with pytest.raises(ValueError, match=f"{make.__name__} minimises one objective") as caught:

@@ -101,10 +101,7 @@ def test_two_threads_give_identical_bits(tasks, name):
 
 
 @PLANTS
-@pytest.mark.parametrize(
-    "bad",
-    [math.nan, 1e200],
-)
+@pytest.mark.parametrize("bad", [math.nan, 1e200])
 def test_a_candidate_that_is_not_finite_spoils_only_its_own_row(tasks, name, bad):
     task, bound = tasks[name]
     task = dataclasses.replace(task, torque_limit=0.1, deflection_limit=0.01)

@@ -53,10 +53,7 @@ def _friction_floor(inertia, c, span, duration):
     return A * (span / (t1 + inertia / c * (1 - x))) ** 2
 
 
-@pytest.mark.parametrize(
-    "smooth",
-    [False, True],
-)
+@pytest.mark.parametrize("smooth", [False, True])
 def test_a_rigid_joint_with_friction_has_its_closed_form(rigid, smooth):
     plant = rigid()
     expected = _friction_floor(plant.inertia, plant.c, 1.5, 0.8)

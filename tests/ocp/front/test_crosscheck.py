@@ -5,13 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from moves import CASES
-from quietarm.ocp import (
-    Candidate,
-    CycloidPolynomial,
-    Uncertainty,
-    cross_check,
-    epsilon_front,
-)
+from quietarm.ocp import Candidate, CycloidPolynomial, Uncertainty, cross_check, epsilon_front
 
 
 @pytest.fixture(scope="module", params=["sqp", "ipopt"])

@@ -56,10 +56,7 @@ def test_the_points_that_stay_are_those_of_the_definition(figures):
     assert qa.non_dominated(points) == _by_definition(points)
 
 
-@pytest.mark.parametrize(
-    ("limit", "index"),
-    [(1.9e-4, 0), (2e-4, 1), (math.inf, 2)],
-)
+@pytest.mark.parametrize(("limit", "index"), [(1.9e-4, 0), (2e-4, 1), (math.inf, 2)])
 def test_the_cheapest_within_a_residual(limit, index):
     front = _front(_points((1e-4, 0.5), (2e-4, 0.2), (8e-4, 0.1)))
     assert front.cheapest(limit) is front.points[index]
@@ -82,11 +79,7 @@ def test_the_knee_is_farthest_below_the_line_between_the_ends(figures):
 figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energies
 
 
-@given(
-    st.lists(st.tuples(figures, figures), max_size=6),
-    st.integers(0, 2**63),
-    st.floats(0, 1),
-)
+@given(st.lists(st.tuples(figures, figures), max_size=6), st.integers(0, 2**63), st.floats(0, 1))
 def test_a_front_comes_back_as_it_was(tmp_path_factory, figures, seed, share):
     path = tmp_path_factory.mktemp("front") / "front.json"
     history = (qa.Mark(20, share),)

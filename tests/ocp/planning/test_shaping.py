@@ -29,10 +29,7 @@ def test_the_shaper_is_for_the_target_or_the_average():
 
 
 @names
-@pytest.mark.parametrize(
-    "r",
-    [1.0, 1.1],
-)
+@pytest.mark.parametrize("r", [1.0, 1.1])
 def test_a_linear_plant_is_left_with_the_closed_form(shaper, r):
     # Of what the shorter cycloid alone would leave; the curves of test_shapers.py.
     task = qa.PointToPoint(LINEAR, 1.0, 1.1)

@@ -28,10 +28,7 @@ def _scale(start, target, duration, order):
 
 
 @pytest.mark.parametrize("start", [0.0, -1.2])
-@pytest.mark.parametrize(
-    "fraction",
-    [0.1, 0.93],
-)
+@pytest.mark.parametrize("fraction", [0.1, 0.93])
 def test_plain_cycloid_in_closed_form(start, fraction):
     span, duration = 2.5, 0.8
     path = _path([], start, start + span, duration)

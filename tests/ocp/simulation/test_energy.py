@@ -11,10 +11,7 @@ from numpy.polynomial import Polynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.simulation.objective import (
-    beyond_quadratic,
-    resolved_energy,
-)
+from quietarm.ocp.simulation.objective import beyond_quadratic, resolved_energy
 from quietarm.ocp.solvers.derivatives import differentiate_absolute
 
 import quietarm as qa

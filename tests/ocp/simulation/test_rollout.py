@@ -18,10 +18,7 @@ def _undamped(omega, **changes):
     return qa.SingleLinkManipulator(omega=omega, zeta=0.0, beta2=0.0, **changes)
 
 
-@pytest.mark.parametrize(
-    "omega",
-    [10.43, 25.0],
-)
+@pytest.mark.parametrize("omega", [10.43, 25.0])
 def test_an_undamped_oscillator_driven_by_the_plain_cycloid(omega):
     # W'' + omega^2 W = -beta1 theta'', theta'' = A sin(O t), O = 2 pi/T, A = 2 pi span/T^2:
     # W = -beta1 A/(omega^2 - O^2) (sin(O t) - O/omega sin(omega t)).

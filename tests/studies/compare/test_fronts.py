@@ -7,11 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    epsilon_front,
-)
+from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front
 from quietarm.studies.compare import compare_fronts
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.

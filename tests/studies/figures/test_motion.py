@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from quietarm.ocp import evaluate_coefficients
-from quietarm.studies.figures import (
-    QUANTITIES_DRAWN,
-    Line,
-    draw_quantity,
-    motion_figure,
-)
+from quietarm.studies.figures import QUANTITIES_DRAWN, Line, draw_quantity, motion_figure
 from quietarm.studies.report.saving import SUFFIXES, save_figure
 
 HEADS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}

@@ -5,11 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from pymoo.optimize import minimize
-from quietarm.metaheuristics.algorithms.velocity import (
-    CONSTRICTION,
-    INERTIA_2002,
-    PAPER_GROUP,
-)
+from quietarm.metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
 from target_problems import Targets, state_of
 
@@ -58,10 +54,7 @@ def test_first_positions_are_uniform_in_the_box():
 # -- pymoo's protocol --
 
 
-@pytest.mark.parametrize(
-    "n_obj",
-    [1, 2],
-)
+@pytest.mark.parametrize("n_obj", [1, 2])
 def test_exactly_swarms_times_particles_evaluations(n_obj):
     problem = Targets(n_obj=n_obj)
     result = minimize(problem, VEPSO(7), ("n_gen", 9), seed=1)

@@ -40,9 +40,6 @@ def test_help_and_version_load_no_command(tmp_path):
     assert not [name for name in found if name.startswith("quietarm.studies.cli.commands")]
 
 
-@pytest.mark.parametrize(
-    "line",
-    ["front", "search"],
-)
+@pytest.mark.parametrize("line", ["front", "search"])
 def test_help_of_what_searches_and_draws_waits_for_neither(tmp_path, line):
     assert of_gradient(loaded(f"{line} --help", tmp_path))

@@ -7,14 +7,7 @@ from pathlib import Path
 
 import pytest
 from lines import MOVE, run
-from quietarm.ocp import (
-    CopperLoss,
-    CycloidNetwork,
-    Floor,
-    Plan,
-    PositivePower,
-    plan_move,
-)
+from quietarm.ocp import CopperLoss, CycloidNetwork, Floor, Plan, PositivePower, plan_move
 
 
 def test_a_plan_says_what_it_found_and_what_it_wrote(folder):
