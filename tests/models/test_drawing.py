@@ -74,6 +74,7 @@ def test_the_arms_link_is_clamped_at_the_origin_and_bears_a_rigid_arm():
     assert clamp.points.mean(axis=0) == pytest.approx([0, 0])  # as far up as down
     assert clamp.points[:, 0] == pytest.approx([0, 0])
     assert link.points[0] == pytest.approx([0, 0])
+    assert motor.points.tolist() == [link.points[-1].tolist()]
 
 
 def test_the_arm_turns_as_the_signs_of_its_equations_say():
@@ -104,5 +105,6 @@ def test_the_hub_is_a_rigid_disc_on_the_axis_and_the_links_bend(plant):
 
 
 def test_a_deflection_is_small_up_to_a_tenth_of_the_length():
-    # of 0.475 m, section 3.1: beyond it a warning says that the equations are linear
+    # of 0.475 and 0.55 m, sections 3.1 and 3.2: beyond it a warning says that equations are linear
     assert qa.SingleLinkManipulator.small_deflection == pytest.approx(0.0475)
+    assert qa.ArmOnFlexibleLink.small_deflection == pytest.approx(0.055)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from quietarm.ocp.limits import Limit
+from quietarm.ocp.limits import QUANTITIES, Limit
 from third_opinion import COEFFICIENTS
 
 import quietarm as qa
@@ -78,6 +78,8 @@ def test_what_is_seen_after_arrival_reaches_the_residual(tasks):
     seen = np.abs(trajectory.tips[later]).max()
     assert residual * (1 - 1.2e-6) <= seen <= residual * (1 + 1e-9)  # 0.003 rad apart: 0.003^2 / 8
     assert candidate.range_of(Limit.of_residual(1.0).quantity) == (-residual, residual)
+    fastest = candidate.motion.peak_speed
+    assert candidate.motion.range_of(QUANTITIES["speed"]) == (-fastest, fastest)
 
 
 @pytest.mark.parametrize(

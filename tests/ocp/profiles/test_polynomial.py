@@ -67,6 +67,8 @@ def test_joint_rests_at_start_and_target(a, start, target, duration):
         # Coefficients of 0.5 in up to ten terms multiply the derivatives by 1e3 at most.
         close = 1e-11 * _scale(start, target, duration, order)
         assert path(ends, order) == pytest.approx([0.0, 0.0], abs=close)
+    before_and_after = [-0.5 * duration, 1.5 * duration]
+    assert path(before_and_after, 3).tolist() == [0.0, 0.0]
 
 
 @settings(max_examples=25)

@@ -31,6 +31,18 @@ def test_an_undamped_oscillator_driven_by_the_plain_cycloid(omega):
     assert arrival == pytest.approx([W, dW], rel=1e-9, abs=1e-10)
 
 
+def test_an_initial_state_decays_beside_the_move():
+    # The equations are linear without beta2: what is added at the start turns as W + i W'/omega.
+    plant, T, omega = _undamped(10.43), 0.8, 10.43
+    still, ringing = (
+        rollout(qa.PointToPoint(plant, pi / 6, T, initial=state), PLAIN, []).arrival
+        for state in (None, qa.ModalState((0.01,), (0.2,)))
+    )
+    cosine, sine = math.cos(omega * T), math.sin(omega * T)
+    added = [0.01 * cosine + 0.2 / omega * sine, 0.2 * cosine - 0.01 * omega * sine]
+    assert ringing - still == pytest.approx(added, rel=1e-7)
+
+
 def test_energy_of_a_rigid_body_is_what_it_takes_to_start_and_to_stop():
     # torque = alpha1 theta'': alpha1 v^2/2 to start and again to stop, v = 2 span/T halfway.
     rigid = qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
