@@ -266,7 +266,8 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
         row[f"igd_plus{name}"] = np.nan if quality is None else quality.igd_plus
         row[f"epsilon{name}"] = np.nan if quality is None else quality.epsilon
     for level, least in zip(LEVELS, best):
-        row[f"energy_{1e3 * level:g}mm"] = front.least_energy(level) / least - 1
+        above = front.least_energy(level) / least - 1
+        row[f"energy_{1e3 * level:g}mm"] = round(above, 9) + 0.0  # no -0 and no rounding errors
     row["at_rest"] = bool((front.residuals <= AT_REST).any())
     return row | {
         "evaluations": last.evaluations, "gradients": last.gradients, "hessians": last.hessians,

@@ -64,13 +64,13 @@ def plant_words(plant: Plant) -> str:
     for entry in fields(plant):
         value, unit = plant.parameters[entry.name], units[entry.name]
         if value != entry.default:
-            changed.append(f"{entry.name} = {value:.6g}{'' if unit == '-' else f' {unit}'}")
+            changed.append(f"{entry.name} = {value:.5g}{'' if unit == '-' else f' {unit}'}")
     return f"{plant.name} with {', '.join(changed)}" if changed else plant.name
 
 
 def error_words(task: PointToPoint) -> str:
     """The ranges of the parameter errors of a task: "frequency +-10 %"; empty without any."""
-    return ", ".join(f"{name} +-{100 * size:g} %" for name, size in task.ranges.items())
+    return ", ".join(f"{name} +-{100 * size:.3g} %" for name, size in task.ranges.items())
 
 
 def moved(task: PointToPoint) -> str:

@@ -74,7 +74,7 @@ def test_parameters_are_set(done):
     out = done(
         f"evaluate {MOVE} --coefficients=0.1 --quiet --set omega=2Hz --set zeta=1% --output p.json"
     )
-    assert "single-link with zeta = 0.01, omega = 12.5664 rad/s, 0" in out
+    assert "single-link with zeta = 0.01, omega = 12.566 rad/s, 0" in out
     plant = Plan.load("p.json").task.plant
     assert plant == SingleLinkManipulator(omega=4 * 3.141592653589793, zeta=0.01)
 
