@@ -134,6 +134,12 @@ def _as_code(app, ctx, lines):
             lines[k : k + 1] = [lines[k][2:], "", ".. code-block:: text", ""]
 
 
+def _defaults_as_typed(app, ctx, lines):
+    """Show defaults without quotes, and none where click's mark says that there is none."""
+    shown = [line for line in lines if "Sentinel.UNSET" not in line]
+    lines[:] = [re.sub(r"(:default: ``)'(.*)'``", r"\1\2``", line) for line in shown]
+
+
 def setup(app):
     """Equations as MathML, and the pages that are made here."""
     app.add_html_math_renderer(
@@ -141,3 +147,4 @@ def setup(app):
     )
     app.connect("source-read", _fill)
     app.connect("sphinx-click-process-description", _as_code)
+    app.connect("sphinx-click-process-options", _defaults_as_typed)
