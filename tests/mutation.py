@@ -49,8 +49,8 @@ TESTS = {
     "models/single_link.py": ["models"],
     "models/dual_link.py": ["models"],
     "models/arm_on_flexible_link.py": ["models"],
-    "ocp/simulation/collocation.py": [*QUICK, "ocp/floor/test_closed_forms.py", *SLOW],
-    "ocp/simulation/objective.py": [*QUICK, *SLOW],
+    "ocp/simulation/collocation.py": [*QUICK, *SLOW, "ocp/floor/test_search.py"],
+    "ocp/simulation/objective.py": [*QUICK, "ocp/test_candidate.py", "ocp/test_energies.py", *SLOW],
     "ocp/profiles/joint_profile.py": ["ocp/profiles", *QUICK],
     "ocp/profiles/cycloid.py": [
         "ocp/profiles/test_polynomial.py",

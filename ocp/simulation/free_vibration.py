@@ -150,7 +150,7 @@ vibration_of = lru_cache(maxsize=256)(FreeVibration)
 @lru_cache(maxsize=256)
 def fastest_along(plant: Plant, start: float, target: float) -> float:
     """Largest angular frequency of a plant at rest, from start to target [rad/s]."""
-    return float(fastest_of_moves(plant, [start], [target])[0])
+    return fastest_of_moves(plant, [start], [target]).item()
 
 
 def fastest_of_moves(plant: Plant, starts: ArrayLike, targets: ArrayLike) -> Array:

@@ -52,8 +52,8 @@ class SymbolicRollout:
     torque: list[Expression]
     arrival: Expression
     h: Expression
-    unbroken: bool = True
-    definition: Energy = ABSOLUTE_POWER
+    unbroken: bool
+    definition: Energy
 
     @property
     def power(self) -> list[Expression]:

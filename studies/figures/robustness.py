@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -83,7 +83,7 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
         how, energy = look(number), judged.motion.energy
         worst = judged.motion.residual if judged.worst is None else judged.worst.residual
         ends = [1e3 * max(residual, REST) for residual in (judged.motion.residual, worst)]
-        line = {"color": how.colour, "marker": how.mark, "markersize": 5}
+        line: dict[str, Any] = {"color": how.colour, "marker": how.mark, "markersize": 5}
         ax.plot(ends[0], energy, fillstyle="none", **line)
         ax.plot(ends, [energy] * 2, linestyle=how.dash, linewidth=1, label=judged.name,
                 markevery=[1], **line)  # fmt: skip

@@ -204,6 +204,7 @@ CALLED = [name for name in COMMAND_BLOCKS if not name.startswith((STARTED, "expl
 """The page of explore stays until Ctrl-C: tests/studies/explore opens it."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", CALLED)
 def test_the_commands_run_one_after_another(follow, block, request):
     follow(block)
@@ -212,6 +213,7 @@ def test_the_commands_run_one_after_another(follow, block, request):
         assert 0.02 < energy < 0.03  # README: the link's first move takes 0.0237 J
 
 
+@pytest.mark.slow
 def test_the_machine_of_the_page_is_the_one_that_was_recorded(run_python, follow):
     run_python(MACHINE)
     printed, *_ = [follow(f"machine-{number}")[0] for number in range(5)]

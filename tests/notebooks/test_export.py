@@ -8,6 +8,8 @@ import sys
 import pytest
 from notebook_files import NOTEBOOKS, PATHS, code_cells, pictures, read
 
+pytestmark = pytest.mark.slow
+
 OFFLINE = NOTEBOOKS / "offline.py"
 FROM_ELSEWHERE = re.compile(r"<(?:script|link|img)[^>]*(?:src|href)=\"https?:[^\"]+\"")
 

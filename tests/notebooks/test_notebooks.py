@@ -29,6 +29,7 @@ def kinds(cell):
     return [sorted(o.get("data", {})) or o.get("name", o.output_type) for o in cell.outputs]
 
 
+@pytest.mark.slow
 @each_notebook
 def test_it_runs_without_warnings_and_shows_what_is_committed(path, client, tmp_path):
     committed, anew = read(path), execute(path, tmp_path, client)

@@ -9,6 +9,8 @@ import pytest
 from quietarm.metaheuristics import problem_of
 from quietarm.ocp import Front
 
+pytestmark = pytest.mark.slow
+
 DOCUMENT = Path(__file__).parents[3] / "docs" / "problems.md"
 BLOCKS = re.findall(r"^```python\n(.*?)^```$", DOCUMENT.read_text(), re.DOTALL | re.MULTILINE)
 (PLATYPUS,), (STEADY,) = (

@@ -12,6 +12,8 @@ from quietarm.ocp.floor.search import Level
 
 import quietarm as qa
 
+pytestmark = pytest.mark.slow
+
 
 @cache
 def coarse_of(task, starts=1, **settings):

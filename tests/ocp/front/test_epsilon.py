@@ -101,6 +101,7 @@ def test_there_is_a_point_at_every_residual_that_is_asked_for():
     assert tuple(map(float, front.record.settings["at"].split(", "))) == at  # to the last digit
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "limits", "bound"),
     [("arm", {"acceleration_limit": 12.5}, 0.5), ("arm", {"speed_limit": 2.6}, None)],

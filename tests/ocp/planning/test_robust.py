@@ -58,6 +58,7 @@ def test_what_cannot_be_met_says_what_can(task):
         qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2, starts=1, residual_limit=1e-3)
 
 
+@pytest.mark.slow
 def test_ipopt_finds_the_same(task, plan):
     other = qa.plan_move(task, starts=1, solver="ipopt")
     assert other.record.method == "ipopt"

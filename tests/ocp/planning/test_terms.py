@@ -14,6 +14,8 @@ from quietarm.ocp import (
     shaped_cycloid,
 )
 
+pytestmark = pytest.mark.slow
+
 LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8)
 BEAM = PointToPoint(
     FlexibleBeam(omega=6 * 2 * pi, zeta=0.015), radians(30), 0.8, acceleration_limit=60.0

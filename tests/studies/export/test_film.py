@@ -76,6 +76,7 @@ def test_moves_of_different_durations_share_a_clock(plan, task):
     assert third.tips[:19, 0] == pytest.approx(expected, abs=2e-6)
 
 
+@pytest.mark.slow
 def test_plans_of_different_plants_and_durations_become_a_page_and_a_gif(
     call, done, folder, plan, two_links
 ):

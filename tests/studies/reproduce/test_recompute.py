@@ -30,6 +30,8 @@ from quietarm.studies.reproduce.recompute import (
 from quietarm.studies.reproduce.report import TITLES, reproduction_report
 from quietarm.studies.reproduce.searched import OLD_CONSTANTS
 
+pytestmark = pytest.mark.slow
+
 SHORT = Effort(
     full=True,
     searches={

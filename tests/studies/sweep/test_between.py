@@ -72,6 +72,7 @@ def test_no_polynomial_goes_through_a_cell_without_a_plan_or_across_a_jump():
     assert found == pytest.approx([1.5, 4.0, np.nan, 107.0, np.nan], nan_ok=True)
 
 
+@pytest.mark.slow
 def test_a_margin_makes_moves_between_the_cells_keep_their_limits(call, tmp_path):
     axes = "--target 60deg:90deg:10deg --duration 600ms:800ms:100ms"
     line, at = f"sweep single-link {axes} --acceleration-limit 80 --terms 6 --quiet", (1.48, 0.65)

@@ -93,6 +93,7 @@ def test_parameters_are_axes_and_what_cannot_be_has_a_reason(done, folder):
     assert here == pytest.approx(light.energy, rel=1e-3)  # limits: docs/accuracy.md
 
 
+@pytest.mark.slow
 def test_two_parts_and_a_killed_run_end_as_one_that_ran_through(call, folder):
     assert call(f"{MOVES} --output whole.zarr")[0] == 0
     whole = dataset("whole.zarr")
@@ -114,6 +115,7 @@ def test_two_parts_and_a_killed_run_end_as_one_that_ran_through(call, folder):
     assert same(dataset("killed.zarr"), whole)
 
 
+@pytest.mark.slow
 def test_workers_here_and_of_a_cluster_make_the_same_dataset(call, folder):
     axes = "--target 30deg,60deg --duration 800ms:1.2s:80ms"
     line = f"sweep single-link {axes} --terms 3 --error frequency=1% --quiet"  # two chunks

@@ -8,6 +8,8 @@ from quietarm.ocp import Plan
 from quietarm.studies.identify import Identified
 from scipy.signal import lsim
 
+pytestmark = pytest.mark.slow
+
 # a tool head of 0.4 kg on a belt, whose motor is held: 35 Hz and a damping ratio of 0.05
 MASS, STIFFNESS = 0.4, 0.4 * (2 * np.pi * 35) ** 2
 FRICTION = 2 * 0.05 * np.sqrt(STIFFNESS * MASS)
