@@ -44,6 +44,7 @@ def test_a_front_of_a_search_is_checked_by_ipopt(front):
     assert cross_check(searched).solver == "ipopt"
 
 
+@pytest.mark.slow
 def test_a_deflection_is_limited_in_every_scenario_by_both_solvers():
     """The limit binds in the scenarios, not on the nominal plant."""
     task, _ = CASES["single link"]

@@ -13,6 +13,8 @@ from quietarm.studies.bench.results import Results
 
 import quietarm as qa
 
+pytestmark = pytest.mark.slow
+
 
 def test_a_job_is_a_file_and_is_not_done_again(jobs, folder, fronts, monkeypatch):
     assert list(fronts) == jobs

@@ -69,6 +69,7 @@ def test_several_seeds_are_written_to_a_file_each_with_their_spread(call):
     assert not Path("f.json").exists()
 
 
+@pytest.mark.slow
 def test_workers_share_the_runs(folder):
     """The installed command: each worker starts by running its file."""
     ran = run(f"{SMALL} --quiet --runs 2 --workers 2 --output f.json")

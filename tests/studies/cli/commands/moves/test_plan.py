@@ -50,6 +50,7 @@ def test_a_profile_with_other_coefficients(done):
     assert found.profile.label in " ".join(out.split())
 
 
+@pytest.mark.slow
 def test_the_motion_without_a_parametrisation_takes_less(done):
     line = "plan arm-on-flexible-link --target pi/2 --duration 0.8 --acceleration-limit 100 --quiet"
     out = done(f"{line} --profile free --starts 2 --seed 3 --output f.json --output f.png")
