@@ -40,7 +40,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))  # this checkout's packages, also where quietarm is installed
 QUICK = [
     f"ocp/simulation/test_{name}.py"
-    for name in ("free_vibration", "energy", "rollout", "closed_forms", "third_opinion", "jerk")
+    for name in ("free_vibration", "energy", "rollout", "closed_forms", "third_opinion")
 ]
 """Those of the simulation that are done in seconds: the first that fails ends the tests."""
 SLOW = ["ocp/solvers/test_batch.py", "ocp/simulation/test_derivatives_of_the_rollout.py"]

@@ -1,6 +1,5 @@
 """What is shipped: versions, type information, pinned requirements, nothing of one machine."""
 
-import re
 import subprocess
 import sys
 import tomllib
@@ -11,7 +10,6 @@ from pathlib import Path
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
-from packaging.version import Version
 from quietarm.models import __version__
 
 import quietarm
@@ -37,14 +35,6 @@ def files():
     )
     found = [ROOT / name for name in listed.stdout.decode().split("\0") if name]
     return [path for path in found if path.is_file()]  # one that is removed but still listed
-
-
-def test_one_version_everywhere():
-    version_file = ROOT / PYPROJECT["tool"]["hatch"]["version"]["path"]
-    (written,) = re.findall(r'^__version__ = "(.*)"$', version_file.read_text(), re.MULTILINE)
-    assert PYPROJECT["project"]["dynamic"] == ["version"]
-    assert written == __version__ == metadata.version("quietarm")
-    assert str(Version(written)) == written
 
 
 def test_what_is_installed_stands_under_one_name():
@@ -103,11 +93,6 @@ def test_every_requirement_has_a_lower_bound_and_a_pin_that_meets_it():
         if requirement.name != "quietarm":  # else another extra of its own
             assert [bound.operator for bound in requirement.specifier] == [">="]
             assert pinned[canonicalize_name(requirement.name)] in requirement.specifier
-
-
-def test_python_from_3_11_on():
-    assert PYPROJECT["project"]["requires-python"] == ">=3.11"
-    assert metadata.metadata("quietarm")["Requires-Python"] == ">=3.11"
 
 
 # Put together here, so that this file is not the one that is found.

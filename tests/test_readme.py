@@ -1,38 +1,13 @@
-"""README and docs: the two commands, the gate, the figures and files that they name."""
+"""README and docs: the commands, figures and files that they name."""
 
 import re
 import shlex
-import tomllib
 
 import pytest
-from pages import COMMANDS, NOTEBOOK, PAGES, README, ROOT, TWO_COMMANDS
+from pages import COMMANDS, PAGES, README, ROOT, TWO_COMMANDS
 from quietarm.ocp import evaluate_coefficients, plan_move
 from quietarm.studies.cli import quietarm
 from quietarm.studies.reproduce.paper import SINGLE_LINK_SIXTH
-
-# The two commands
-
-
-def test_a_picture_a_move_and_python_come_before_the_two_commands_for_all():
-    places = ["](docs/images/move.gif)", "```sh\n.venv/bin/quietarm plan ", "```python\n"]
-    found = [README.index(words) for words in (*places, "\n## Two commands\n", "```console\n")]
-    assert found == sorted(found)
-    section = README.split("\n## Two commands\n", 1)[1].split("\n## ", 1)[0]
-    assert re.findall(r"^```console\n(.+)\n```$", section, re.MULTILINE) == TWO_COMMANDS
-    assert section.count("```") == 4
-
-
-@pytest.mark.parametrize("command", [*TWO_COMMANDS, NOTEBOOK])
-def test_the_commands_install_with_the_constraints_that_are_here(command):
-    (install,) = [step for step in re.split(" && |\n", command) if "pip install" in step]
-    words = shlex.split(install)
-    assert (ROOT / words[words.index("-c") + 1]).is_file()
-    extras = re.fullmatch(r"\.(?:\[(.*)\])?", words[-1]).group(1)
-    known = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    assert set(extras.split(",") if extras else []) <= set(known)
-
-
-# The course and the commands
 
 
 def test_there_are_commands_for_a_move_of_your_own():

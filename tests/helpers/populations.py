@@ -4,12 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial
 
 pi = math.pi
 PROFILE = CycloidPolynomial(6)
-SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
 PLANTS = pytest.mark.parametrize("name", ["single link", "arm", "two links"])
 
 

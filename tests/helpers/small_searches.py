@@ -7,14 +7,12 @@ from functools import cache
 
 import numpy as np
 import pytest
+from moves import CASES
 from quietarm.metaheuristics import search
-from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
-from quietarm.ocp import PointToPoint
 from quietarm.ocp.saved import plain
 
 pi = math.pi
-SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
-SIXTH, HALF = PointToPoint(SINGLE_LINK, pi / 6, 0.8), PointToPoint(ARM, pi / 2, 0.8)
+(HALF, _), (SIXTH, _) = CASES["arm"], CASES["single link"]
 TASKS = {"nsga2": HALF, "vepso": SIXTH}
 BOUNDS = {"nsga2": 0.5, "vepso": 0.2}  # eqs (17) and (12)
 METHODS = pytest.mark.parametrize("method", ["nsga2", "vepso"])
@@ -44,10 +42,6 @@ def assert_is_a_front(front):
     assert np.isfinite(F).all()
     assert np.all(np.diff(front.residuals) > 0)
     assert np.all(np.diff(front.energies) < 0)
-
-
-def one_line(caught):
-    assert "\n" not in str(caught.value)
 
 
 LIMITED = {

@@ -93,6 +93,27 @@ EQUATIONS = {"single link": _single_link, "arm": _arm, "two links": two_links}
 PHI = {"single link": 2.28, "arm": 0.508, "two links": 2.7244}  # docs/physics.md
 
 
+def followed(plant, joint, corners, **settings):
+    """A plant's equations by DOP853, restarted at the corners of a joint's motion.
+
+    Gives modes, rates, net work and energy at the end, and the runs between the corners.
+    """
+    n, z, runs = plant.modes, np.zeros(2 * plant.modes + 2), []
+
+    def rates(t, z):
+        at, W, dW = joint(t), z[:n], z[n : 2 * n]
+        ddW = [float(one) for one in plant.modal_accelerations(at, W, dW)]
+        power = float(plant.torque(at, W, dW, ddW)) * at.speed
+        return [*dW, *ddW, power, abs(power)]
+
+    for begin, end in itertools.pairwise(corners):
+        if end - begin > 1e-12:
+            settings = {"rtol": 1e-11, "atol": 1e-13, "max_step": (end - begin) / 40, **settings}
+            runs.append(solve_ivp(rates, (begin, end), z, "DOP853", **settings))
+            z = runs[-1].y[:, -1]
+    return z, runs
+
+
 class ThirdOpinion:
     """Modes, torque, F1 and F2 of a move by SciPy."""
 

@@ -65,10 +65,3 @@ def test_the_torque_follows_from_the_energies(speed, acceleration, dW, ddW):
     force = LAGRANGE([0.3, 0, 0], [speed, *dW], [acceleration, *ddW])[0]
     torque = plant.torque(joint, [0.0, 0.0], dW, ddW)
     assert torque == pytest.approx(float(force) + PUBLISHED["c"] * speed, abs=1e-12)
-
-
-def test_either_tip_moves_with_its_own_mode():
-    # docs/physics.md: w_i = phi W_i, phi = 2.7244
-    assert DualLinkManipulator().tip_displacements([0.1, -0.3]) == pytest.approx(
-        [2.7244 * 0.1, -2.7244 * 0.3]
-    )

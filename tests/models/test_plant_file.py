@@ -27,25 +27,17 @@ def test_its_plants_go_to_other_processes(crane_file):
     assert pickle.loads(pickle.dumps(crane)) == crane
 
 
-OWN = "from quietarm.models import Plant, SingleLinkManipulator\n"
+OWN = "from quietarm.models import Plant, SingleLinkManipulator\nclass S(Plant): "
 
 
 @pytest.mark.parametrize(
     ("name", "content", "told"),
     [
-        ("crane.py", OWN, "no plant"),
+        ("crane.py", OWN.partition("class")[0], "no plant"),
         ("crane.py", "\n\nx = 1 / 0\n", ", line 3: ZeroDivisionError"),
         ("crane.py", "\nx = (\n", ", line 2: SyntaxError"),
-        (
-            "crane.py",
-            OWN + "class S(Plant):\n    name, modes = 's', 1\n",
-            "with a name, modes, modal_acc",
-        ),
-        (
-            "crane.py",
-            OWN + "class S(Plant):\n    name = 'single-link'\n",
-            "quietarm's own; give S another",
-        ),
+        ("crane.py", OWN + "name, modes = 's', 1", "with a name, modes, modal_acc"),
+        ("crane.py", OWN + "name = 'single-link'", "quietarm's own; give S another"),
         ("plan.json", "raise RuntimeError('run')", "is not called .py"),
     ],
 )
@@ -55,7 +47,6 @@ def test_a_file_that_gives_no_plant_is_refused_with_the_line(tmp_path, name, con
     with pytest.raises(ValueError, match="plant file ") as error:
         load_plant_file(path)
     assert told in str(error.value)
-    assert "\n" not in str(error.value)
     assert known_plants() == before
 
 

@@ -1,56 +1,31 @@
 """The plants: the paper's equations, parameters, names."""
 
-import math
 from dataclasses import fields
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from third_opinion import EQUATIONS, PHI
 
 import quietarm as qa
 
 motions = st.floats(-10.0, 10.0)
 """Angles, speeds, accelerations, amplitudes and rates: larger than any in the paper's figures."""
 
-
-# Eq (10) of the paper.
-SINGLE_LINK = {
-    "alpha1": 2.383e-2,
-    "alpha2": 9.261e-2,
-    "c": 3.091e-2,
-    "beta1": 2.555e-1,
-    "beta2": 2.614e-1,
-    "zeta": 9.636e-3,
-    "omega": 10.43,
+states = st.tuples(motions, motions)
+PLANTS = {
+    "single link": qa.SingleLinkManipulator(),
+    "arm": qa.ArmOnFlexibleLink(),
+    "two links": qa.DualLinkManipulator(),
 }
-
-
-# Eq (15) of the paper.
-ARM = {
-    "alpha1": -1.055e-1,
-    "alpha2": -9.949e-3,
-    "alpha3": 5.256e-2,
-    "alpha4": 7.634e-2,
-    "zeta": 1.500e-3,
-    "beta1": 5.366e-3,
-    "beta2": -4.944e-3,
-    "beta3": 2.399e-2,
-    "omega": 7.320,
-    "c": 1.965e-2,
-}
-
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
 
-@pytest.fixture(params=["single link", "arm", "two links"])
-def plant(request, two_links):
-    plants = {
-        "single link": qa.SingleLinkManipulator(),
-        "arm": qa.ArmOnFlexibleLink(),
-        "two links": two_links,
-    }
-    return plants[request.param]
+@pytest.fixture(params=PLANTS)
+def plant(request):
+    return PLANTS[request.param]
 
 
 def test_mode_shapes_at_the_tips():
@@ -60,43 +35,19 @@ def test_mode_shapes_at_the_tips():
     assert qa.ArmOnFlexibleLink().phi == pytest.approx(2.399e-2 / (0.450 * 0.105), abs=0.0005)
 
 
-@given(angle=motions, speed=motions, acceleration=motions, W=motions, dW=motions)
-def test_single_link_meets_eqs_8_and_9(angle, speed, acceleration, W, dW):
-    p, joint = SINGLE_LINK, qa.JointMotion(angle, speed, acceleration)
-    plant = qa.SingleLinkManipulator()
-    (ddW,) = plant.modal_accelerations(joint, [W], [dW])
-    eq9 = (
-        ddW
-        + 2 * p["zeta"] * p["omega"] * dW
-        + p["omega"] ** 2 * W
-        + p["beta1"] * acceleration
-        + p["beta2"] * speed**2 * W
+@pytest.mark.parametrize("name", PLANTS)
+@given(angle=motions, speed=motions, acceleration=motions, W=states, dW=states)
+def test_a_plant_meets_its_equations(name, angle, speed, acceleration, W, dW):
+    # eqs (8) and (9), (13) and (14), and docs/physics.md, typed afresh with their coefficients
+    plant, modes = PLANTS[name], PLANTS[name].modes
+    (W, dW), joint = (np.array([W, dW])[:, :modes]), qa.JointMotion(angle, speed, acceleration)
+    ddW, torque = EQUATIONS[name](angle, speed, acceleration, W, dW)
+    found = [float(x) for x in plant.modal_accelerations(joint, W, dW)]
+    assert found == pytest.approx(np.ravel(ddW).tolist(), rel=1e-12, abs=1e-11)
+    assert float(plant.torque(joint, W, dW, found)) == pytest.approx(
+        float(torque), rel=1e-12, abs=1e-11
     )
-    assert eq9 == pytest.approx(0.0, abs=1e-11)
-    eq8 = p["alpha1"] * acceleration + p["alpha2"] * ddW + p["c"] * speed
-    assert plant.torque(joint, [W], [dW], [ddW]) == pytest.approx(eq8, rel=1e-13, abs=1e-13)
-
-
-@given(angle=motions, speed=motions, acceleration=motions, W=motions, dW=motions)
-def test_arm_meets_eqs_13_and_14(angle, speed, acceleration, W, dW):
-    p, joint = ARM, qa.JointMotion(angle, speed, acceleration)
-    plant = qa.ArmOnFlexibleLink()
-    ddW = float(plant.modal_accelerations(joint, [W], [dW])[0])
-    eq13 = (
-        (1 + p["alpha1"] * math.cos(angle)) * ddW
-        + 2 * p["zeta"] * p["omega"] * dW
-        + p["omega"] ** 2 * W
-        + (p["alpha2"] + p["alpha3"] * math.cos(angle)) * acceleration
-        + (p["alpha4"] * dW * speed - p["alpha3"] * speed**2) * math.sin(angle)
-    )
-    assert eq13 == pytest.approx(0.0, abs=1e-11)
-    eq14 = (
-        p["beta1"] * acceleration
-        + p["c"] * speed
-        + (p["beta2"] + p["beta3"] * math.cos(angle)) * ddW
-    )
-    torque = float(plant.torque(joint, [W], [dW], [ddW]))
-    assert torque == pytest.approx(eq14, rel=1e-13, abs=1e-13)
+    assert plant.tip_displacements(W) == pytest.approx(PHI[name] * W)
 
 
 def test_the_plants_meet_their_contract(plant):

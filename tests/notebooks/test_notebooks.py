@@ -58,18 +58,6 @@ def test_it_is_committed_as_refresh_writes_it(path):
     assert min(map(len, pictures(notebook))) > 10_000  # something is drawn in each
 
 
-@each_notebook
-def test_it_says_first_what_it_is_for_and_last_has_three_exercises(path):
-    cells = read(path).cells
-    assert cells[0].source.startswith("# ")
-    assert "**You will be able to**" in cells[0].source
-    assert "**You need**" in cells[0].source
-    begin = next(n for n, cell in enumerate(cells) if cell.source.startswith("## Exercises"))
-    assert [n for n, cell in enumerate(cells) if "<details>" in cell.source and n < begin] == []
-    assert sum("<details>" in cell.source for cell in cells) == 3
-    assert f"]({path.name})" in (NOTEBOOKS / "README.md").read_text()
-
-
 def test_the_picture_of_the_documentation_is_one_of_the_first_notebook():
     assert (NOTEBOOKS / "move.png").read_bytes() in pictures(read(PATHS[0]))
 

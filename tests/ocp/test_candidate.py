@@ -51,24 +51,6 @@ def test_the_printed_coefficients_give_what_another_simulation_gave(
     )
 
 
-@pytest.mark.parametrize(
-    ("name", "row", "printed", "digit"),
-    [
-        # Table 2; its N = 6 is also the first row of Table 3.
-        ("single link", "2", 6.29e-2, 1e-4),
-        ("single link", "4", 5.26e-2, 1e-4),
-        ("single link", "6", 5.15e-2, 1e-4),
-        # Table 5; its N = 6 is also the first row of Table 6.
-        ("arm", "2", 2.09e-1, 1e-3),
-        ("arm", "4", 1.65e-1, 1e-3),
-        ("arm", "6 mended", 1.49e-1, 1e-3),
-    ],
-)
-def test_the_printed_energies_are_found_again(motion, name, row, printed, digit):
-    # One unit of the last digit, as the printed coefficients are rounded too.
-    assert motion(name, row).energy == pytest.approx(printed, abs=digit)
-
-
 def test_what_is_seen_after_arrival_reaches_the_residual(tasks):
     candidate = qa.Candidate.of_profile(tasks["single link"], qa.CycloidPolynomial(0), [])
     trajectory, residual = candidate.trajectory, candidate.residual

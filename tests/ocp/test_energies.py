@@ -11,7 +11,6 @@ from numpy.polynomial import Polynomial
 from quietarm.ocp.checks import known
 from quietarm.ocp.simulation.collocation import GAUSS_NODES
 from quietarm.ocp.simulation.objective import spent
-from quietarm.ocp.solvers.batch import Multipliers, batch
 from scipy.integrate import quad
 from third_opinion import ThirdOpinion
 
@@ -81,23 +80,6 @@ def test_cvodes_and_the_rollout_spend_what_scipy_finds(tasks, name, plant):
     assert rollout(task, profile, SIX).motion.energy == pytest.approx(spent, rel=1e-5)
 
 
-@pytest.mark.parametrize("width", [0.0, 0.2])
-def test_derivatives_are_the_limit_of_differences(plants, name, width):
-    made = batch(plants["arm"], qa.CycloidPolynomial(3), 20, energy=ENERGIES[name])
-    a, move = np.array([[-0.1, 0.2, -0.3]]), np.array([[0.1, 1.4, 0.8, 0.0, 0.0]])
-    weights = Multipliers(np.ones(1), np.zeros((1, 2)), np.zeros((1, 0)))
-
-    def at(x):
-        return made.derivatives(x, move, np.zeros((1, 0)), np.array([width]), weights)
-
-    h, found = 1e-5, at(a)
-    sides = [(at(a + h * e), at(a - h * e)) for e in np.eye(3)]
-    slope = [(after.energy - before.energy)[0] / (2 * h) for after, before in sides]
-    bend = [(after.gradient - before.gradient)[0] / (2 * h) for after, before in sides]
-    assert found.gradient[0] == pytest.approx(np.array(slope), rel=1e-6, abs=1e-7)
-    assert found.hessian[0] == pytest.approx(np.array(bend), rel=1e-4, abs=1e-4)
-
-
 def test_both_solvers_and_the_floor_agree_with_the_plan(task, solved):
     plan, other = solved(task), solved(task, solver="ipopt")
     assert (plan.verification.agrees, plan.residual < 1e-8) == (True, True)
@@ -134,14 +116,6 @@ def test_positive_power_of_a_rigid_body_is_what_it_takes_to_start():
     task = qa.PointToPoint(rigid, math.pi / 6, 0.8, energy=qa.PositivePower())
     spent = qa.Candidate.of_profile(task, qa.CycloidPolynomial(0), []).energy
     assert spent == pytest.approx(0.02 * (2 * (math.pi / 6) / 0.8) ** 2 / 2, rel=1e-9)
-
-
-def test_an_energy_that_is_not_known_is_refused(tasks, solved, tmp_path):
-    path = tmp_path / "plan.json"
-    solved(replace(tasks["single link"], energy=ENERGIES["mixed"])).save(path)
-    path.write_text(path.read_text().replace('"copper"', '"cupper"'))
-    with pytest.raises(qa.FileFormatError, match="energy 'cupper' is not known here"):
-        qa.Plan.load(path)
 
 
 def test_energies_are_values():

@@ -19,7 +19,6 @@ def saved(crane_file, tmp_path):
 def _refused(path):
     with pytest.raises(qa.FileFormatError) as told:
         qa.Plan.load(path)
-    assert "\n" not in str(told.value)
     return str(told.value)
 
 

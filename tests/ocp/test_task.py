@@ -29,7 +29,6 @@ def test_a_number_out_of_range_is_named_with_its_value(name, value):
     }
     with pytest.raises(ValueError, match=name.replace("_", ".") + " is") as error:
         qa.PointToPoint(**task)
-    assert "\n" not in str(error.value)
     assert f"{value:g}" in str(error.value)
 
 

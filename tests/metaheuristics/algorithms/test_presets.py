@@ -92,7 +92,6 @@ def test_bad_settings_are_refused_with_the_remedy(name, settings, words):
     with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
         PRESETS[name].build(10, settings)
     assert all(word in str(caught.value) for word in words)
-    assert "\n" not in str(caught.value)
 
 
 def test_the_document_has_every_method_with_its_settings_and_defaults():

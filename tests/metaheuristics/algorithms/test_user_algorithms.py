@@ -10,9 +10,9 @@ from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.algorithms.soo.nonconvex.nelder import NelderMead
 from pymoo.operators.mutation.pm import PM
 from pymoo.util.ref_dirs import get_reference_directions
-from quietarm.metaheuristics import INERTIA_2002, VEPSO, search
+from quietarm.metaheuristics import INERTIA_2002, VEPSO, PaperNSGA2, search
 from quietarm.ocp import Front
-from small_searches import HALF, LIMITED, assert_is_a_front, one_line
+from small_searches import HALF, LIMITED, assert_is_a_front
 
 
 def _moead():
@@ -51,6 +51,10 @@ def test_the_settings_of_any_algorithm_are_in_the_front():
     # pymoo's defaults for SMS-EMOA, from its source
     assert found["crossover"].startswith("SBX(eta=15, ")
     assert found["mutation"] == "PM(at_least_once=False, eta=30, prob=0.9)"
+    paper = settings(PaperNSGA2(12))  # docs/physics.md, 'NSGA-II settings'
+    assert paper["crossover"].startswith("SBX(eta=15, ")
+    assert paper["crossover"].endswith("prob=0.8, prob_bin=0.5, prob_exch=1.0, prob_var=0.5)")
+    assert paper["mutation"] == "PM(at_least_once=False, eta=20, prob=1.0, prob_var=0.01)"
     other = MOEAD(0.9 * get_reference_directions("uniform", 2, n_partitions=9), n_neighbors=4)
     assert settings(_moead()) != settings(other)  # by a digest of their directions
 
@@ -70,7 +74,6 @@ def test_any_algorithm_keeps_the_limits(name):
 @pytest.mark.parametrize("make", [GA, NelderMead])
 def test_an_algorithm_for_one_objective_is_refused_before_the_work(make):
     seen = []
-    with pytest.raises(ValueError, match=f"{make.__name__} minimises one objective") as caught:
+    with pytest.raises(ValueError, match=f"{make.__name__} minimises one objective"):
         search(HALF, make(), bound=0.5, generations=3, report=seen.append)
-    one_line(caught)
     assert seen == []

@@ -6,11 +6,9 @@ import math
 import numpy as np
 import pytest
 from fixed_steps import rollout
-from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
+from populations import PLANTS, PROFILE, candidates, same_bits
 from quietarm.metaheuristics import PopulationObjective
-from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
-from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import Candidate, CycloidPolynomial, PointToPoint
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, CycloidSpline
 from quietarm.ocp.limits import QUANTITIES
 
 LIMITS = tuple(QUANTITIES)
@@ -19,39 +17,20 @@ LIMITS = tuple(QUANTITIES)
 
 
 @PLANTS
-def test_energy_and_residual_are_those_of_the_rollout_at_the_same_steps(tasks, name):
+@pytest.mark.parametrize(
+    "profile", [PROFILE, CycloidGaussians(3), CycloidNetwork(3), CycloidSpline(5)]
+)
+def test_energy_and_residual_are_those_of_the_rollout_at_the_same_steps(tasks, name, profile):
     task, bound = tasks[name]
-    objective, X = PopulationObjective(task, PROFILE), candidates(30, bound)
+    random = np.random.default_rng(1)
+    X = random.uniform(*profile.start_box(bound), size=(20, profile.size))
+    objective = PopulationObjective(task, profile)
     values = objective(X)
-    motions = [rollout(task, PROFILE, x, objective.steps).motion for x in X]
+    motions = [rollout(task, profile, x, objective.steps).motion for x in X]
     assert values.energy == pytest.approx([m.energy for m in motions], rel=1e-12, abs=0)
     # Both watch the tip at times of their own, that miss a peak by 5e-5 of it at most
     # (`FreeVibration.rows`).
     assert values.residual == pytest.approx([m.residual for m in motions], rel=5e-5, abs=0)
-
-
-@pytest.mark.parametrize("terms", [1, 10])
-def test_any_number_of_terms(terms):
-    profile, task = CycloidPolynomial(terms), PointToPoint(ARM, pi / 2, 0.8)
-    X = np.random.default_rng(3).uniform(-0.3, 0.3, (7, terms))
-    objective = PopulationObjective(task, profile)
-    energies = [rollout(task, profile, x, objective.steps).motion.energy for x in X]
-    assert objective(X).energy == pytest.approx(energies, rel=1e-12, abs=0)
-
-
-def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):
-    # docs/physics.md, 'A third plant': F1 is then the larger of the two links' peaks.
-    task, bound = tasks["two links"]
-    X = candidates(12, bound)
-    times = task.duration + np.linspace(1e-9, task.residual_window, 4000)
-    tips = [
-        np.abs(Candidate.of_profile(task, PROFILE, x).sample(times).tips).max(axis=0) for x in X
-    ]
-    assert {int(np.argmax(peaks)) for peaks in tips} == {0, 1}  # either link is the worse of some
-    expected = np.max(tips, axis=1)
-    assert PopulationObjective(task, PROFILE)(X).residual == pytest.approx(
-        expected, rel=6e-5, abs=2.7244e-6
-    )
 
 
 # -- limits --
@@ -115,10 +94,3 @@ def test_a_candidate_that_is_not_finite_spoils_only_its_own_row(tasks, name, bad
     kept = np.setdiff1d(np.arange(250), bad_rows)
     for attribute in ("residual", "energy", "violations"):
         assert np.array_equal(getattr(values, attribute)[kept], getattr(expected, attribute)[kept])
-
-
-def test_a_faster_mode_gets_more_steps():
-    slow, fast = (SingleLinkManipulator(omega=omega) for omega in (10.43, 30.0))
-    steps = [PopulationObjective(PointToPoint(p, pi / 6, 0.8), PROFILE).steps for p in (slow, fast)]
-    # two steps a radian of the fastest mode (ocp.simulation.grid.default_steps)
-    assert steps == [CANDIDATE_STEPS, 2 * 30 * 0.8]

@@ -3,10 +3,9 @@
 from math import pi
 
 import pytest
-from quietarm.metaheuristics import problem_of
 from quietarm.metaheuristics.problems.card import card_of
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, PointToPoint, Record, weighted_front
+from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, PointToPoint, Record
 
 
 def front_of(points, coefficients=(0.1, 0.1)):
@@ -26,12 +25,3 @@ def test_a_front_that_rises_above_its_hull_is_nonconvex_there():
     assert card.still_falls == pytest.approx(0.05 / 2 / (0.85 / 8))
     assert card.active == ()
     assert card_of(front_of([(0, 1.0), (1, 0.5)], (0.1, -0.2))).active == (2,)
-
-
-def test_no_weighted_sum_has_points_where_the_reference_front_is_not_convex():
-    problem = problem_of("single-link-30deg-0.8s-2-terms")
-    (begin, end), *others = card_of(problem.fronts()[0]).nonconvex
-    assert others == []
-    found = weighted_front(problem.task, problem.profile, bound=problem.bound, points=8)
-    inside = [p for p in found.points if 1.1 * begin + 1e-4 < p.residual < 0.95 * end]
-    assert inside == []

@@ -8,18 +8,10 @@ import pytest
 from quietarm.metaheuristics import PROBLEMS, problem_of
 from quietarm.metaheuristics.objective.claims import check_figures
 from quietarm.ocp import evaluate_coefficients
-from quietarm.ocp.planning.plan_move import plan_from_starts
-from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.uncertainty import perturb_plant
 
 NAMES = pytest.mark.parametrize("name", PROBLEMS)
 TWO_TERMS = ["single-link-30deg-0.8s-2-terms", "arm-on-flexible-link-90deg-0.8s-2-terms"]
-COLD = [
-    "dual-link-90deg-0.9s",
-    "arm-on-flexible-link-90deg-0.8s-limits",
-    "single-link-30deg-0.8s-robust",
-]
-"""Beside the six conditions, whose fronts are held against random starts in tests/ocp."""
 THIRD = "single-link-30deg-0.8s-torque"
 ROBUST = "single-link-30deg-0.8s-robust"
 BETTER = 1e-4
@@ -43,17 +35,6 @@ def test_a_problem_has_its_exact_fronts_in_files_of_its_own(name):
         assert (front.record.method, front.failures) == ("epsilon", ())
         assert len(front.points) >= 290
         check_figures(front, name)
-
-
-@pytest.mark.parametrize("name", COLD)
-def test_no_cold_start_is_better_than_the_exact_front(name):
-    front = problem_of(name).fronts()[0]
-    middle = front.points[len(front.points) // 2]
-    problem = problem_of(name)
-    settings = SolveSettings(middle.residual, problem.bound, starts=1, seed=99)
-    plan, _ = plan_from_starts(front.task, problem.profile, settings)
-    assert plan.residual <= middle.residual * (1 + 1e-3)
-    assert plan.energy >= middle.energy * (1 - BETTER)
 
 
 @pytest.mark.parametrize("name", TWO_TERMS)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from fixed_steps import rollout
 from quietarm.metaheuristics import search
-from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import CycloidGaussians, CycloidNetwork, CycloidSpline, PointToPoint
 
@@ -20,11 +19,6 @@ PROFILES = {
     "network": CycloidNetwork(3),
     "spline": CycloidSpline(5),
 }
-
-
-@pytest.fixture(params=PROFILES)
-def profile(request):
-    return PROFILES[request.param]
 
 
 @pytest.mark.parametrize("method", ["vepso", "nsga2"])
@@ -42,13 +36,3 @@ def test_a_search_stays_in_the_profiles_box_and_finds_what_it_says(kind, method,
     motion = rollout(task, profile, point.coefficients, 1000).motion  # by other integration
     assert point.energy == pytest.approx(motion.energy, rel=1e-6)
     assert point.residual == pytest.approx(motion.residual, rel=1e-4)
-
-
-def test_a_population_is_what_single_rollouts_are(profile):
-    task, random = TASKS["arm"], np.random.default_rng(5)
-    population = random.uniform(*profile.start_box(0.5), size=(7, profile.size))
-    values = PopulationObjective(task, profile, steps=60)(population)
-    for row, energy, residual in zip(population, values.energy, values.residual, strict=True):
-        motion = rollout(task, profile, row, steps=60).motion
-        assert energy == pytest.approx(motion.energy, rel=1e-9)
-        assert residual == pytest.approx(motion.residual, rel=1e-7, abs=1e-12)

@@ -5,18 +5,8 @@ import math
 import pytest
 from fixed_steps import rollout
 from quietarm.metaheuristics import search
-from quietarm.ocp import Candidate, CycloidPolynomial, PointToPoint
-from small_searches import (
-    BOUNDS,
-    METHODS,
-    TASKS,
-    assert_is_a_front,
-    exactly,
-    found,
-    one_line,
-    pi,
-    run,
-)
+from quietarm.ocp import Candidate, CycloidPolynomial
+from small_searches import BOUNDS, METHODS, TASKS, found, run
 
 # -- what a front is --
 
@@ -51,26 +41,6 @@ def test_provenance(method):
     assert {"quietarm", "casadi", "numpy", "python", "pymoo"} <= front.record.versions.keys()
 
 
-# -- seeds --
-
-
-@METHODS
-def test_the_seed_decides(method):
-    again, other = run(method, seed=0), found(method, seed=1)
-    assert again == found(method)
-    assert exactly(again) == exactly(found(method))
-    assert {p.coefficients for p in other.points}.isdisjoint(
-        p.coefficients for p in found(method).points
-    )
-
-
-@METHODS
-def test_two_threads_find_the_same(method):
-    # more than a block of 200, lest there is nothing to share
-    one, two = (run(method, population=250, generations=3, threads=n) for n in (1, 2))
-    assert exactly(one) == exactly(two)
-
-
 # -- bad input --
 
 
@@ -81,7 +51,6 @@ def test_a_missing_bound_names_the_papers(method):
         search(TASKS[method], method)
     assert "0.2 for single-link" in str(caught.value)
     assert "0.5 for arm-on-flexible-link" in str(caught.value)
-    one_line(caught)
 
 
 @METHODS
@@ -94,18 +63,3 @@ def test_odd_settings_are_named_with_a_remedy(method, name, value):
     with pytest.raises(ValueError, match=f"{name}.* is .*; give ") as caught:
         run(method, **settings)
     assert str(value) in str(caught.value)
-    one_line(caught)
-
-
-def test_a_plant_of_two_modes(two_links):
-    # docs/physics.md, 'A third plant'
-    task = PointToPoint(two_links, pi / 2, 0.9)
-    front = search(task, "nsga2", bound=0.3, population=30, generations=30)
-    assert_is_a_front(front)
-    stillest, cheapest = (
-        Candidate.of_profile(task, front.profile, point.coefficients).motion
-        for point in (front.smallest_residual(), front.cheapest())
-    )
-    plain = Candidate.of_profile(task, CycloidPolynomial(0), []).motion
-    assert stillest.residual < plain.residual / 4
-    assert cheapest.energy < plain.energy

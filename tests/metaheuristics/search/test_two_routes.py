@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from quietarm.metaheuristics import PAPER_BOX, search
 from quietarm.ocp import Candidate, PointToPoint, epsilon_front, plan_move, polish_front
-from small_searches import ARM, HALF, SINGLE_LINK, SIXTH, found, pi
+from small_searches import HALF, SIXTH, found, pi
 
 # -- the paper's energies --
 
 # Tables 3 and 6: conditions, F2 [J]. Residual: docs/physics.md, max |W| of the paper's own N = 6
 # coefficients for the first condition of each plant (a_5 mended), times phi.
 PAPERS_RESIDUAL = {"vepso": 1.58e-4 * 2.28, "nsga2": 6.6e-4 * 0.508}
-VEPSO_HARD = (PointToPoint(SINGLE_LINK, pi / 2, 1.1), 0.223)
-ARM_ROWS = [(HALF, 0.149), (PointToPoint(ARM, pi / 2, 1.2, -pi / 2), 0.200)]
+VEPSO_HARD = (PointToPoint(SIXTH.plant, pi / 2, 1.1), 0.223)
+ARM_ROWS = [(HALF, 0.149), (PointToPoint(HALF.plant, pi / 2, 1.2, -pi / 2), 0.200)]
 LESS = {"population": 60, "generations": 100}
 """A third of the paper's budget for VEPSO; for NSGA-II (section 3.2: 200 individuals, 500
 generations) a sixteenth."""

@@ -1,36 +1,15 @@
 """The floor against closed forms."""
 
 import math
-from dataclasses import dataclass
-from typing import ClassVar
 
 import pytest
 
 import quietarm as qa
 
 
-@pytest.fixture
-def rigid(_plants_of_this_test_are_forgotten):
-    """A rigid joint beside a mode that nothing excites: tau = inertia theta'' + c theta'."""
-
-    @dataclass(frozen=True)
-    class Rigid(qa.Plant):
-        name: ClassVar[str] = "rigid"
-        modes: ClassVar[int] = 1
-
-        inertia: float = qa.parameter(0.02, "kg m^2", "test")
-        c: float = qa.parameter(0.03, "N m s", "test")
-
-        def modal_accelerations(self, joint, W, dW):
-            return [-100.0 * W[0]]
-
-        def torque(self, joint, W, dW, ddW):
-            return self.inertia * joint.acceleration + self.c * joint.speed
-
-        def tip_displacements(self, W):
-            return [W[0]]
-
-    return Rigid
+def rigid(c=0.03):
+    """A joint beside a mode that nothing excites: tau = alpha1 theta'' + c theta'."""
+    return qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, beta1=0.0, c=c)
 
 
 def _friction_floor(inertia, c, span, duration):
@@ -54,9 +33,9 @@ def _friction_floor(inertia, c, span, duration):
 
 
 @pytest.mark.parametrize("smooth", [False, True])
-def test_a_rigid_joint_with_friction_has_its_closed_form(rigid, smooth):
+def test_a_rigid_joint_with_friction_has_its_closed_form(smooth):
     plant = rigid()
-    expected = _friction_floor(plant.inertia, plant.c, 1.5, 0.8)
+    expected = _friction_floor(plant.alpha1, plant.c, 1.5, 0.8)
     floor = qa.energy_floor(qa.PointToPoint(plant, 1.5, 0.8), smooth=smooth, starts=1)
     assert floor.energy == pytest.approx(expected, rel=2e-3)
     assert floor.energy > expected * (1 - 1e-4)  # no motion is cheaper
@@ -64,21 +43,21 @@ def test_a_rigid_joint_with_friction_has_its_closed_form(rigid, smooth):
     assert abs(floor.energy - expected) < 2 * floor.discretisation_error + 1e-4 * expected
 
 
-def test_a_rigid_joint_with_limited_acceleration_has_its_closed_form(rigid):
+def test_a_rigid_joint_with_limited_acceleration_has_its_closed_form():
     # Without friction every motion costs I v^2 with v its top speed (up, and braked down again);
     # the least top speed is the trapezium's: span = v T - v^2/A.
     limit, span, duration = 15.0, 1.5, 0.8
     v = (limit * duration - math.sqrt((limit * duration) ** 2 - 4 * limit * span)) / 2
     task = qa.PointToPoint(rigid(c=0.0), span, duration, acceleration_limit=limit)
     floor = qa.energy_floor(task, starts=1)
-    assert floor.energy == pytest.approx(task.plant.inertia * v**2, rel=1e-3)
+    assert floor.energy == pytest.approx(task.plant.alpha1 * v**2, rel=1e-3)
     assert floor.motion.peak_speed == pytest.approx(v, rel=2e-3)
     assert floor.motion.peak_acceleration <= limit * (1 + 1e-9)
 
 
-def test_the_floor_of_an_uncertain_task_is_that_of_the_nominal_plant(rigid):
+def test_the_floor_of_an_uncertain_task_is_that_of_the_nominal_plant():
     # a robust plan has no residual limit to go by: nothing bends this plant
-    uncertain = qa.PointToPoint(rigid(), 1.0, 1.0, uncertainty=qa.Uncertainty({"inertia": 0.1}))
+    uncertain = qa.PointToPoint(rigid(), 1.0, 1.0, uncertainty=qa.Uncertainty({"alpha1": 0.1}))
     floors = [
         qa.energy_floor(task, starts=1, tolerance=0.5)
         for task in (qa.PointToPoint(rigid(), 1.0, 1.0), uncertain)

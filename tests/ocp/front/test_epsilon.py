@@ -1,6 +1,5 @@
 """The front by epsilon-constraint: its ends, its spacing, and that no point could be cheaper."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -57,21 +56,6 @@ def test_every_point_has_the_figures_of_the_independent_integrator(case):
         assert point.energy == pytest.approx(motion.energy, rel=1e-6)
         assert point.residual == pytest.approx(motion.residual, rel=1e-6, abs=STILL)
         assert np.abs(point.coefficients).max() <= bound
-
-
-def test_limits_of_the_task_are_kept_along_the_front():
-    plant = qa.ArmOnFlexibleLink()
-    free = qa.epsilon_front(qa.PointToPoint(plant, math.pi / 2, 0.8), bound=0.5, points=3, starts=1)
-    peak = min(
-        qa.Candidate.of_profile(free.task, free.profile, point.coefficients).motion.peak_torque
-        for point in free.points
-    )
-    task = qa.PointToPoint(plant, math.pi / 2, 0.8, torque_limit=0.95 * peak)
-    front = qa.epsilon_front(task, bound=0.5, points=3, starts=1)
-    for point in front.points:
-        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
-        assert motion.peak_torque <= task.torque_limit * 1.001
-    assert front.cheapest().energy > free.cheapest().energy
 
 
 def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():

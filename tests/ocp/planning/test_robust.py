@@ -53,11 +53,6 @@ def test_residual_and_energy_are_those_of_samples_and_assumed_plant(plan):
     assert plan.energy == pytest.approx(alone.energy, rel=1e-8)
 
 
-def test_what_cannot_be_met_says_what_can(task):
-    with pytest.raises(qa.InfeasibleTaskError, match="residual limit"):
-        qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2, starts=1, residual_limit=1e-3)
-
-
 @pytest.mark.slow
 def test_ipopt_finds_the_same(task, plan):
     other = qa.plan_move(task, starts=1, solver="ipopt")

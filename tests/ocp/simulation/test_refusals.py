@@ -12,15 +12,9 @@ PROFILE = qa.CycloidPolynomial(2)
 FAST = qa.PointToPoint(qa.SingleLinkManipulator(omega=1e4), math.pi / 6, 1.0001, residual_window=1)
 
 
-def sampled(times):
-    return lambda: qa.Candidate.of_profile(TASK, PROFILE, [0.1, 0.0]).sample(times)
-
-
 @pytest.mark.parametrize(
     ("ask", "said"),
     [
-        (sampled([]), r"sample times are \[\]; give finite ones"),
-        (sampled([0.2, 0.1]), r"increase from 0 or later"),
         (
             lambda: qa.Candidate.of_profile(TASK, PROFILE, [0.1]).motion,
             r"got 1 coefficients for a profile of 2",

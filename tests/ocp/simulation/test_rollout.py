@@ -53,6 +53,15 @@ def test_energy_of_a_rigid_body_is_what_it_takes_to_start_and_to_stop():
     assert motion.peak_torque == pytest.approx(0.02 * 2 * pi * (pi / 6) / 0.8**2, rel=1e-4)
 
 
+@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+def test_the_jerk_of_the_plain_cycloid_is_largest_at_both_ends(tasks, name):
+    # Eq (1) with U = t/T: theta''' = 4 pi^2 span/T^3 cos(2 pi t/T).
+    peak = 4 * pi**2 * abs(tasks[name].span) / tasks[name].duration ** 3
+    exact = qa.Candidate.of_profile(tasks[name], PLAIN, []).motion
+    for motion in (exact, rollout(tasks[name], PLAIN, []).motion):
+        assert motion.peak_jerk == pytest.approx(peak, rel=1e-12)
+
+
 def test_energy_of_friction_alone():
     # torque = c theta': c span^2/T^2 times the integral of (1 - cos)^2, 3/2 T; all of it is lost.
     friction = qa.SingleLinkManipulator(alpha1=1e-30, alpha2=0.0, c=0.03)

@@ -8,7 +8,6 @@ import pytest
 from fixed_steps import rollout
 from quietarm.ocp.limits import QUANTITIES as BY_NAME
 from quietarm.ocp.solvers.batch import Multipliers, batch
-from quietarm.ocp.solvers.funnel import WIDTHS
 
 import quietarm as qa
 
@@ -100,19 +99,3 @@ def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants,
         for e in np.eye(a.shape[1])
     ], axis=-1)  # fmt: skip
     assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
-
-
-def test_the_rounded_energy_is_above_the_sharp_one_and_tends_to_it(task):
-    # Rounded off, |power| is seen at the nodes only: of 80 steps they miss less than 2e-3 of it.
-    made = batch(task.plant, qa.CycloidPolynomial(4), 80)
-    candidates = _candidates(4, made.simulation)
-    sharp = _derivatives(made, candidates).energy
-    shares = []
-    for width in WIDTHS[:-1]:  # as shares of the mean power
-        mean, weights = sharp / candidates[1][:, 2], _weights(made, 4)
-        rounded = made.derivatives(*candidates, width * mean, weights).energy
-        shares.append(rounded / sharp - 1)
-    assert np.min(shares[:-1]) > 0
-    assert np.max(np.diff(shares, axis=0)) < 0
-    assert np.abs(shares[-1]).max() < WIDTHS[-2]
-    assert _derivatives(made, candidates, 1e-9).energy == pytest.approx(sharp, rel=2e-3)

@@ -108,37 +108,6 @@ def test_both_solvers_keep_limits_that_differ_by_direction_or_speed(tasks, trans
     assert least[0].peaks[name] < limit.size
 
 
-def test_both_solvers_meet_limits_on_every_plant(tasks):
-    uncertainty = qa.Uncertainty({"frequency": 0.05})
-    task = replace(tasks["arm"], uncertainty=uncertainty, deflection_limit=1.0)
-    steps, limits = Transcription(task, PROFILE, 48), {RESIDUAL: 5e-3}
-    free = _solved(steps, _ask(limits))
-    limits["deflection"] = 0.95 * free.peaks["deflection"]
-    found = [_solved(steps, _ask(limits), solver) for solver in SOLVERS]
-    for one in found:
-        assert one.status.solved
-        assert one.arrival.shape == (3, 2)
-        for quantity, limit in limits.items():
-            assert one.peaks[quantity] <= limit * (1 + 1e-6)
-    assert found[1].energy == pytest.approx(found[0].energy, rel=1e-5)
-    assert found[0].energy > free.energy
-
-
-@pytest.mark.parametrize("name", ["single link", "arm"])
-@pytest.mark.parametrize("quantity", [RESIDUAL, "torque"])
-def test_the_price_of_a_limit_is_what_a_wider_one_saves(link_and_arm, name, quantity):
-    limited = link_and_arm[name][1]
-    of_torque = 0.9 * _solved(limited, _ask(AT_REST)).peaks["torque"]
-    limits = {RESIDUAL: 2e-3} if quantity == RESIDUAL else {**AT_REST, "torque": of_torque}
-    step = 0.005 * limits[quantity]
-    there = _solved(limited, _ask(limits))
-    beyond = _solved(limited, _ask({**limits, quantity: limits[quantity] + step}))
-    price = (there.energy - beyond.energy) / step
-    assert there.shadow_prices[quantity] == pytest.approx(price, rel=0.05)
-    if quantity == RESIDUAL:
-        assert there.slope == -there.shadow_prices[RESIDUAL] < 0
-
-
 def test_rows_of_many_kinds_are_solved_as_alone(link_and_arm):
     free, limited, box = link_and_arm["arm"]
     asks = [

@@ -3,7 +3,7 @@
 import casadi as ca
 import numpy as np
 import pytest
-from quietarm.ocp.energy import ABSOLUTE_POWER, CopperLoss
+from quietarm.ocp.energy import ABSOLUTE_POWER, CopperLoss, PositivePower
 from quietarm.ocp.limits import QUANTITIES, Limit, TorqueSpeedLine
 from quietarm.ocp.simulation.objective import integrated, resolved_energy
 from quietarm.ocp.simulation.rollout import symbolic_rollout
@@ -20,7 +20,7 @@ PROFILES = {
     "gaussians": qa.CycloidGaussians(2),
     "network": qa.CycloidNetwork(2),
 }
-ENERGIES = {"absolute": ABSOLUTE_POWER, "mixed": 0.5 * ABSOLUTE_POWER + CopperLoss(0.3)}
+ENERGIES = {"absolute": ABSOLUTE_POWER, "mixed": 0.5 * PositivePower() + CopperLoss(0.3)}
 CASES = [
     ("single link", "polynomial", "absolute", ()),
     ("arm", "polynomial", "mixed", ("frequency", "damping")),

@@ -35,15 +35,6 @@ def test_measures_are_moocores_from_the_files_alone(fronts):
         assert front.history[-1].between.hypervolume >= quality.hypervolume - 1e-12
 
 
-def test_points_are_by_cvodes_and_searches_see_them_within_the_accuracy_stated(fronts):
-    function = qa.problem_of(NAME).function()
-    for front in fronts.values():
-        seen, _ = function(front.coefficients)
-        assert seen[:, 1] == pytest.approx(front.energies, rel=ACCURACY)
-        plan = qa.evaluate_coefficients(front.task, front.points[-1].coefficients)
-        assert front.points[-1].energy == pytest.approx(plan.energy, rel=1e-12)
-
-
 LONG = ["arm-on-flexible-link-90deg-0.8s-12-terms", "single-link-30deg-0.8s-20-terms"]
 
 

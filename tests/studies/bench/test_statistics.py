@@ -69,15 +69,6 @@ def test_with_ties_p_is_that_of_all_permutations_and_never_below_the_least(front
     assert pair >= attainable_p(len(one), len(other), 1) * (1 - 1e-12)
 
 
-@pytest.mark.parametrize(("mine", "theirs"), [(5, 5), (12, 12), (12, 20), (9, 6)])
-def test_without_ties_p_is_scipys_exact(fronts, mine, theirs):
-    numbers = 1 + np.random.default_rng(mine + theirs).permutation(mine + theirs)
-    one, other = np.split(numbers, [mine])
-    results = results_with(one.tolist(), other.tolist(), next(iter(fronts.values())))
-    wanted = stats.mannwhitneyu(one, other, method="exact").pvalue
-    assert pairs_on(results, NAME, "energy_1mm")["p"].tolist() == pytest.approx([wanted])
-
-
 def test_power_counts_what_is_imported():
     own = [(NAME, method) for method in ("nsga2", "epsilon") for _ in range(5)]
     assert say_power_of(own).startswith("with 5 runs of each of 2 methods (1 pair) the least p")

@@ -3,7 +3,6 @@
 import os
 import signal
 
-import click
 import pytest
 from lines import MOVE
 from quietarm.metaheuristics import problem_of
@@ -26,15 +25,6 @@ def test_every_command_has_help_with_what_all_commands_take(done):
         out = done(f"{name} --help")
         assert out.startswith(f"Usage: quietarm {name} ")
         assert all(option in out for option in ("--plant-file", "--quiet", "--help"))
-
-
-def test_an_option_of_one_name_has_one_type_everywhere():
-    types = {}
-    for name in COMMANDS:
-        for one in command_of(name).params:
-            if isinstance(one, click.Option) and one.name not in ("output", "check"):
-                types.setdefault(one.opts[0], set()).add(type(one.type))
-    assert [name for name, kinds in types.items() if len(kinds) > 1] == []
 
 
 def test_heirs_are_there():

@@ -97,25 +97,19 @@ def test_ruckig_is_followed_exactly_and_keeps_its_limits():
 
 
 def test_a_shaped_motion_is_the_sum_of_its_delayed_shares():
-    free = FreeMotion(np.array([0, 0.1, 0.25]), np.array([1.0, -2.0]), np.array([3.0, 0.5]))
+    free = FreeMotion([0, 0.1, 0.25, 0.35], [1.0, 1.3, -1.75], [3.0, -14.0, 3.0])
     impulses = SHAPERS["zvd"](20.0, 0.05)
     both = shaped(free, impulses)
-    assert both.times[-1] == pytest.approx(0.25 + impulses.times[-1])
 
-    def angle_at(motion, time):
-        """Angle by integrating twice what is constant or linear in pieces."""
-        if time <= 0:
-            return 0.0
-        starts, speeds = motion.boundaries(0.0)
-        k = min(np.searchsorted(motion.times, time, side="right") - 1, motion.steps)
-        if k == motion.steps:
-            return starts[-1] + speeds[-1] * (time - motion.times[-1])
-        t = time - motion.times[k]
-        jerk = motion.jerk[k]
-        return starts[k] + t * (speeds[k] + t * (motion.acceleration[k] / 2 + t * jerk / 6))
+    def angle_at(motion, times):
+        angle, speed = motion.boundaries(0.0)
+        k = np.clip(np.searchsorted(motion.times, times, side="right") - 1, 0, motion.steps - 1)
+        t = np.clip(times, 0.0, motion.times[-1]) - motion.times[k]
+        bends = motion.acceleration[k] / 2 + t * motion.jerk[k] / 6
+        on = np.maximum(times - motion.times[-1], 0.0) * speed[-1]
+        return angle[k] + t * (speed[k] + t * bends) + on
 
-    for time in np.linspace(0, both.times[-1], 37):
-        parts = (
-            share * angle_at(free, time - begin) for share, begin in zip(*impulses, strict=True)
-        )
-        assert angle_at(both, time) == pytest.approx(sum(parts), abs=1e-12)
+    times = np.linspace(0, both.times[-1], 37)
+    parts = [share * angle_at(free, times - begin) for share, begin in zip(*impulses, strict=True)]
+    assert both.times[-1] == pytest.approx(0.35 + impulses.times[-1])
+    assert angle_at(both, times) == pytest.approx(np.sum(parts, axis=0), abs=1e-12)

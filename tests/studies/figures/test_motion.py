@@ -1,29 +1,16 @@
-"""Motions in panels, with their limits; and pictures that are saved whole or not at all."""
+"""Motions in panels, with their limits."""
 
 import dataclasses
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from quietarm.ocp import evaluate_coefficients
 from quietarm.studies.figures import QUANTITIES_DRAWN, Line, draw_quantity, motion_figure
-from quietarm.studies.report.saving import SUFFIXES, save_figure
-
-HEADS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
-TAILS = {".png": b"IEND\xaeB`\x82", ".pdf": b"%%EOF\n", ".svg": b"</svg>\n"}
 
 
 @pytest.fixture(scope="module")
 def figure(plan):
     return motion_figure(plan, "A title")
-
-
-@pytest.fixture
-def picture():
-    """The smallest one, for where it is not looked at."""
-    drawn = Figure((1, 1))
-    drawn.text(0, 0, "drawn")
-    return drawn
 
 
 def motions(axis):
@@ -97,16 +84,3 @@ def test_limits_are_lines_where_a_motion_comes_near_them(task, limit, shown):
     assert {name: at for name, at in found.items() if at} == {
         name: pytest.approx(at) for name, at in shown.items()
     }
-
-
-# Axes
-
-
-@pytest.mark.parametrize("suffix", SUFFIXES)
-def test_pictures_are_saved_whole(picture, tmp_path, suffix):
-    path = tmp_path / f"move{suffix}"
-    save_figure(picture, path)
-    content = path.read_bytes()
-    assert content.startswith(HEADS[suffix])
-    assert content.endswith(TAILS[suffix])
-    assert list(tmp_path.iterdir()) == [path]

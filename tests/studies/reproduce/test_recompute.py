@@ -4,29 +4,18 @@ from dataclasses import replace
 from math import isnan, nan
 
 import pytest
-from quietarm.ocp import CycloidPolynomial, FrontPoint, ModalState, plan_move
+from quietarm.ocp import FrontPoint, ModalState
 from quietarm.studies.reproduce.claims import claims
 from quietarm.studies.reproduce.paper import (
-    ARM_HALF,
-    ARM_THREE_QUARTERS,
-    ARM_WHOLE,
     COEFFICIENTS,
     CONDITIONS,
     ROWS,
-    SINGLE_LINK_HALF_1_0,
-    SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
     STUDIED,
     condition_of,
-    paper_plan,
     paper_points,
 )
-from quietarm.studies.reproduce.recompute import (
-    Effort,
-    Reproduction,
-    number_of_pieces,
-    recompute_paper,
-)
+from quietarm.studies.reproduce.recompute import Effort, Reproduction, recompute_paper
 from quietarm.studies.reproduce.report import TITLES, reproduction_report
 from quietarm.studies.reproduce.searched import OLD_CONSTANTS
 
@@ -46,17 +35,6 @@ SHORT = Effort(
 ROUNDED = 1 + 1e-6
 """Room for two solves of one problem to end at the same optimum."""
 
-# docs/physics.md, 'The published optima are not optimal': what N = 6 must reach in the paper's box
-# and without one [J], as another optimiser did; rounded up.
-GRADIENT = {
-    SINGLE_LINK_SIXTH: (0.0445, 0.02375),
-    SINGLE_LINK_HALF_1_0: (0.2199, 0.1425),
-    SINGLE_LINK_HALF_1_1: (0.1591, 0.1215),
-    ARM_HALF: (0.1316, 0.1245),
-    ARM_THREE_QUARTERS: (0.1379, 0.1365),
-    ARM_WHOLE: (0.1954, 0.1935),
-}
-
 
 @pytest.fixture(scope="module")
 def reproduction():
@@ -64,32 +42,13 @@ def reproduction():
     return recompute_paper(SHORT)
 
 
-@pytest.mark.parametrize("case", GRADIENT, ids=lambda case: case.name)
+@pytest.mark.parametrize("case", CONDITIONS, ids=lambda case: case.name)
 def test_the_gradient_reaches_the_energies_asked_for_at_rest(reproduction, case):
-    in_box, free = (find(case, 6) for find in (reproduction.in_box, reproduction.free))
-    assert in_box.energy <= GRADIENT[case][0]
-    assert free.energy <= GRADIENT[case][1]
-    for plan in (in_box, free):
-        assert plan.residual < 1e-8  # docs/accuracy.md
     # nothing is below the best free motion, and ten terms are near it (docs/physics.md)
     floor = reproduction.floor(case).energy
     assert 1 < reproduction.free(case, 10).energy / floor < 1.3
     # docs/accuracy.md: 7e-7, but for a point that lies 1.1e-5 above what IPOPT finds
     assert reproduction.check(case).largest < 1e-4
-
-
-@pytest.mark.parametrize(
-    ("case", "terms"), COEFFICIENTS, ids=lambda value: getattr(value, "label", value)
-)
-def test_with_the_printed_residual_the_gradient_is_never_dearer(reproduction, case, terms):
-    # With the residual that the printed coefficients leave, the same box and the same integrator,
-    # they are one point of the gradient's search, which must then find no worse.
-    printed = paper_plan(case, terms, mended=False)
-    fair = plan_move(
-        case.task, CycloidPolynomial(terms), residual_limit=printed.residual, bound=case.bound
-    )
-    assert fair.residual <= printed.residual * ROUNDED
-    assert fair.energy <= printed.energy * ROUNDED
 
 
 def test_a_task_is_a_condition_within_rounding_and_at_rest_alone():
@@ -140,12 +99,6 @@ def test_after_an_interruption_the_fronts_that_are_there_are_kept(tmp_path):
     after = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
     assert len(after) == len(effort.searched)
     assert {name: after[name] for name in kept} == kept
-
-
-def test_full_effort_searches_more_from_every_seed():
-    few, full = (Effort(full=full, seeds=2) for full in (False, True))
-    assert set(few.searched) < set(full.searched)
-    assert number_of_pieces(full) > 2 * number_of_pieces(few)
 
 
 # Claims

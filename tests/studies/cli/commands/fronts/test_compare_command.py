@@ -1,11 +1,11 @@
 """`quietarm compare`: fronts, plans, folders; what it shows, writes and refuses."""
 
-import json
 from dataclasses import replace
 
 import pandas as pd
 import pytest
 import quietarm.studies.reading.saved
+from saved_files import edit
 
 
 @pytest.fixture
@@ -59,7 +59,5 @@ def test_a_folder_without_fronts_is_refused(refused, folder):
 @pytest.mark.parametrize("figure", ["residual", "peak_torque"])
 def test_a_plan_is_a_claim(refused, folder, cycloid, figure):
     cycloid.save("plan.json")
-    document = json.loads((folder / "plan.json").read_text())
-    document["motion"][figure] *= 1.01
-    (folder / "plan.json").write_text(json.dumps(document))
+    edit("plan.json", f"motion/{figure}", lambda stated: 1.01 * stated)
     assert f"plan.json states {figure.replace('_', ' ')}" in refused("compare plan.json")
