@@ -49,7 +49,7 @@ TESTS = {
     "models/single_link.py": ["models"],
     "models/dual_link.py": ["models"],
     "models/arm_on_flexible_link.py": ["models"],
-    "ocp/simulation/collocation.py": [*QUICK, *SLOW, "ocp/floor/test_search.py"],
+    "ocp/simulation/collocation.py": [*QUICK, *SLOW, "studies/identify/test_identify.py"],
     "ocp/simulation/objective.py": [*QUICK, "ocp/test_candidate.py", "ocp/test_energies.py", *SLOW],
     "ocp/profiles/joint_profile.py": ["ocp/profiles", *QUICK],
     "ocp/profiles/cycloid.py": [
@@ -57,8 +57,18 @@ TESTS = {
         "ocp/profiles/test_shaped_inputs.py",
     ],
     "ocp/simulation/free_vibration.py": [*QUICK, "ocp/planning/test_shaping.py"],
-    "ocp/simulation/rollout.py": [*QUICK, "metaheuristics/objective/test_population.py", *SLOW],
-    "ocp/candidate.py": [*QUICK, "ocp/test_candidate.py", "ocp/robustness/test_uncertain.py"],
+    "ocp/simulation/rollout.py": [
+        *QUICK,
+        "metaheuristics/objective/test_population.py",
+        *SLOW,
+        "ocp/solvers/test_both_solvers.py",
+    ],
+    "ocp/candidate.py": [
+        *QUICK,
+        "ocp/simulation/test_free_motions.py",
+        "ocp/test_candidate.py",
+        "ocp/robustness/test_uncertain.py",
+    ],
 }
 """The modules to change, and the tests that should notice."""
 

@@ -23,7 +23,6 @@ def spent(
     torque: Sequence[Expression],
     speed: Sequence[Expression],
     h: Expression,
-    *,
     unbroken: bool = True,
 ) -> Expression:
     """F2 from torque and speed at the Gauss nodes of every step, a row a candidate."""

@@ -70,7 +70,7 @@ class SymbolicRollout:
     def energy(self) -> Expression:
         """F2 [J], one row a candidate."""
         speed = [joint.speed for joint in self.joints]
-        return spent(self.definition, self.torque, speed, self.h, unbroken=self.unbroken)
+        return spent(self.definition, self.torque, speed, self.h, self.unbroken)
 
     def values(self, quantity: Quantity) -> list[Expression]:
         """A quantity at the nodes, (candidates, steps) each: all nodes of its first value first."""

@@ -46,5 +46,6 @@ def test_figures_are_those_of_scipy(tasks, free, name):
     # SciPy's own error, whose |power| has a corner where the power changes its sign.
     assert found.motion.energy == pytest.approx(z[-1], rel=1e-6)
     assert found.motion.net_work == pytest.approx(z[-2], rel=1e-7, abs=1e-9)
+    assert np.all(np.diff(found.trajectory.time) >= 0)
     arrival = np.flatnonzero(found.trajectory.time <= task.duration)[-1]
     assert found.trajectory.modes[arrival] == pytest.approx(z[:modes], abs=1e-9)

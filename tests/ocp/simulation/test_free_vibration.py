@@ -93,6 +93,7 @@ def test_a_peak_at_an_end_of_the_window_counts():
     after = vibration.states([0.01, 0.05], 0.012)[0, 0]
     assert vibration.peak([0.01, 0.05]) == pytest.approx(2.28 * after, rel=1e-12)
     assert vibration.peak([0.01, -0.05]) == pytest.approx(0.0228, rel=1e-12)
+    assert np.abs(vibration.rows @ [0.01, 0.05]).max() == pytest.approx(2.28 * after, rel=1e-12)
 
 
 def test_a_window_that_cannot_be_resolved_is_refused():
