@@ -13,6 +13,7 @@ from quietarm.studies.figures.looks import BLUE, GREY, RED
 from quietarm.studies.identify import Identified, Part, Recording
 from quietarm.studies.identify.diagnosis import spectrum_of
 from quietarm.studies.identify.identification import curve_of
+from quietarm.studies.report.words import span_words
 
 _MOST = 6
 """Parts that are drawn; of more the first."""
@@ -65,7 +66,7 @@ def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Rec
     over.plot(piece.time, piece.values[:, 0], color=GREY, linewidth=2.2, label="measured")
     over.plot(time, fitted, color=BLUE, linewidth=1.0, label="fitted")
     over.set_title(
-        f"{part.recording}, {part.begin:.3g} to {part.end:.3g} s: misfit {part.misfit:.1%}, "
+        f"{part.recording}, {span_words(part.begin, part.end)}: misfit {part.misfit:.1%}, "
         f"noise {part.noise:.1%}", loc="left", fontsize=8,
     )  # fmt: skip
     quantity = next(iter(recording.signals))

@@ -8,6 +8,7 @@ from typing import Any
 
 from quietarm.models import Plant
 from quietarm.studies.identify import Estimate, Identified, Part, Prediction
+from quietarm.studies.report.words import span_words
 
 Row = tuple[str, str]
 _HUB = {"": "", "creeps": ", with the hub's motion", "moves": ", all of the hub's motion with it"}
@@ -41,7 +42,7 @@ def prediction_rows(plant: Plant, predictions: Sequence[Prediction]) -> list[Row
     rows = [("plant", plant.name)]
     for one in predictions:
         least = f"at least {max(one.worst, 0):.1%}, from {one.worst_at:.3g} s on"
-        rows.append((one.recording, f"{one.begin:.3g} to {one.end:.3g} s: {one.share:.1%} of the "
+        rows.append((one.recording, f"{span_words(one.begin, one.end)}: {one.share:.1%} of the "
                      f"swing predicted over five periods, {least}; by itself {one.frequency:.4g} Hz"
         ))  # fmt: skip
     return rows
@@ -76,7 +77,7 @@ def machine_notes(found: Identified, held: bool) -> list[str]:
     ]
     notes += [f"warning: {text}" for text in found.warnings]
     return notes + [
-        f"warning: {part.recording}, {part.begin:.3g} to {part.end:.3g} s: {part.warning}"
+        f"warning: {part.recording}, {span_words(part.begin, part.end)}: {part.warning}"
         for part in found.parts
         if part.warning
     ]
@@ -104,7 +105,7 @@ def _part(plant: Plant, part: Part) -> str:
     misfit = f"misfit {part.misfit:.1%}, noise {part.noise:.1%}"
     saturated = f"; {part.saturated} saturated samples excluded" if part.saturated else ""
     drift = "; a slow drift excluded" if part.drifts else ""
-    span = f"{part.begin:.3g} to {part.end:.3g} s"
+    span = span_words(part.begin, part.end)
     return f"{span}: {values}, {misfit}{_HUB[part.hub]}{saturated}{drift}"
 
 

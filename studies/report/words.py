@@ -52,6 +52,11 @@ def millimetres(length: float) -> str:
     return f"{length * 1e3:.3g} mm"
 
 
+def span_words(begin: float, end: float) -> str:
+    """From when to when [s], in milliseconds: a recorder's clock may count from anywhere."""
+    return " to ".join(f"{round(time, 3):.12g}" for time in (begin, end)) + " s"
+
+
 def residual_words(residual: float) -> str:
     """A residual [m] in millimetres; `rest` where it counts as that."""
     return "rest" if residual < REST else millimetres(residual)
