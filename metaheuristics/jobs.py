@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
@@ -15,7 +17,7 @@ from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError
 from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.search import MOST_EVALUATIONS, search
-from quietarm.ocp import Front, QuietarmError
+from quietarm.ocp import FileFormatError, Front, QuietarmError
 from quietarm.ocp.checks import unknown, whole
 from quietarm.ocp.record import Setting
 
@@ -105,6 +107,8 @@ class Job:
         stated = {"problem": self.problem.name, **found.record.settings}
         if self.budget is not None:
             stated["budget"] = self.budget
+        if code := _digest_of(self.method):
+            stated["code"] = code
         return found.restated(settings=stated)
 
     def _find(self, rehearse: bool = False) -> Front:
@@ -138,6 +142,29 @@ def method_name(method: Method) -> str:
     if isinstance(method, str):
         return method
     return getattr(method, "__name__", type(method).__name__)
+
+
+def _digest_of(method: Method) -> str:
+    """A digest of the code of one's own function, so that no older one's results are taken for its.
+
+    Empty where there is no such code.
+    """
+    digest = hashlib.sha256()
+
+    def add(code: CodeType) -> None:
+        digest.update(code.co_code + repr(code.co_names).encode())
+        for constant in code.co_consts:
+            if isinstance(constant, CodeType):
+                add(constant)
+            elif isinstance(constant, frozenset):  # in any order
+                digest.update(repr(sorted(map(repr, constant))).encode())
+            else:
+                digest.update(repr(constant).encode())
+
+    if not isinstance(method, FunctionType):
+        return ""
+    add(method.__code__)
+    return digest.hexdigest()[:12]
 
 
 def _is_function(method: Method) -> bool:
@@ -222,8 +249,8 @@ def run_jobs(
     Raises
     ------
     ValueError
-        When there is no job, or one twice, a file is of another problem or other versions, a
-        number is out of range, or no scheduler answers.
+        When there is no job, or one twice, a file is of another problem, of other versions or of
+        a function that has changed, a number is out of range, or no scheduler answers.
     LostJobsError
         At the end, if jobs failed, or their workers died twice.
     """
@@ -262,10 +289,15 @@ def _load(job: Job, path: Path) -> Front:
     """A job's file; ValueError where it holds something else."""
     from quietarm.metaheuristics.archive import search_versions
 
-    front, problem = Front.load(path), job.problem
+    try:
+        front, problem = Front.load(path), job.problem
+    except FileFormatError as error:
+        raise FileFormatError(f"{error}; delete that file, and its run is done again") from None
     same = (front.task, front.profile, front.record.bound)
     if same != (problem.task, problem.profile, problem.bound):
         raise ValueError(f"{path} is of another problem than {problem.name}; give another folder")
+    if front.record.settings.get("code", "") != _digest_of(job.method):
+        raise ValueError(f"{path} is by {job.label} as it was before; give another folder")
     now = search_versions()
     for name in ("quietarm", "pymoo"):
         if front.record.versions.get(name) != now[name]:

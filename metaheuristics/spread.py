@@ -12,12 +12,13 @@ from quietarm.ocp import Front
 
 @dataclass(frozen=True)
 class Spread:
-    """Quartiles of a quantity over seeds: observed values; a missing one counts as infinite.
+    """Median and quartiles of a quantity over seeds; a missing value counts as infinite.
 
     Attributes
     ----------
     lower, median, upper : float
-        Quartiles over all seeds; infinite if they fall on a seed without a value.
+        Over all seeds: observed quartiles, and of an even number of seeds the mean of the two in
+        the middle; infinite if they fall on a seed without a value.
     count, seeds : int
         How many seeds have a value, of how many.
     """
@@ -32,8 +33,9 @@ class Spread:
     def of(cls, values: Sequence[float]) -> Spread:
         """The quartiles of so many seeds; infinite of none."""
         known = np.where(np.isfinite(values), values, np.inf) if len(values) else [np.inf]
-        quartiles = np.quantile(known, [0.25, 0.5, 0.75], method="inverted_cdf").tolist()
-        return cls(*quartiles, count=int(np.isfinite(values).sum()), seeds=len(values))
+        lower, upper = np.quantile(known, [0.25, 0.75], method="inverted_cdf").tolist()
+        count = int(np.isfinite(values).sum())
+        return cls(lower, float(np.median(known)), upper, count, seeds=len(values))
 
 
 def hypervolumes(fronts: Sequence[Front]) -> Spread:

@@ -142,9 +142,18 @@ def symbolic_rollout(
         default.
     energy : Energy
         What counts as the energy.
+
+    Raises
+    ------
+    ValueError
+        When the coefficients are not as many as the profile has.
     """
     if isinstance(coefficients, ca.SX | ca.MX | ca.DM):
         coefficients = ca.vertsplit(coefficients)
+    if len(coefficients) != profile.size:
+        raise ValueError(
+            f"got {len(coefficients)} coefficients for a profile of {profile.size}; give one each"
+        )
     grid = Grid(steps, breaks)
     times, length = grid.columns(candidates)
     at = ca.horzcat(*times)

@@ -85,9 +85,17 @@ def jobs_of(
 
 
 def write_references(problems: Sequence[NamedProblem], folder: Path) -> None:
-    """Put the reference fronts into the folder, so that its files alone say everything."""
+    """Put the reference fronts into the folder, so that its files alone say everything.
+
+    ValueError where the folder has runs that were measured against another.
+    """
     for problem in problems:
-        path = folder / "references" / f"{problem.name}.json"
+        path, front = folder / "references" / f"{problem.name}.json", problem.reference().front
         if not path.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
-            problem.reference().front.save(path)
+            front.save(path)
+        elif Front.load(path) != front:
+            raise ValueError(
+                f"the runs in {folder} are measured against another reference front of "
+                f"{problem.name}; give another folder"
+            )

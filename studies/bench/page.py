@@ -41,9 +41,10 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         pd.DataFrame({"problem": name, "measure": measure} | dict(pairs_on(results, name, measure)))
         for name in problems for measure in _TESTED
     ], ignore_index=True)  # fmt: skip
+    of_problem = {name: problem_table(results, name) for name in problems}
     tables = {
         "summary": summary_table(results),
-        **{f"problem_{name}": problem_table(results, name) for name in problems},
+        "problems": pd.concat(of_problem, names=["problem", ""]).reset_index("problem"),
         "runs": _with_labels(results.table, "method"),
         "pairs": _with_labels(pairs, "one", "other"),
         "running_times": _with_labels(results.running_times, "method"),
@@ -59,7 +60,8 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         figures["ranks.png"] = partial(ranks_figure, ranking)
     versions = results.runs[0].front.record.versions
     values = {
-        "line": line, "problems": problems, "methods": [bench_label(m) for m in results.methods],
+        "line": line, "problems": problems, "of_problem": of_problem,
+        "methods": [bench_label(m) for m in results.methods],
         "power": say_power_of((run.problem.name, run.method) for run in results.runs),
         "ranking": ranking,
         "label_of": bench_label, "corner": CORNER, "accuracy": ACCURACY, "at_rest": 1e3 * AT_REST,
@@ -68,6 +70,7 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "on_energy": {name: verdict_on(results, name, "energy_1mm") for name in problems},
         "energy_ranking": ranking_over(results, "energy_1mm"),
         "kruskal": {name: kruskal_on(results, name) for name in problems},
+        "repeated": _repeated(results),
         "machine": f"{platform.machine()}, {platform.system()}",
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
     }  # fmt: skip
@@ -87,7 +90,16 @@ def brief_report(results: Results) -> Report:
         name: problem_table(results, name)[columns].map(_rounded) for name in names
     }
     verdicts = {name: verdict_on(results, name) for name in names}
-    return Report("bench/brief.md", {"verdicts": verdicts}, tables)
+    values = {"verdicts": verdicts, "repeated": _repeated(results)}
+    return Report("bench/brief.md", values, tables)
+
+
+def _repeated(results: Results) -> dict[str, list[str]]:
+    """By problem, what methods found the same from every seed."""
+    return {
+        one.name: [bench_label(m) for m in results.methods if results.is_repeated(one.name, m)]
+        for one in results.problems
+    }
 
 
 def _rounded(cell: Any) -> Any:

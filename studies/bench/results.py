@@ -23,6 +23,7 @@ AT_REST = LEVELS[0]
 TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Shares of the reference front's hypervolume that may be missing for a target to count as
 reached."""
+_ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
 _RESAMPLED, _INTERVAL = 1000, (0.025, 0.975)
 """How often runs are drawn again for an interval, and the quantiles that are its ends."""
 
@@ -80,11 +81,10 @@ class Results:
     @classmethod
     def of_jobs(cls, fronts: Mapping[Job, Front], imported: Sequence[Front] = ()) -> Results:
         """Those of jobs, and recorded runs of other libraries, which name a problem of the jobs."""
-        problems = {job.problem.name: job.problem for job in fronts}
         labels = [label for label, _ in {(job.label, job.budget) for job in fronts}]
         several = {label for label in labels if labels.count(label) > 1}
         runs = [Run(job.problem, _method(job, several), front) for job, front in fronts.items()]
-        return cls([*runs, *imported_runs(imported, list(problems.values()))])
+        return cls([*runs, *imported_runs(imported, list(fronts))])
 
     @cached_property
     def problems(self) -> tuple[NamedProblem, ...]:
@@ -114,6 +114,12 @@ class Results:
             for problem in self.problems
         }
         return pd.DataFrame([_row(run, best[run.problem.name]) for run in self.runs])
+
+    def is_repeated(self, problem: str, method: str) -> bool:
+        """Whether a method found the same from every seed: its runs are one, not independent."""
+        runs = self.table.query("problem == @problem and method == @method")
+        found = runs[["missing", "missing_between", *_ENERGIES]]
+        return len(runs) > 1 and bool((found.nunique(dropna=False) == 1).all())
 
     def missing(self, problem: str, method: str, by: str = "seconds") -> tuple[Array, Array]:
         """Where the missing share changes, in processor seconds or evaluations, for every run.
@@ -186,15 +192,22 @@ class Results:
         return pd.DataFrame(rows).replace(np.inf, np.nan)
 
 
-def imported_runs(fronts: Sequence[Front], problems: Sequence[NamedProblem]) -> list[Run]:
-    """Recorded runs of other libraries on the problems that they name.
+def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
+    """Recorded runs of other libraries on the problems of the jobs that they name.
 
-    ValueError when a front is of none of the problems, of another move, or has points beyond the
-    box. One that searched a wider box counts at its end alone: marks on the way know no box.
+    ValueError when a front is of none of the problems, of another move, named as a method of the
+    jobs, or has points beyond the box. One that searched a wider box counts at its end alone: marks
+    on the way know no box.
     """
-    by_name, runs = {problem.name: problem for problem in problems}, list[Run]()
+    by_name, own = {job.problem.name: job.problem for job in jobs}, {job.label for job in jobs}
+    runs = list[Run]()
     for front in fronts:
         name, method = front.record.settings.get("problem"), front.record.method
+        if method in own:
+            raise ValueError(
+                f"an imported run is of {method}, which the bench runs itself; name its method "
+                "otherwise, or leave it out"
+            )
         if name not in by_name:
             raise ValueError(
                 f"a run of {method} is on {name or 'no named problem'}, and the bench on "
@@ -254,20 +267,24 @@ def _missing(quality: Any) -> float:
     return 1.0 if quality is None else 1.0 - quality.hypervolume
 
 
+def _told_apart(share: float) -> float:
+    """A share to the accuracy of a front, so that what differs by less is a tie."""
+    return round(share, 6) + 0.0
+
+
 def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     """The figures of a run; energies as shares above the best."""
     front, last = run.front, run.front.history[-1]
     row: dict[str, Any] = {
         "problem": run.problem.name, "method": run.method, "seed": front.record.seed,
-        "points": len(front.points), "missing": _missing(last.quality),
-        "missing_between": _missing(last.between),
+        "points": len(front.points), "missing": _told_apart(_missing(last.quality)),
+        "missing_between": _told_apart(_missing(last.between)),
     }  # fmt: skip
     for name, quality in (("", last.quality), ("_between", last.between)):
         row[f"igd_plus{name}"] = np.nan if quality is None else quality.igd_plus
         row[f"epsilon{name}"] = np.nan if quality is None else quality.epsilon
-    for level, least in zip(LEVELS, best):
-        above = front.least_energy(level) / least - 1
-        row[f"energy_{1e3 * level:g}mm"] = round(above, 9) + 0.0  # no -0 and no rounding errors
+    for name, level, least in zip(_ENERGIES, LEVELS, best):
+        row[name] = _told_apart(front.least_energy(level) / least - 1)
     row["at_rest"] = bool((front.residuals <= AT_REST).any())
     return row | {
         "evaluations": last.evaluations, "gradients": last.gradients, "hessians": last.hessians,

@@ -37,11 +37,12 @@ def say_power(runs: int, methods: int) -> str:
     if least < ALPHA:
         return (
             f"with {runs} runs of each of {methods} methods ({counted(pairs, 'pair')}) the least p "
-            f"that a pair can have is {least:.2g}"
+            f"that a pair can have, by Holm, is {least:.2g}"
         )
     needed = next(n for n in range(runs, 1000) if attainable_p(n, n, pairs) < ALPHA)
     return (
-        f"with {counted(runs, 'run')} and {counted(pairs, 'pair')} no p can fall below {ALPHA}: "
+        f"with {counted(runs, 'run')} and {counted(pairs, 'pair')} no p by Holm can fall below "
+        f"{ALPHA}: "
         f"{needed} runs are needed for a verdict"
     )
 
@@ -104,18 +105,25 @@ def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.Data
     """Every pair of methods on a problem: effect size, p and p by Holm.
 
     The effect is the share of pairs of runs in which the first is better (Vargha and Delaney's A;
-    0.5 is no difference). Runs without a value come last.
+    0.5 is no difference). Runs without a value come last. A method whose runs repeat each other is
+    one value, which the sign test holds against the runs of another; two such differ, or not,
+    without a test.
     """
-    values = values_on(results, problem, column)
+    values = {
+        name: own[:1] if results.is_repeated(problem, name) else own
+        for name, own in values_on(results, problem, column).items()
+    }
     rows = [
-        (one, other, *_mann_whitney(values[one], values[other]))
-        for one, other in combinations(values, 2)
+        (one, other, *_tested(values[one], values[other])) for one, other in combinations(values, 2)
     ]
     table = pd.DataFrame(rows, columns=["one", "other", "effect", "p"])
-    return table.assign(p_holm=holm(table["p"].to_numpy(dtype=float)))
+    p_values = table["p"].to_numpy(dtype=float, copy=True)
+    tested = np.isfinite(p_values)
+    p_values[tested] = holm(p_values[tested])
+    return table.assign(p_holm=p_values)
 
 
-def _mann_whitney(mine: Array, theirs: Array) -> tuple[float, float]:
+def _tested(mine: Array, theirs: Array) -> tuple[float, float]:
     """Effect size and p value of two samples."""
     both = np.nan_to_num(np.concatenate([mine, theirs]), nan=np.inf)
     ranks = stats.rankdata(both)  # the test may refuse infinities
@@ -124,7 +132,9 @@ def _mann_whitney(mine: Array, theirs: Array) -> tuple[float, float]:
     first, second = np.split(ranks, [len(mine)])
     found = stats.mannwhitneyu(first, second, method="asymptotic")
     effect = 1 - float(found.statistic) / (len(mine) * len(theirs))
-    fewer = min(first, second, key=len)
+    fewer, more = sorted((first, second), key=len)
+    if len(fewer) == 1:
+        return effect, _sign_test(fewer[0], more) if len(more) > 1 else np.nan
     return effect, _exact_p(fewer, ranks) if len(fewer) <= _EXACT else float(found.pvalue)
 
 
@@ -143,12 +153,24 @@ def _exact_p(some: Array, ranks: Array) -> float:
     return min(1.0, 2 * float(min(below, above) / subsets[size].sum()))
 
 
+def _sign_test(value: float, runs: Array) -> float:
+    """The p value that as many runs lie above a value as below."""
+    below, above = np.count_nonzero(runs < value), np.count_nonzero(runs > value)
+    return float(stats.binomtest(below, below + above).pvalue)
+
+
 def kruskal_on(results: Results, problem: str, column: str = "missing") -> float:
-    """The p value of Kruskal and Wallis' test that all methods on a problem are alike."""
-    values = [np.nan_to_num(v, nan=1e300) for v in values_on(results, problem, column).values()]
-    together = np.concatenate(values) if values else np.zeros(1)
-    if len(values) < 2 or np.ptp(together) == 0:
-        return 1.0
+    """The p value of Kruskal and Wallis' test that all methods on a problem are alike.
+
+    Of those whose runs differ; NaN of fewer than two.
+    """
+    values = [
+        np.nan_to_num(own, nan=1e300)
+        for name, own in values_on(results, problem, column).items()
+        if not results.is_repeated(problem, name)
+    ]
+    if len(values) < 2 or np.ptp(np.concatenate(values)) == 0:
+        return np.nan
     return float(stats.kruskal(*values).pvalue)
 
 

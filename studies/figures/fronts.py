@@ -58,12 +58,19 @@ def draw_fronts(
     -------
     matplotlib.axes.Axes
         The axes, with a legend where there are a few fronts.
+
+    Raises
+    ------
+    ValueError
+        When there are not as many labels as fronts.
     """
     ax = axes_or_new(ax)
     for k, (begin, end) in enumerate(gap for front in fronts for gap in front.gaps):
         label = "_" if k else "no weight reaches these"  # once in the legend
         ax.axvspan(begin * 1e3, end * 1e3, color="0.5", alpha=0.15, linewidth=0, label=label)
     names = _names(fronts) if labels is None else labels
+    if len(names) != len(fronts):
+        raise ValueError(f"{len(fronts)} fronts have {len(names)} labels; give each front one")
     for i, (front, name) in enumerate(zip(fronts, names)):
         own = look(i)
         middles = [(begin + end) / 2 for begin, end in front.gaps]

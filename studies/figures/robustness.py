@@ -74,7 +74,7 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
     Returns
     -------
     matplotlib.axes.Axes
-        The axes, residuals logarithmic.
+        The axes, residuals logarithmic; each motion has a label for a legend.
     """
     ax = axes_or_new(ax)
     for number, judged in enumerate(motions):

@@ -32,6 +32,18 @@ def load_front(path: Path) -> Front:
     return front
 
 
+def load_runs(paths: Sequence[Path]) -> list[Front]:
+    """Recorded runs, of files or of all files of folders, after their motions were evaluated again.
+
+    Unlike a front, a run may have found nothing.
+    """
+    files = [file for path in paths for file in (sorted(path.rglob("*.json")) or [path])]
+    runs = list(map(Front.load, files))
+    for run, file in zip(runs, files):
+        check_figures(run, str(file))
+    return runs
+
+
 def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
     """Plans from their files, after their motions were evaluated again."""
     if not paths:

@@ -30,7 +30,7 @@ from rich.console import Console
     option("--evaluations", default=10_000, help="Candidates of each run of a search."),
     SEED, METHOD_SETTING,
     option("--import", "imported", multiple=True, type=INPUT,
-           help="A run of another library, by a recorded function."),
+           help="A run of another library, by a recorded function, or a folder of such runs."),
     option("--output", type=Parsed("folder", check_folder), required=True,
            help="Folder for runs and report; runs that are there are kept."),
     PART, WORKERS, SCHEDULER,
@@ -50,11 +50,11 @@ def bench(given: Given) -> None:
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics import LostJobsError, run_jobs
-    from quietarm.ocp import Front
     from quietarm.studies.bench.asked import jobs_of, problems_of, spell_method, write_references
     from quietarm.studies.bench.page import bench_report, brief_report
     from quietarm.studies.bench.results import Results, imported_runs
     from quietarm.studies.bench.statistics import say_power_of
+    from quietarm.studies.reading.saved import load_runs
     from quietarm.studies.report import show
     from quietarm.studies.report.words import print_lines
 
@@ -63,10 +63,12 @@ def bench(given: Given) -> None:
     asked = methods, given.runs, given.evaluations, given.seed, settings
     problems = problems_of(given.problems)
     jobs, left_out = jobs_of(problems, *asked)
-    imported = [Front.load(path) for path in given.imported]
+    imported = load_runs(given.imported)
     planned = [(job.problem.name, job.label) for job in jobs]
-    planned += [(run.problem.name, run.method) for run in imported_runs(imported, problems)]
-    print_lines(progress_console(), *left_out, say_power_of(planned))
+    planned += [(run.problem.name, run.method) for run in imported_runs(imported, jobs)]
+    kept = sum((given.output / f"{job.name}.json").exists() for job in jobs)
+    there = [f"{kept} of {len(jobs)} runs are in {given.output}"] if kept else []
+    print_lines(progress_console(), *left_out, say_power_of(planned), *there)
     write_references(problems, given.output)
     trouble = None
     with counting(len(jobs), "jobs") as progress:

@@ -128,6 +128,13 @@ def test_the_weights_integrate_up_to_degree_five_exactly(power):
     assert integral == pytest.approx(1 / (power + 1), abs=1e-15)
 
 
+@pytest.mark.parametrize("profile", [qa.CycloidPolynomial(6), qa.CycloidSpline(6)])
+def test_a_rollout_needs_all_coefficients_of_its_profile(tasks, profile):
+    task = tasks["arm"]
+    with pytest.raises(ValueError, match="got 5 coefficients for a profile of 6; give one each"):
+        qa.symbolic_rollout(task.plant, profile, ca.SX.sym("a", 5), task.move, 20)
+
+
 def test_the_weights_of_a_rollout_sum_to_the_duration(tasks):
     task, profile = tasks["arm"], qa.CycloidPolynomial(2)
     motion = qa.symbolic_rollout(task.plant, profile, ca.DM([-0.1, -0.4]), task.move, 20)

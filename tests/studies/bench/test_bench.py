@@ -1,6 +1,7 @@
 """A bench: its measures against moocore, imported runs, and its report."""
 
 import time
+from contextlib import nullcontext
 from dataclasses import replace
 
 import moocore
@@ -12,6 +13,7 @@ from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.metaheuristics.quality import CORNER
 from quietarm.ocp.cost import COST
+from quietarm.studies.bench.asked import problems_of, write_references
 from quietarm.studies.bench.page import bench_report, problem_table
 from quietarm.studies.bench.results import Results
 
@@ -98,16 +100,38 @@ def test_what_a_recorded_run_compiles_is_no_part_of_its_time():
 
 def test_the_command_counts_imports_and_refuses_them_before_it_runs(call, tmp_path, fronts):
     front = next(iter(fronts.values()))
-    for name, task in (("mine", front.task), ("other", replace(front.task, duration=0.9))):
-        replace(front, task=task).restated(method="my tool").save(tmp_path / f"{name}.json")
+    longer = replace(front.task, duration=0.9)
+    other = qa.Front.from_coefficients(
+        longer, front.coefficients, method="-", profile=front.profile
+    )
+    other = replace(other, history=front.history, record=front.record)
+    halved = [replace(point, energy=point.energy / 2) for point in front.points]
+    names = {"other": other, "halved": replace(front, points=tuple(halved)), "runs/mine": front}
+    (tmp_path / "runs").mkdir()
+    for name, one in names.items():
+        one.restated(method="my tool").save(tmp_path / f"{name}.json")
+    front.restated(method="random").save(tmp_path / "random.json")
     line = f"bench {NAME} --methods random --runs 1 --evaluations 100 --output {tmp_path / 'out'}"
-    code, _, err = call(f"{line} --import {tmp_path / 'mine.json'}")
+    code, _, err = call(f"{line} --import {tmp_path / 'runs'}")
     assert code == 0
-    assert "with 1 run and 1 pair no p can fall below 0.05" in err
-    code, _, err = call(f"{line}2 --import {tmp_path / 'other.json'}")
-    assert code == 2
-    assert "a run of my tool is of another move than" in err
+    assert "with 1 run and 1 pair no p by Holm can fall below 0.05" in err
+    for name, words in (
+        ("other", "a run of my tool is of another move than"),
+        ("halved", "halved.json: point 1 of 19 states energy"),
+        ("random", "an imported run is of random, which the bench runs itself"),
+    ):
+        code, _, err = call(f"{line}2 --import {tmp_path / name}.json")
+        assert (code, words in err) == (2, True), err
     assert not (tmp_path / "out2").exists()
+
+
+def test_runs_measured_against_another_reference_are_no_part_of_a_bench(fronts, tmp_path):
+    front = next(iter(fronts.values()))
+    for one in (front, replace(front, points=front.points[::2])):
+        one.save(tmp_path / "mine.json")
+        (problem,) = problems_of([str(tmp_path / "mine.json")])
+        with nullcontext() if one is front else pytest.raises(ValueError, match="another folder"):
+            write_references([problem], tmp_path)
 
 
 def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):

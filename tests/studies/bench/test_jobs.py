@@ -44,7 +44,13 @@ def test_a_function_of_ones_own_is_a_method_and_runs_in_workers(tmp_path):
     front = Job(NAME, halton, 1, budget=100).run()
     assert (front.record.method, front.record.evaluations) == ("halton", 100)
     jobs = [Job(NAME, halton, seed, budget=60) for seed in (0, 1)]
-    assert list(run_jobs(jobs, tmp_path, workers=2)) == jobs
+    fronts = run_jobs(jobs, tmp_path, workers=2)
+    assert list(fronts) == jobs
+    assert run_jobs(jobs, tmp_path) == fronts
+    same_name = Job(NAME, lambda function, seed, budget: function(np.zeros((60, 2))), budget=60)
+    same_name.method.__name__ = "halton"
+    with pytest.raises(ValueError, match="is by halton as it was before; give another folder"):
+        run_jobs([same_name], tmp_path)
 
 
 def test_a_search_leaves_numpys_error_state_as_it_was():
@@ -89,6 +95,9 @@ def test_a_file_of_another_problem_is_refused(fronts, tmp_path):
     old.save(tmp_path / f"{job.name}.json")
     with pytest.raises(ValueError, match=r"by pymoo 0\.1, and here is"):
         run_jobs([job], tmp_path)
+    path.write_text(path.read_text()[:500])  # a full disk's
+    with pytest.raises(ValueError, match="delete that file, and its run is done again"):
+        run_jobs([other], tmp_path)
 
 
 def test_a_job_that_fails_stops_no_other(tmp_path):

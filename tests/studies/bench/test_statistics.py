@@ -9,9 +9,11 @@ import pytest
 from bench_problems import NAME, OTHERS
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from quietarm.studies.bench.page import bench_report
 from quietarm.studies.bench.results import Results, Run, quartiles
 from quietarm.studies.bench.statistics import (
     attainable_p,
+    kruskal_on,
     moves_of,
     pairs_on,
     ranking_over,
@@ -33,7 +35,7 @@ def test_tests_are_exact_and_no_verdict_is_given_without_power(fronts):
     assert attainable_p(5, 5, 10) == pytest.approx(10 * 2 / 252)
     assert "9 are needed" not in say_power(5, 4)
     assert say_power(5, 5) == (
-        "with 5 runs and 10 pairs no p can fall below 0.05: 6 runs are needed for a verdict"
+        "with 5 runs and 10 pairs no p by Holm can fall below 0.05: 6 runs are needed for a verdict"
     )
     verdict = verdict_on(results, NAME)
     assert "ends nearest" in verdict
@@ -54,7 +56,7 @@ def results_with(one, other, front):
     return Results(runs)
 
 
-samples = st.lists(st.integers(0, 4), min_size=2, max_size=5)
+samples = st.lists(st.integers(0, 4), min_size=2, max_size=5).filter(lambda s: len(set(s)) > 1)
 
 
 @settings(max_examples=30)
@@ -69,13 +71,34 @@ def test_with_ties_p_is_that_of_all_permutations_and_never_below_the_least(front
     assert pair >= attainable_p(len(one), len(other), 1) * (1 - 1e-12)
 
 
+def test_runs_that_repeat_each_other_are_one_value(fronts):
+    front = next(iter(fronts.values()))
+    above = results_with([1] * 6, [2, 3, 4, 5, 2, 3], front)
+    assert pairs_on(above, NAME, "energy_1mm").p.item() == pytest.approx(2 * 0.5**6)  # six tosses
+    assert np.isnan(kruskal_on(above, NAME, "energy_1mm"))
+    assert verdict_on(above, NAME, "energy_1mm") == "one ends nearest"
+    around = results_with([3] * 6, [1, 2, 4, 5, 3, 3], front)
+    assert pairs_on(around, NAME, "energy_1mm").p.item() == 1.0
+    certain = results_with([1] * 6, [2] * 6, front)
+    assert pairs_on(certain, NAME, "energy_1mm").isna().sum().to_list() == [0, 0, 0, 1, 1]
+    assert verdict_on(certain, NAME, "energy_1mm") == "one ends nearest"
+    report = bench_report(certain, "quietarm bench").markdown()
+    assert "The same from every seed, and one value in the tests: one; other." in report
+
+
+def test_what_differs_by_less_than_a_front_s_accuracy_is_a_tie(fronts):
+    front = next(iter(fronts.values()))
+    close = results_with([1, 2, 3], [1 + 1e-8, 2 - 1e-8, 3 + 1e-8], front)
+    assert pairs_on(close, NAME, "energy_1mm").effect.item() == 0.5
+
+
 def test_power_counts_what_is_imported():
     own = [(NAME, method) for method in ("nsga2", "epsilon") for _ in range(5)]
     assert say_power_of(own).startswith("with 5 runs of each of 2 methods (1 pair) the least p")
     assert "5 runs of each of 3 methods (3 pairs)" in say_power_of([*own, *[(NAME, "my")] * 6])
     assert say_power_of([*own, (NAME, "my")]) == say_power_of(own)  # too few runs for a test
     assert say_power_of([(NAME, "nsga2"), (NAME, "my")]) == (
-        "with 1 run and 1 pair no p can fall below 0.05: 4 runs are needed for a verdict"
+        "with 1 run and 1 pair no p by Holm can fall below 0.05: 4 runs are needed for a verdict"
     )
 
 
