@@ -11,8 +11,9 @@ import numpy as np
 import pandas as pd
 from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.quality import CORNER
+from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.bench.figures import curves_figure, profiles_figure, ranks_figure
-from quietarm.studies.bench.results import AT_REST, Results, bench_label, quartiles
+from quietarm.studies.bench.results import ENERGIES, Results, bench_label, quartiles
 from quietarm.studies.bench.statistics import (
     kruskal_on,
     moves_of,
@@ -27,6 +28,8 @@ SHOWN_TARGET = 0.1
 """Share of the hypervolume missing to which tables give the expected running time."""
 _TESTED = ("missing", "energy_1mm")
 """Columns of the runs that pairs of methods are tested on."""
+_STILL = f"within {1e3 * LEVELS[0]:g} mm"
+"""How many runs have so small a residual."""
 _COST = ("evaluations", "gradients", "hessians", "seconds")
 
 
@@ -64,7 +67,7 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "methods": [bench_label(m) for m in results.methods],
         "power": say_power_of((run.problem.name, run.method) for run in results.runs),
         "ranking": ranking,
-        "label_of": bench_label, "corner": CORNER, "accuracy": ACCURACY, "at_rest": 1e3 * AT_REST,
+        "label_of": bench_label, "corner": CORNER, "accuracy": ACCURACY,
         "target": f"{100 * SHOWN_TARGET:g}", "moves": len(moves_of(results.problems)),
         "verdicts": {name: verdict_on(results, name) for name in problems},
         "on_energy": {name: verdict_on(results, name, "energy_1mm") for name in problems},
@@ -84,7 +87,7 @@ def _with_labels(table: pd.DataFrame, *columns: str) -> pd.DataFrame:
 
 def brief_report(results: Results) -> Report:
     """What a terminal shows: a narrow table and a verdict for each problem."""
-    columns = ["method", "runs", "missing [%]", "at rest", "seconds"]
+    columns = ["method", "runs", "missing [%]", _STILL, "seconds"]
     names = [problem.name for problem in results.problems]
     tables: dict[str, Any] = {
         name: problem_table(results, name)[columns].map(_rounded) for name in names
@@ -120,7 +123,7 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
             "with motions between [%]": 100 * quartiles(own["missing_between"])[1],
             "IGD+": quartiles(own["igd_plus"])[1], "epsilon": quartiles(own["epsilon"])[1],
             "energy above at 1 mm [%]": 100 * quartiles(own["energy_1mm"])[1],
-            "at rest": f"{np.count_nonzero(own['at_rest'])} of {len(own)}",
+            _STILL: f"{own[ENERGIES[0]].count()} of {len(own)}",
             f"to {100 * SHOWN_TARGET:g} % [s]": interval_words(*time),
             "candidates": spent["evaluations"], "gradients": spent["gradients"],
             "Hessians": spent["hessians"], "seconds": spent["seconds"],
@@ -147,7 +150,7 @@ def summary_table(results: Results) -> pd.DataFrame:
             "missing [%]": 100 * over["missing"],
             "with motions between [%]": 100 * over["missing_between"],
             "energy above at 1 mm [%]": 100 * over["energy_1mm"],
-            "at rest [%]": 100 * float(np.mean(own["at_rest"])),
+            f"{_STILL} [%]": 100 * float(own[ENERGIES[0]].notna().mean()),
             "candidates": over["evaluations"], "gradients": over["gradients"],
             "seconds": over["seconds"],
         })  # fmt: skip

@@ -18,12 +18,11 @@ from quietarm.ocp.front.points import LEVELS, beyond
 from quietarm.studies.report.methods import is_gradient, label_of, unpolished
 
 Array = NDArray[np.float64]
-AT_REST = LEVELS[0]
-"""A run arrives at rest where it has a motion within this residual [m]."""
 TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Shares of the reference front's hypervolume that may be missing for a target to count as
 reached."""
-_ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
+ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
+"""Columns of energies within these residuals."""
 _RESAMPLED, _INTERVAL = 1000, (0.025, 0.975)
 """How often runs are drawn again for an interval, and the quantiles that are its ends."""
 
@@ -118,7 +117,7 @@ class Results:
     def is_repeated(self, problem: str, method: str) -> bool:
         """Whether a method found the same from every seed: its runs are one, not independent."""
         runs = self.table.query("problem == @problem and method == @method")
-        found = runs[["missing", "missing_between", *_ENERGIES]]
+        found = runs[["missing", "missing_between", *ENERGIES]]
         return len(runs) > 1 and bool((found.nunique(dropna=False) == 1).all())
 
     def missing(self, problem: str, method: str, by: str = "seconds") -> tuple[Array, Array]:
@@ -283,9 +282,8 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     for name, quality in (("", last.quality), ("_between", last.between)):
         row[f"igd_plus{name}"] = np.nan if quality is None else quality.igd_plus
         row[f"epsilon{name}"] = np.nan if quality is None else quality.epsilon
-    for name, level, least in zip(_ENERGIES, LEVELS, best):
+    for name, level, least in zip(ENERGIES, LEVELS, best):
         row[name] = _told_apart(front.least_energy(level) / least - 1)
-    row["at_rest"] = bool((front.residuals <= AT_REST).any())
     return row | {
         "evaluations": last.evaluations, "gradients": last.gradients, "hessians": last.hessians,
         "seconds": last.seconds, "all_seconds": front.record.seconds,

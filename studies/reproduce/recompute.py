@@ -31,7 +31,15 @@ from quietarm.ocp.robustness import tolerated_residual
 from quietarm.studies.compare.judged import Judged, judge
 from quietarm.studies.compare.plans import compare_plans
 from quietarm.studies.reading.profiles import OTHERS
-from quietarm.studies.reproduce.paper import CONDITIONS, ROWS, SIX, STUDIED, Case, paper_plan
+from quietarm.studies.reproduce.paper import (
+    CONDITIONS,
+    ROWS,
+    SIX,
+    STUDIED,
+    Case,
+    paper_plan,
+    residual_level,
+)
 from quietarm.studies.reproduce.searched import (
     OLD_CONSTANTS,
     SIX_TERMS,
@@ -121,12 +129,16 @@ class Reproduction:
         """The plain cycloid."""
         return evaluate_coefficients(case.task, [])
 
+    def beside_search(self, case: Case, terms: int) -> Plan:
+        """The gradient's plan in the paper's box that may leave what the search may."""
+        return self.answers[Piece("gradient, beside the search", case, terms)]
+
     def in_box(self, case: Case, terms: int) -> Plan:
-        """The gradient's plan in the paper's box."""
+        """The gradient's plan in the paper's box, at rest."""
         return self.answers[Piece("gradient, in box", case, terms)]
 
     def free(self, case: Case, terms: int) -> Plan:
-        """The gradient's plan without a box."""
+        """The gradient's plan without a box, at rest."""
         return self.answers[Piece("gradient, no box", case, terms)]
 
     def earlier(self, case: Case) -> Plan | None:
@@ -222,6 +234,9 @@ def _work(effort: Effort, folder: Path | None) -> Work:
         if effort.full or (case, terms) in rows:
             free = partial(solve, case.task, CycloidPolynomial(terms))
             work[Piece("gradient, in box", case, terms)] = partial(free, bound=case.bound)
+            work[Piece("gradient, beside the search", case, terms)] = partial(
+                free, bound=case.bound, residual_limit=residual_level(case, terms)
+            )
             work[Piece("gradient, no box", case, terms)] = free
     compared = effort.systems * effort.full
     for case in CONDITIONS if effort.full else STUDIED:
