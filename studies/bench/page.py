@@ -117,13 +117,14 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
         low, middle, high = (100 * one for one in quartiles(own["missing"]))
         time = results.expected_running_time(problem, str(method), SHOWN_TARGET)
         spent = {name: quartiles(own[name])[1] for name in _COST}
+        still = np.isfinite(np.asarray(own[ENERGIES[0]], dtype=float))
         rows.append({
             "method": bench_label(str(method)), "runs": len(own),
             "missing [%]": middle, "quartiles [%]": f"{low:.3g} to {high:.3g}",
             "with motions between [%]": 100 * quartiles(own["missing_between"])[1],
             "IGD+": quartiles(own["igd_plus"])[1], "epsilon": quartiles(own["epsilon"])[1],
             "energy above at 1 mm [%]": 100 * quartiles(own["energy_1mm"])[1],
-            _STILL: f"{own[ENERGIES[0]].count()} of {len(own)}",
+            _STILL: f"{np.count_nonzero(still)} of {len(own)}",
             f"to {100 * SHOWN_TARGET:g} % [s]": interval_words(*time),
             "candidates": spent["evaluations"], "gradients": spent["gradients"],
             "Hessians": spent["hessians"], "seconds": spent["seconds"],
@@ -150,7 +151,7 @@ def summary_table(results: Results) -> pd.DataFrame:
             "missing [%]": 100 * over["missing"],
             "with motions between [%]": 100 * over["missing_between"],
             "energy above at 1 mm [%]": 100 * over["energy_1mm"],
-            f"{_STILL} [%]": 100 * float(own[ENERGIES[0]].notna().mean()),
+            f"{_STILL} [%]": 100 * float(np.mean(np.isfinite(own[ENERGIES[0]]))),
             "candidates": over["evaluations"], "gradients": over["gradients"],
             "seconds": over["seconds"],
         })  # fmt: skip

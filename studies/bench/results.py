@@ -118,7 +118,7 @@ class Results:
         """Whether a method found the same from every seed: its runs are one, not independent."""
         runs = self.table.query("problem == @problem and method == @method")
         found = runs[["missing", "missing_between", *ENERGIES]]
-        return len(runs) > 1 and bool((found.nunique(dropna=False) == 1).all())
+        return len(runs) > 1 and len(found.drop_duplicates()) == 1
 
     def missing(self, problem: str, method: str, by: str = "seconds") -> tuple[Array, Array]:
         """Where the missing share changes, in processor seconds or evaluations, for every run.

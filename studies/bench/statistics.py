@@ -35,10 +35,11 @@ def say_power(runs: int, methods: int) -> str:
         return "one method alone is compared with none"
     least = attainable_p(runs, runs, pairs)
     if least < ALPHA:
+        same = min(1.0, pairs * 2 / 2**runs)
         return (
             f"with {runs} runs of each of {methods} methods ({counted(pairs, 'pair')}) the least p "
-            f"that a pair can have, by Holm, is {least:.2g}, or {min(1.0, pairs * 2 / 2**runs):.2g} "
-            "where one of them finds the same from every seed"
+            f"that a pair can have, by Holm, is {least:.2g}, or {same:.2g} where one of them finds "
+            "the same from every seed"
         )
     needed = next(n for n in range(runs, 1000) if attainable_p(n, n, pairs) < ALPHA)
     return (
