@@ -202,8 +202,8 @@ class _Row:
         if keeping:
             return min(keeping, key=lambda one: one.checked.energy)
         remedy = (
-            "the solver's steps are too coarse for this motion; bound the coefficients or use "
-            "fewer terms"
+            "the solver's steps are too coarse for this motion; bound the coefficients, use fewer "
+            "terms, or give a longer duration"
         )
         return excess_error(self.figures, self.limits, remedy, self.still) or self.tried[-1]
 

@@ -79,9 +79,9 @@ def command_of(name: str) -> click.Command:
 def quietarm() -> None:
     """Plan point-to-point moves of flexible robot arms that arrive at rest and take little energy.
 
-    PLANT is single-link, arm-on-flexible-link, dual-link or flexible-beam, one of --plant-file, or
-    the file of an identified machine. Angles are radians, or 30deg, pi/6, -pi/2; speeds rad/s, or
-    60deg/s; lengths metres, or 1mm; times seconds, or 800ms.
+    PLANT is single-link, arm-on-flexible-link, dual-link, flexible-beam or linear-axis, one of
+    --plant-file, or the file of an identified machine. Angles are radians, or 30deg, pi/6, -pi/2;
+    speeds rad/s, or 60deg/s; lengths metres, or 1mm; times seconds, or 800ms.
 
     Every command takes --plant-file FILE for a plant of your own (a file in Python, which is run),
     --quiet for no progress, and --help.

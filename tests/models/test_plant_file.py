@@ -12,7 +12,7 @@ def test_changed_content_gives_another_class(crane_file):
     before = load_plant_file(crane_file)["crane"]
     crane_file.write_text(crane_file.read_text().replace("0.4", "0.5"))
     after = load_plant_file(crane_file)["crane"]
-    assert (before().coupling, after().coupling) == (0.4, 0.5)
+    assert (before().radius, after().radius) == (0.4, 0.5)
     assert known_plants()["crane"] is after
 
 
