@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+from pickle import PicklingError
 from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -99,7 +100,7 @@ class Job:
 
         Its ``settings`` name the problem; its last mark has effort and quality at the end.
         """
-        reference = self.problem.reference()
+        reference, code = self.problem.reference(), _digest_of(self.method)
         if (self.problem, self.label) not in _rehearsed:
             self._find(rehearse=True)
             _rehearsed.add((self.problem, self.label))
@@ -107,7 +108,7 @@ class Job:
         stated = {"problem": self.problem.name, **found.record.settings}
         if self.budget is not None:
             stated["budget"] = self.budget
-        if code := _digest_of(self.method):
+        if code:
             stated["code"] = code
         return found.restated(settings=stated)
 
@@ -145,9 +146,9 @@ def method_name(method: Method) -> str:
 
 
 def _digest_of(method: Method) -> str:
-    """A digest of the code of one's own function, so that no older one's results are taken for its.
+    """A digest of one's own function or algorithm: no older one's results are taken for its.
 
-    Empty where there is no such code.
+    Of a function that of its code, of an algorithm that of its settings; empty where there is none.
     """
     digest = hashlib.sha256()
 
@@ -161,10 +162,15 @@ def _digest_of(method: Method) -> str:
             else:
                 digest.update(repr(constant).encode())
 
-    if not isinstance(method, FunctionType):
-        return ""
-    add(method.__code__)
-    return digest.hexdigest()[:12]
+    if isinstance(method, FunctionType):
+        add(method.__code__)
+        return digest.hexdigest()[:12]
+    if not isinstance(method, str):
+        import joblib  # not at the top: it takes long to load
+
+        with suppress(PicklingError, AttributeError, TypeError):  # it holds what cannot be pickled
+            return str(joblib.hash(method))[:12]
+    return ""
 
 
 def _is_function(method: Method) -> bool:

@@ -37,7 +37,8 @@ def load_runs(paths: Sequence[Path]) -> list[Front]:
 
     Unlike a front, a run may have found nothing.
     """
-    files = [file for path in paths for file in (sorted(path.rglob("*.json")) or [path])]
+    inside = [sorted(path.rglob("*.json")) if path.is_dir() else [path] for path in paths]
+    files = [file for own in inside for file in own]
     runs = list(map(Front.load, files))
     for run, file in zip(runs, files):
         check_figures(run, str(file))

@@ -7,6 +7,7 @@ import signal
 import numpy as np
 import pytest
 from bench_problems import NAME, OTHERS
+from pymoo.algorithms.moo.nsga2 import NSGA2
 from quietarm.metaheuristics import Job, finished_jobs, run_jobs
 from quietarm.studies.bench.asked import jobs_of, problems_of
 from quietarm.studies.bench.results import Results
@@ -49,6 +50,10 @@ def test_a_function_of_ones_own_is_a_method_and_runs_in_workers(tmp_path):
     assert run_jobs(jobs, tmp_path) == fronts
     same_name = Job(NAME, lambda function, seed, budget: function(np.zeros((60, 2))), budget=60)
     same_name.method.__name__ = "halton"
+    of_pymoo = Job(NAME, NSGA2(pop_size=20), budget=60)
+    assert run_jobs([of_pymoo], tmp_path) == run_jobs([of_pymoo], tmp_path)
+    with pytest.raises(ValueError, match="is by NSGA2 as it was before; give another folder"):
+        run_jobs([Job(NAME, NSGA2(pop_size=30), budget=60)], tmp_path)
     with pytest.raises(ValueError, match="is by halton as it was before; give another folder"):
         run_jobs([same_name], tmp_path)
 
