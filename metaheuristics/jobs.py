@@ -100,7 +100,7 @@ class Job:
 
         Its ``settings`` name the problem; its last mark has effort and quality at the end.
         """
-        reference, code = self.problem.reference(), _digest_of(self.method)
+        reference, digest = self.problem.reference(), _digest_of(self.method)
         if (self.problem, self.label) not in _rehearsed:
             self._find(rehearse=True)
             _rehearsed.add((self.problem, self.label))
@@ -108,8 +108,8 @@ class Job:
         stated = {"problem": self.problem.name, **found.record.settings}
         if self.budget is not None:
             stated["budget"] = self.budget
-        if code:
-            stated["code"] = code
+        if digest:
+            stated["digest"] = digest
         return found.restated(settings=stated)
 
     def _find(self, rehearse: bool = False) -> Front:
@@ -146,11 +146,16 @@ def method_name(method: Method) -> str:
 
 
 def _digest_of(method: Method) -> str:
-    """A digest of one's own function or algorithm: no older one's results are taken for its.
+    """A digest of one's own method, by which runs of an older one are known; empty for a name.
 
-    Of a function that of its code, of an algorithm that of its settings; empty where there is none.
+    Of a function its code, defaults and what it encloses, not what it calls; else all that the
+    object holds.
     """
-    digest = hashlib.sha256()
+    if isinstance(method, str):
+        return ""
+    import joblib  # not at the top: it takes long to load
+
+    digest, held = hashlib.sha256(), method
 
     def add(code: CodeType) -> None:
         digest.update(code.co_code + repr(code.co_names).encode())
@@ -164,13 +169,11 @@ def _digest_of(method: Method) -> str:
 
     if isinstance(method, FunctionType):
         add(method.__code__)
-        return digest.hexdigest()[:12]
-    if not isinstance(method, str):
-        import joblib  # not at the top: it takes long to load
-
-        with suppress(PicklingError, AttributeError, TypeError):  # it holds what cannot be pickled
-            return str(joblib.hash(method))[:12]
-    return ""
+        enclosed = [cell.cell_contents for cell in method.__closure__ or ()]
+        held = method.__defaults__, method.__kwdefaults__, enclosed
+    with suppress(PicklingError, AttributeError, TypeError):  # it may hold what cannot be pickled
+        digest.update(str(joblib.hash(held)).encode())
+    return digest.hexdigest()[:12]
 
 
 def _is_function(method: Method) -> bool:
@@ -256,7 +259,7 @@ def run_jobs(
     ------
     ValueError
         When there is no job, or one twice, a file is of another problem, of other versions or of
-        a function that has changed, a number is out of range, or no scheduler answers.
+        a method that has changed, a number is out of range, or no scheduler answers.
     LostJobsError
         At the end, if jobs failed, or their workers died twice.
     """
@@ -302,7 +305,7 @@ def _load(job: Job, path: Path) -> Front:
     same = (front.task, front.profile, front.record.bound)
     if same != (problem.task, problem.profile, problem.bound):
         raise ValueError(f"{path} is of another problem than {problem.name}; give another folder")
-    if front.record.settings.get("code", "") != _digest_of(job.method):
+    if front.record.settings.get("digest", "") != _digest_of(job.method):
         raise ValueError(f"{path} is by {job.label} as it was before; give another folder")
     now = search_versions()
     for name in ("quietarm", "pymoo"):

@@ -14,7 +14,8 @@ from quietarm.models.linear_axis import LinearAxis
 from quietarm.models.plant import Plant, known_plants, parameter
 from quietarm.models.plant_file import PlantFile, file_of_plant, load_plant_file
 from quietarm.models.single_link import SingleLinkManipulator
-from quietarm.models.version import __version__
+
+__version__ = "2.0.0.dev0"
 
 __all__ = [
     "ArmOnFlexibleLink",

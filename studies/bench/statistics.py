@@ -44,8 +44,7 @@ def say_power(runs: int, methods: int) -> str:
     needed = next(n for n in range(runs, 1000) if attainable_p(n, n, pairs) < ALPHA)
     return (
         f"with {counted(runs, 'run')} and {counted(pairs, 'pair')} no p by Holm can fall below "
-        f"{ALPHA}: "
-        f"{needed} runs are needed for a verdict"
+        f"{ALPHA}: {needed} runs are needed for a verdict"
     )
 
 

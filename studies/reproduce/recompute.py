@@ -129,9 +129,9 @@ class Reproduction:
         """The plain cycloid."""
         return evaluate_coefficients(case.task, [])
 
-    def beside_search(self, case: Case, terms: int) -> Plan:
-        """The gradient's plan in the paper's box that may leave what the search may."""
-        return self.answers[Piece("gradient, beside the search", case, terms)]
+    def same_residual(self, case: Case, terms: int) -> Plan:
+        """The gradient's plan in the paper's box, with the residual limit of the search."""
+        return self.answers[Piece("gradient, same residual", case, terms)]
 
     def in_box(self, case: Case, terms: int) -> Plan:
         """The gradient's plan in the paper's box, at rest."""
@@ -234,7 +234,7 @@ def _work(effort: Effort, folder: Path | None) -> Work:
         if effort.full or (case, terms) in rows:
             free = partial(solve, case.task, CycloidPolynomial(terms))
             work[Piece("gradient, in box", case, terms)] = partial(free, bound=case.bound)
-            work[Piece("gradient, beside the search", case, terms)] = partial(
+            work[Piece("gradient, same residual", case, terms)] = partial(
                 free, bound=case.bound, residual_limit=residual_level(case, terms)
             )
             work[Piece("gradient, no box", case, terms)] = free

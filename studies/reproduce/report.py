@@ -62,7 +62,7 @@ def _row(result: Reproduction, row: Row) -> dict[str, object]:
         "search": case.search_label,
         "  searched [J]": spread_words(found.energies, ".4g"),
         "  within [mm]": 1e3 * found.level,
-        "  gradient within the same [J]": result.beside_search(case, terms).energy,
+        "  gradient within the same [J]": result.same_residual(case, terms).energy,
         "  time of a run [s]": median(found.seconds),
         "gradient at rest, in the box [J]": result.in_box(case, terms).energy,
         "gradient at rest, no box [J]": result.free(case, terms).energy,

@@ -48,14 +48,44 @@ def test_a_function_of_ones_own_is_a_method_and_runs_in_workers(tmp_path):
     fronts = run_jobs(jobs, tmp_path, workers=2)
     assert list(fronts) == jobs
     assert run_jobs(jobs, tmp_path) == fronts
-    same_name = Job(NAME, lambda function, seed, budget: function(np.zeros((60, 2))), budget=60)
-    same_name.method.__name__ = "halton"
-    of_pymoo = Job(NAME, NSGA2(pop_size=20), budget=60)
-    assert run_jobs([of_pymoo], tmp_path) == run_jobs([of_pymoo], tmp_path)
-    with pytest.raises(ValueError, match="is by NSGA2 as it was before; give another folder"):
-        run_jobs([Job(NAME, NSGA2(pop_size=30), budget=60)], tmp_path)
-    with pytest.raises(ValueError, match="is by halton as it was before; give another folder"):
-        run_jobs([same_name], tmp_path)
+
+
+def at_zero(function, seed, budget, rows=60):
+    function(np.zeros((rows, 2)))
+
+
+def at_a_tenth(function, seed, budget, rows=60):
+    function(np.full((rows, 2), 0.1))
+
+
+def at_zero_of_other_rows(function, seed, budget, rows=61):
+    function(np.zeros((rows, 2)))
+
+
+def enclosing(value):
+    def enclosed(function, seed, budget):
+        function(np.full((60, 2), value))
+
+    return enclosed
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (at_zero, at_a_tenth),
+        (at_zero, at_zero_of_other_rows),
+        (enclosing(0.0), enclosing(0.1)),
+        (NSGA2(pop_size=20), NSGA2(pop_size=30)),
+    ],
+    ids=["code", "default", "enclosed", "pymoo"],
+)
+def test_runs_of_a_method_that_has_changed_are_refused(tmp_path, monkeypatch, before, after):
+    for method in (before, after):
+        monkeypatch.setattr(method, "__name__", "mine", raising=False)
+    job = Job(NAME, before, budget=60)
+    assert run_jobs([job], tmp_path) == run_jobs([job], tmp_path)
+    with pytest.raises(ValueError, match="is by mine as it was before; give another folder"):
+        run_jobs([Job(NAME, after, budget=60)], tmp_path)
 
 
 def test_a_search_leaves_numpys_error_state_as_it_was():
