@@ -18,6 +18,11 @@ LINEAR, ROTARY = "linear", "rotary"
 """Kinds of joint."""
 
 
+def is_zero(entry: Expression) -> bool:
+    """Whether an expression is nothing whatever the symbols are: so that it costs nothing."""
+    return isinstance(entry, float) and entry == 0.0
+
+
 def joint_unit(unit: str, joint: str) -> str:
     """A unit of a rotary joint's quantity as it is of a kind of joint: rad/s is m/s, N m is N."""
     return unit if joint == ROTARY else unit.replace("N m", "N").replace("rad", "m")

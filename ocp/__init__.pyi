@@ -38,6 +38,7 @@ from .profiles.cycloid import CycloidPolynomial as CycloidPolynomial
 from .profiles.cycloid import CycloidSpline as CycloidSpline
 from .profiles.joint_profile import JointPath as JointPath
 from .profiles.joint_profile import JointProfile as JointProfile
+from .profiles.joint_spline import JointSpline as JointSpline
 from .profiles.networks import CycloidGaussians as CycloidGaussians
 from .profiles.networks import CycloidNetwork as CycloidNetwork
 from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid

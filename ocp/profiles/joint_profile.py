@@ -44,6 +44,8 @@ class JointProfile(ABC):
     """Bound of a search where the user gives none; None where one must be given."""
     sharp: ClassVar[bool] = False
     """Whether a motion may turn within a hundredth of the move without a break."""
+    steps_of_a_piece: ClassVar[int] = 6
+    """Steps that resolve the motion between two of its `breaks`."""
     random_starts: ClassVar[int] = 1
     """The gradient's random starts for each that is asked for, several where minima are many."""
 

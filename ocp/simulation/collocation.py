@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.models.joint_motion import Modes
+from quietarm.models.joint_motion import Modes, is_zero
 
 NODES = 3
 
@@ -192,11 +192,6 @@ def _held(h: Expression, k: Expression, d: Expression, once: float, twice: float
 
 def _negative(d: Expression, time: Expression, k: Expression) -> Expression:
     return 0.0 if is_zero(k) else -d - time * k
-
-
-def is_zero(entry: Expression) -> bool:
-    """Whether an entry is nothing whatever the symbols are: modes that do not act on each other."""
-    return isinstance(entry, float) and entry == 0.0
 
 
 def dot(factors: Sequence[Expression], entries: Sequence[Expression]) -> Expression:

@@ -19,8 +19,8 @@ MOST_STEPS = 20_000
 """Of any simulation by fixed steps: finer ones differ by rounding alone."""
 ROLLOUT_STEPS = 140
 """Steps that keep the energy of random coefficients in the paper's boxes within 1e-5 relative."""
-_LEAST_STEPS = 6
-"""Least steps between two breaks: no step crosses one."""
+STEPS_OF_A_PIECE = 6
+"""Least steps between two breaks, of a motion that is no polynomial there: no step crosses one."""
 
 
 @dataclass(frozen=True)
@@ -29,11 +29,13 @@ class Grid:
 
     Steps are finer at the ends, where the powers of T in the profile change fastest: in the paper's
     boxes the error is a tenth to a thirtieth of that of even steps. A step ends at each of the
-    `breaks`, where the motion is not smooth: then there are somewhat more than `steps`.
+    `breaks`, where the motion is not smooth: then there are somewhat more than `steps`, and at
+    least `of_a_piece` between two breaks.
     """
 
     steps: int
     breaks: tuple[float, ...] = ()
+    of_a_piece: int = STEPS_OF_A_PIECE
 
     @cached_property
     def boundaries(self) -> NDArray[np.float64]:
@@ -43,8 +45,8 @@ class Grid:
             return even / 2 + (1 - np.cos(np.pi * even)) / 4
         pieces = [np.zeros(1)]
         for start, end in pairwise((0.0, *self.breaks, 1.0)):
-            own = Grid(max(_LEAST_STEPS, math.ceil((end - start) * self.steps)))
-            pieces.append(start + (end - start) * own.boundaries[1:])
+            piece = Grid(max(self.of_a_piece, math.ceil((end - start) * self.steps)))
+            pieces.append(start + (end - start) * piece.boundaries[1:])
         return np.concatenate(pieces)
 
     @property

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import casadi as ca
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.joint_motion import is_zero
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, power_of
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import Quantity, ask_for_jerk
@@ -18,7 +19,6 @@ from quietarm.ocp.simulation.collocation import (
     NodeState,
     at_each_node,
     collocate,
-    is_zero,
     modal_system,
 )
 from quietarm.ocp.simulation.grid import Grid
@@ -94,6 +94,11 @@ class Simulation(NamedTuple):
     energy: Energy
     breaks: tuple[float, ...] = ()
 
+    @property
+    def grid(self) -> Grid:
+        """Where the steps begin and end."""
+        return Grid(self.steps, self.breaks, self.profile.steps_of_a_piece)
+
     def rollout(
         self,
         coefficients: Expression | Sequence[Expression],
@@ -154,7 +159,7 @@ def symbolic_rollout(
         raise ValueError(
             f"got {len(coefficients)} coefficients for a profile of {profile.size}; give one each"
         )
-    grid = Grid(steps, breaks)
+    grid = Grid(steps, breaks, profile.steps_of_a_piece)
     times, length = grid.columns(candidates)
     at = ca.horzcat(*times)
     joint = profile.motion(coefficients, at, *move)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
+from itertools import repeat
 from typing import Any, Self
 
 import casadi as ca
@@ -23,12 +24,13 @@ from quietarm.ocp.limits import Quantity
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
-from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import Simulation
 from quietarm.ocp.solvers.derivatives import compile_derivatives, compile_values
 from quietarm.ocp.solvers.node import path_of
 
 Array = NDArray[np.float64]
+Unpack = Callable[[list[Array], int], tuple[Array, ...]]
+"""From outputs whose columns are candidates to copies with a row for each."""
 _OF_VALUES, _OF_DERIVATIVES = (1, 8, 100), (1, 4, 8)
 """Rows of a compiled call: to build one takes as long as hundreds of its calls."""
 _LEAST_STRETCH = 1e-3
@@ -100,23 +102,21 @@ class _Compiled:
         self,
         build: Callable[[int], ca.Function],
         sizes: tuple[int, ...],
-        unpack: Callable[[list[Array], int], tuple[Array, ...]],
     ) -> None:
-        """Unpack makes a row for each candidate of outputs whose columns they are, and copies."""
-        self._build, self._sizes, self._unpack, self._singles = build, sizes, unpack, 0
+        self._build, self._sizes, self._singles = build, sizes, 0
         self._functions = dict[int, ca.Function]()
         self._idle = dict[int, list[BufferedFunction]]()
 
-    def __call__(self, inputs: Sequence[Array], threads: int = 1) -> list[Array]:
+    def __call__(self, inputs: Sequence[Array], unpack: Unpack, threads: int = 1) -> list[Array]:
         """The outputs, a row each, a block for each thread at a time."""
         most, rows = self._sizes[-1], max(len(inputs[0]), 1)
         blocks = [[one[i : i + most] for one in inputs] for i in range(0, rows, most)]
         sizes = [self.prepare(len(one[0])) for one in blocks]  # in this thread, whose time counts
         if threads > 1 and len(blocks) > 1:
             with ThreadPoolExecutor(threads) as pool:
-                parts = list(pool.map(self._evaluate, blocks, sizes))
+                parts = list(pool.map(self._evaluate, blocks, sizes, repeat(unpack)))
         else:
-            parts = list(map(self._evaluate, blocks, sizes))
+            parts = list(map(self._evaluate, blocks, sizes, repeat(unpack)))
         return [np.concatenate(part) for part in zip(*parts)]
 
     def prepare(self, rows: int) -> int:
@@ -132,14 +132,14 @@ class _Compiled:
             self._idle[size] = []
         return size
 
-    def _evaluate(self, block: Sequence[Array], size: int) -> tuple[Array, ...]:
+    def _evaluate(self, block: Sequence[Array], size: int, unpack: Unpack) -> tuple[Array, ...]:
         rows = len(block[0])
         try:
             function = self._idle[size].pop()
         except IndexError:  # all are in use by other threads, or none is made yet
             function = BufferedFunction(self._functions[size])
         outputs = function(*(np.resize(one, (size, one.shape[1])).T for one in block))
-        found = self._unpack(outputs, rows)
+        found = unpack(outputs, rows)
         self._idle[size].append(function)
         return found
 
@@ -149,17 +149,20 @@ class Batch:
 
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
-        self._values = _Compiled(partial(compile_values, simulation), _OF_VALUES, _copy)
-        self._derivatives = _Compiled(
-            partial(compile_derivatives, simulation), _OF_DERIVATIVES, self._unpack
-        )
+        self._values = _Compiled(partial(compile_values, simulation), _OF_VALUES)
+        self._derivatives = _Compiled(partial(compile_derivatives, simulation), _OF_DERIVATIVES)
+
+    @cached_property
+    def _steps(self) -> int:
+        """How many there are: some more than asked for where the motion breaks."""
+        return len(self.simulation.grid.lengths)
 
     @cached_property
     def places(self) -> dict[str, slice]:
         """Where the values of each limited quantity stand among all."""
         places, first = dict[str, slice](), 0
         for quantity in self.simulation.quantities:
-            count = quantity.rows(self.simulation.plant) * NODES * self.simulation.steps
+            count = quantity.rows(self.simulation.plant) * NODES * self._steps
             places[quantity.name] = slice(first, first + count)
             first += count
         return places
@@ -190,7 +193,7 @@ class Batch:
     @cached_property
     def _speeds(self) -> Array | None:
         """The path's speed at the nodes by each coefficient; None if it is not linear in them."""
-        size, grid = self.simulation.profile.size, Grid(self.simulation.steps)
+        size, grid = self.simulation.profile.size, self.simulation.grid
         path = path_of(self.simulation.profile, grid, False, 1)
         if not path.linear:
             return None
@@ -206,7 +209,7 @@ class Batch:
         little more exact.
         """
         COST.candidates += len(coefficients)
-        energy, arrival, limited = self._values((coefficients, move, errors), threads)
+        energy, arrival, limited = self._values((coefficients, move, errors), _copy, threads)
         return Values(energy[:, 0], arrival, limited)
 
     def derivatives(
@@ -232,7 +235,8 @@ class Batch:
         )
         inputs = [coefficients, move, errors, width[:, None], weights.energy[:, None],
                   weights.arrival, weights.limited]  # fmt: skip
-        return Derivatives(*self._derivatives(inputs))
+        unpack = self._unpack_first if multipliers is None else self._unpack
+        return Derivatives(*self._derivatives(inputs, unpack))
 
     def prepare(self, rows: int) -> None:
         """Build the derivatives for so many rows first, for single ones are evaluated before."""
@@ -240,22 +244,28 @@ class Batch:
 
     def _unpack(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
         """What `Derivatives` holds; a column of the outputs is a candidate."""
-        size, steps = self.simulation.profile.size, self.simulation.steps
-
-        def by_coefficient(one: Array) -> Array:
-            """From (value, coefficient, step; candidate) to (candidate; coefficient; others)."""
-            apart = one.reshape(-1, size, steps, one.shape[1])[..., :rows]
-            return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
-
-        energy, arrival, limited, gradient, arrival_jacobian = _copy(outputs[:5], rows)
-        limited_jacobian, left, right = map(by_coefficient, outputs[5:8])
+        size = self.simulation.profile.size
+        left, right = (self._by_coefficient(factor, rows) for factor in outputs[6:8])
         hessian = left @ right.swapaxes(1, 2)
         if outputs[8].size:
             hessian += outputs[8][:, :rows].T.reshape(rows, size, size)
+        return (*self._unpack_first(outputs, rows)[:-1], hessian)
+
+    def _unpack_first(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
+        """The same without second derivatives: they are those of no sum."""
+        size = self.simulation.profile.size
+        energy, arrival, limited, gradient, arrival_jacobian = _copy(outputs[:5], rows)
+        limited_jacobian = self._by_coefficient(outputs[5], rows)
         return (
             energy[:, 0], arrival, limited, gradient, arrival_jacobian.reshape(rows, -1, size),
-            limited_jacobian.swapaxes(1, 2), hessian,
+            limited_jacobian.swapaxes(1, 2), np.zeros((rows, size, size)),
         )  # fmt: skip
+
+    def _by_coefficient(self, output: Array, rows: int) -> Array:
+        """From (value, coefficient, step; candidate) to (candidate; coefficient; others)."""
+        size = self.simulation.profile.size
+        apart = output.reshape(-1, size, self._steps, output.shape[1])[..., :rows]
+        return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
 
 
 def _copy(outputs: list[Array], rows: int) -> tuple[Array, ...]:

@@ -23,7 +23,6 @@ from quietarm.ocp.simulation.collocation import (
     collocate,
     modal_system,
 )
-from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import quadratic, quadratic_zeros
 from quietarm.ocp.simulation.rollout import Simulation, march, modes_at_nodes
 from quietarm.ocp.solvers.node import Node, Table, path_of, product, transpose
@@ -125,10 +124,10 @@ def compile_values(simulation: Simulation, rows: int) -> ca.Function:
 
     (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
-    steps, modes = simulation.steps, simulation.plant.modes
+    steps, modes = len(simulation.grid.lengths), simulation.plant.modes
     counts = simulation.profile.size, 3 + 2 * modes, len(simulation.errors)
     inputs = [ca.MX.sym("x", rows, count) for count in counts]
-    nodes = NODES * len(Grid(steps, simulation.breaks).lengths)
+    nodes = NODES * steps
     a, row, errors = (_widen(one, nodes) for one in inputs)
     initial = ca.horzsplit(inputs[1], 1)[3:]
     rollout = simulation.rollout(a, [*row[:3], *initial], errors, rows)
@@ -153,9 +152,11 @@ class _Differentiated:
     """The expressions of `compile_derivatives`, from the motion to the Hessian."""
 
     def __init__(self, simulation: Simulation, rows: int) -> None:
-        plant, profile, steps, quantities, names, self.definition, _ = simulation
+        plant, profile, _, quantities, names, self.definition, _ = simulation
+        grid = simulation.grid
+        steps = len(grid.lengths)
+        nodes = NODES * steps
         self.size, self.modes, self.shape = profile.size, plant.modes, (rows, steps)
-        grid, nodes = Grid(steps), NODES * steps
         self.path = path_of(profile, grid, ask_for_jerk(quantities), rows)
         self.node = Node(plant, self.path, quantities, names, self.definition, (rows, nodes))
         limited = (self.node.count - self.node.own) * nodes

@@ -14,10 +14,10 @@ from typing import Any
 
 import casadi as ca
 from quietarm.models import JointMotion, Plant
+from quietarm.models.joint_motion import is_zero
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.limits import Quantity
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.collocation import is_zero
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.uncertainty import perturb_plant
 

@@ -54,7 +54,7 @@ class Transcription:
         self.errors = np.array(task.scenarios, dtype=float)
         self.batch = batch(
             task.plant, profile, steps, tuple(one.quantity for one in task.limits),
-            task.error_names, task.energy,
+            task.error_names, task.energy, profile.breaks(task.duration),
         )  # fmt: skip
         self.limits = {one.name: one for one in (*task.limits, Limit.of_residual(np.inf))}
 

@@ -1,0 +1,278 @@
+"""The least time of a task on a spline of the joint, whose knots go where its acceleration turns.
+
+The search begins from the time-optimal motion of the rigid joint with a ZV shaper behind it, which
+leaves a linear plant at rest: its switches are the first knots, its duration the first to be tried.
+The knots then follow the acceleration of the fastest motion that was found.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.planning.rigid_motion import (
+    RigidMotion,
+    assumed_bounds,
+    declared_bounds,
+    rigid_motion,
+)
+from quietarm.ocp.profiles.joint_spline import JointSpline
+from quietarm.ocp.simulation.free_vibration import FreeVibration
+from quietarm.ocp.solvers.least_excess import Excess, least_excess
+from quietarm.ocp.solvers.problem import Problem, Transcription, first_steps
+from quietarm.ocp.task import LEAST_DURATION, PointToPoint
+
+Array = NDArray[np.float64]
+_KNOTS = 32
+"""With 24 the least time is up to 1 % longer, with 40 a plan takes twice as long."""
+_EVEN_SHARE = 0.35
+"""Share of the knots that are spread evenly; the others stand where the acceleration changes."""
+_RAMP = 4e-3
+"""Share of the move on either side of a switch in which the acceleration may change."""
+_GAP = 1e-3
+"""Share of the move that two knots are apart at least."""
+_SPEED = "speed"
+_SAMPLES = 4001
+"""Of the acceleration, for the knots."""
+_ROUNDS = 3
+_GAIN = 5e-3
+"""Rounds of knots; one that shortens the move by a smaller share is the last."""
+_MARGIN, _OF_SPEED = 2e-3, 2e-4
+"""Shares by which limits are narrowed, for what passes them between the solver's nodes: the speed,
+smoother than all else, by less, since it settles how long a cruise takes."""
+_ROOM = 1.2
+"""Where CVODES finds more above a limit, this multiple of it is the margin."""
+_GROWTH = 1.3
+"""By which a duration that is too short grows."""
+_FAR = 1.0
+"""An excess of more counts as this one: how far it is says nothing."""
+
+
+class LeastTime(NamedTuple):
+    """The shortest duration [s] that was found, the motion of it, and the longest one that failed.
+
+    The latter comes with the least share by which its limits are exceeded.
+    """
+
+    duration: float
+    coefficients: Array
+    profile: JointSpline
+    too_short: float
+    excess: float
+
+
+def least_time(
+    task: PointToPoint, residual_limit: float, bound: float | None, tolerance: float
+) -> LeastTime:
+    """The least time of a task within its limits, to a share of it.
+
+    ValueError where the solver cannot resolve a move as long as its limits ask for.
+    """
+    shaped = _shaped_rigid_motion(task)
+    low = rigid_duration(task) or shaped.duration / _GROWTH
+    durations = _Durations(task, JointSpline(_knots_at(shaped)), residual_limit, bound)
+    best = durations.least(low, shaped.duration, tolerance)
+    for _ in range(_ROUNDS):
+        profile = JointSpline(_knots_along(best.profile, best.coefficients))
+        following = _Durations(task, profile, residual_limit, bound)
+        shorter = following.least(max(low, best.duration / _GROWTH), best.duration, tolerance)
+        gain = best.duration / shorter.duration - 1
+        if gain > 0:
+            best, durations = shorter, following
+        if gain < _GAIN:
+            break
+    if durations.widen_margins(best):
+        best = durations.least(best.duration, (1 + _GAIN) * best.duration, tolerance)
+    return best
+
+
+def fitting_spline(
+    task: PointToPoint, residual_limit: float, bound: float | None
+) -> tuple[JointSpline, Array] | None:
+    """A spline and coefficients that keep a task's limits in its duration; None if none do."""
+    shaped = _shaped_rigid_motion(task)
+    knots = _knots_at(shaped)
+    for _ in range(1 + _ROUNDS):
+        profile = JointSpline(knots)
+        excess = _Durations(task, profile, residual_limit, bound).excess(task.duration)
+        if excess.holds and excess.share <= 0:
+            return profile, excess.coefficients
+        knots = _knots_along(profile, excess.coefficients)
+    return None
+
+
+def rigid_duration(task: PointToPoint) -> float:
+    """The least time of a rigid joint within the limits of speed, acceleration and jerk [s].
+
+    0 where there is none; no motion within them is shorter.
+    """
+    try:
+        return rigid_motion(abs(task.span), declared_bounds(task)).duration
+    except ValueError:
+        return 0.0
+
+
+def _shaped_rigid_motion(task: PointToPoint) -> RigidMotion:
+    """The rigid joint's time-optimal motion with a ZV shaper for every mode behind it."""
+    rigid = rigid_motion(abs(task.span), assumed_bounds(task))
+    modes = FreeVibration(task.plant, task.target).modes
+    half_periods = [
+        math.pi / (frequency * math.sqrt(1 - damping**2)) for frequency, damping in modes
+    ]
+    delays = [sum(delay) for delay in product(*((0.0, half) for half in half_periods))]
+    switches = {switch + delay for switch in rigid.switches for delay in delays}
+    return RigidMotion(rigid.duration + sum(half_periods), tuple(sorted(switches)))
+
+
+def _knots_at(motion: RigidMotion) -> tuple[float, ...]:
+    """Knots about the switches of a motion."""
+    fractions = np.linspace(0.0, 1.0, _SAMPLES)
+    switches = np.array(motion.switches) / motion.duration
+    ramps = (fractions[:, None] - switches + _RAMP) / (2 * _RAMP)
+    return _knots_by(fractions, np.clip(ramps, 0.0, 1.0).sum(axis=1))
+
+
+def _knots_along(profile: JointSpline, coefficients: Array) -> tuple[float, ...]:
+    """Knots where the acceleration of a motion changes."""
+    fractions = np.linspace(0.0, 1.0, _SAMPLES)
+    *_, acceleration = profile.inner(coefficients.tolist(), fractions)
+    changes = np.abs(np.diff(acceleration, prepend=acceleration[0]))
+    return _knots_by(fractions, np.cumsum(changes))
+
+
+def _knots_by(fractions: Array, changed: Array) -> tuple[float, ...]:
+    """Knots between which a rising quantity changes alike, blended with even ones."""
+    changed = (changed - changed[0]) / (changed[-1] - changed[0])
+    blend = _EVEN_SHARE * fractions + (1 - _EVEN_SHARE) * changed
+    places = np.interp(np.linspace(0.0, 1.0, _KNOTS + 2)[1:-1], blend, fractions)
+    knots = list[float]()
+    for place in places.tolist():
+        if place - (knots[-1] if knots else 0.0) >= _GAP and place <= 1 - _GAP:
+            knots.append(place)
+    return tuple(knots)
+
+
+class _Durations:
+    """Durations of one task and profile, with the least excess of each."""
+
+    def __init__(
+        self,
+        task: PointToPoint,
+        profile: JointSpline,
+        residual_limit: float,
+        bound: float | None,
+    ) -> None:
+        self._task = task
+        self._profile = profile
+        self._residual_limit = residual_limit
+        self._bound = bound
+        self._steps = 0
+        self._margins = {limit.name: _MARGIN for limit in task.limits}
+        if _SPEED in self._margins:
+            self._margins[_SPEED] = _OF_SPEED
+        self._start = profile.plain
+        self._shortest: tuple[float, Array] | None = None
+        self._too_short: tuple[float, float] = 0.0, math.inf
+
+    def excess(self, duration: float) -> Excess:
+        """The least excess of a duration, from the motion of the last one."""
+        task = replace(self._task, duration=duration)
+        # as many as the longest move takes: others have to be compiled
+        self._steps = max(self._steps, first_steps(task, self._profile))
+        transcription = Transcription.of(task, self._profile, self._steps)
+        problem = self._problem(transcription)
+        excess = least_excess(problem, self._start)
+        if not excess.holds:
+            excess = least_excess(problem, self._profile.plain)
+        if excess.holds:
+            self._start = excess.coefficients
+        return excess
+
+    def _problem(self, transcription: Transcription) -> Problem:
+        """Within narrower limits of what is limited on the way."""
+        problem = Problem.of(transcription, self._residual_limit, self._bound)
+        limits = [
+            limit.tightened(1 + self._margins.get(limit.name, 0.0))
+            for limit in problem.scalarization.limits
+        ]
+        return problem._replace(scalarization=problem.scalarization._replace(limits=tuple(limits)))
+
+    def widen_margins(self, least: LeastTime) -> bool:
+        """Whether a motion passes limits by more than their margins, which are wider then."""
+        task = replace(self._task, duration=least.duration)
+        motion = Candidate.of_profile(task, self._profile, least.coefficients)
+        exceeded = motion.exceeded(task.limits)
+        for name, ratio in exceeded.items():
+            self._margins[name] += _ROOM * (ratio - 1)
+        self._shortest = None
+        return bool(exceeded)
+
+    def least(self, low: float, high: float, tolerance: float) -> LeastTime:
+        """The least duration, to a share; the ends are where it is expected."""
+        above = self._probe(max(high, LEAST_DURATION))
+        below = self._probe(max(low, LEAST_DURATION))
+        while above.share > 0:
+            below = above
+            above = self._probe(_GROWTH * above.duration)
+        while below.share <= 0:
+            above = below
+            below = self._probe(below.duration / _GROWTH)
+        weights = _Weights()
+        while above.duration / below.duration > 1 + tolerance:
+            between = self._probe(weights.between(below, above, tolerance))
+            if between.share > 0:
+                below = between
+            else:
+                above = between
+            weights.moved(up=between.share > 0)
+        assert self._shortest is not None  # the upper end
+        return LeastTime(*self._shortest, self._profile, *self._too_short)
+
+    def _probe(self, duration: float) -> _Probe:
+        """The excess of a duration as far as it matters; what was found is noted."""
+        excess = self.excess(duration)
+        share = min(excess.share, _FAR) if excess.holds else _FAR
+        if share <= 0:
+            self._shortest = duration, excess.coefficients
+        elif duration > self._too_short[0]:
+            self._too_short = duration, share
+        return _Probe(duration, share)
+
+
+class _Probe(NamedTuple):
+    """A duration [s], and by what share its limits are exceeded."""
+
+    duration: float
+    share: float
+
+
+class _Weights:
+    """Regula falsi (Illinois): an end that stays counts for half as much each time."""
+
+    def __init__(self) -> None:
+        self._of_below = self._of_above = 1.0
+        self._went_up: bool | None = None
+
+    def between(self, below: _Probe, above: _Probe, tolerance: float) -> float:
+        """Where the line through both ends is zero, not too near to either of them."""
+        excess = self._of_below * below.share
+        room = -self._of_above * above.share
+        middle = below.duration + (above.duration - below.duration) * excess / (excess + room)
+        step = min(tolerance * below.duration, above.duration - below.duration) / 2
+        return min(max(middle, below.duration + step), above.duration - step)
+
+    def moved(self, up: bool) -> None:
+        """Note which end was replaced."""
+        self._of_below = 1.0 if up else self._of_below
+        self._of_above = self._of_above if up else 1.0
+        if up == self._went_up:
+            if up:
+                self._of_above /= 2
+            else:
+                self._of_below /= 2
+        self._went_up = up

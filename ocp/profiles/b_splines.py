@@ -1,0 +1,64 @@
+"""B-splines on clamped knots, and a spline with its first two derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from quietarm.models import Expression
+from quietarm.models.joint_motion import is_zero
+
+
+def spline(
+    knots: Sequence[float], degree: int, points: Sequence[Expression], at: Expression
+) -> list[Expression]:
+    """A spline of control points on knots that rise, and its first two derivatives.
+
+    There are as many points as knots, plus the degree, less one. The spline begins at the first
+    point and ends at the last one.
+    """
+    clamped = [knots[0]] * degree + list(knots) + [knots[-1]] * degree
+    values = list[Expression]()
+    for order in range(degree, degree - 3, -1):
+        basis = b_splines(clamped, order, at)
+        values.append(sum(point * B for point, B in zip(points, basis)))
+        clamped = clamped[1:-1]
+        # its derivative's: differences over the length that neighbouring B-splines share
+        points = [
+            order * (after - before) / (clamped[i + order] - clamped[i])
+            for i, (before, after) in enumerate(pairwise(points))
+        ]
+    return values
+
+
+def b_splines(knots: Sequence[float], degree: int, at: Expression) -> list[Expression]:
+    """Every B-spline of a degree on clamped knots, by de Boor's recursion."""
+    last = len(knots) - degree - 2
+    row: list[Expression] = [0.0] * (len(knots) - 1)
+    for i in range(degree, last + 1):  # degree 0: in which piece it is, the ends included
+        after = at >= knots[i] if i > degree else 1
+        row[i] = after * (at < knots[i + 1] if i < last else 1) + 0 * at
+    for d in range(1, degree + 1):
+        pairs = list(zip(knots, knots[d:]))
+        shares = [_share(at, *pair) for pair in pairs]
+        row = [
+            _blend(left, shares[i], right, shares[i + 1])
+            for i, (left, right) in enumerate(pairwise(row))
+        ]
+    return row
+
+
+def _blend(
+    left: Expression, share: Expression, right: Expression, share_of_next: Expression
+) -> Expression:
+    """One step of the recursion; B-splines that are nothing anywhere cost nothing."""
+    rising = 0.0 if is_zero(left) else left * share
+    falling = 0.0 if is_zero(right) else right * (1 - share_of_next)
+    if is_zero(rising):
+        return falling
+    return rising if is_zero(falling) else rising + falling
+
+
+def _share(at: Expression, begin: float, end: float) -> Expression:
+    """How far it is from one knot to another; where these are one, no piece lies between them."""
+    return (at - begin) / (end - begin) if end > begin else 0.0

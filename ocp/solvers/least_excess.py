@@ -1,0 +1,198 @@
+"""How near a motion can come to its limits: linear programs, one after another.
+
+Given its duration, a motion keeps its limits if their least excess is none. The excess is the share
+by which all limits are widened alike; what has to hold exactly is the state on arrival, or the
+residual's limit. Where the joint's path is linear in the coefficients and so is the plant, one
+linear program gives the answer; elsewhere a few do, each linearised about the last one's motion.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import daqp
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.ocp.limits import RESIDUAL
+from quietarm.ocp.solvers.batch import Derivatives
+from quietarm.ocp.solvers.problem import Problem
+
+Array = NDArray[np.float64]
+_TIE = 1e-3
+"""Curvature that makes a linear program a quadratic one, whose answer is unique; the excess differs
+by less than 1e-5 from that of the linear program."""
+_REACH = 3.0
+_SHRINK = 0.3
+"""How far coefficients may move at first, and the share that is left where that went wrong."""
+_ROUNDS = 12
+_FUNNEL = 0.2
+_NARROWER = 0.5
+"""What a step may miss of the state on arrival, as a share of its scale; less with every step."""
+_AGREEMENT = 1e-4
+"""Linearised and true excess of a motion that is the answer differ by no more."""
+_MISSED = 1e-4
+"""And it misses no more of the state on arrival, or of the residual's limit, as shares."""
+_ROWS_AT_FIRST = 200
+_MOST_ROUNDS_OF_ROWS = 20
+_EXCEEDED = 1e-5
+"""Rows that are exceeded by more join the linear program."""
+_EQUALITY = 5
+_SOLVED = 1
+"""DAQP's mark of an equality, and its word for a solution."""
+
+
+class Excess(NamedTuple):
+    """The least excess of a problem's limits, the coefficients that have it, and whether it holds.
+
+    Negative where all limits may be narrowed by that share. It holds where linearised and true
+    excess agree.
+    """
+
+    share: float
+    coefficients: Array
+    holds: bool
+
+
+def least_excess(problem: Problem, start: Array, reach: float = _REACH) -> Excess:
+    """The least share by which all limits but the residual's have to be widened, from a start."""
+    linearised = _Linearised(problem, start)
+    funnel = _FUNNEL
+    for _ in range(_ROUNDS):
+        step = linearised.step_of_least_excess(reach)
+        if step is None:
+            break
+        following = _Linearised(problem, linearised.coefficients + step[:-1])
+        near = following.missed <= _MISSED
+        if near and abs(following.excess - step[-1]) <= _AGREEMENT:
+            return Excess(following.excess, following.coefficients, True)
+        if following.missed <= max(linearised.missed, funnel):
+            linearised = following
+            funnel *= _NARROWER
+        else:
+            reach = _SHRINK * float(np.abs(step[:-1]).max())
+    return Excess(linearised.excess, linearised.coefficients, False)
+
+
+class _Linearised:
+    """A problem about a motion: rows of its limits, and of what is wanted on arrival."""
+
+    def __init__(self, problem: Problem, coefficients: Array) -> None:
+        transcription = problem.transcription
+        self.coefficients = coefficients
+        self._box = transcription.profile.box(problem.scalarization.bound)
+        motions = transcription.evaluate(coefficients)
+        self._limit_rows(problem, motions)
+        self._arrival_rows(problem, motions)
+
+    def _limit_rows(self, problem: Problem, motions: Derivatives) -> None:
+        """Values and their Jacobian as shares of the limits' sizes, and both bounds."""
+        values, tables, uppers, lowers = [], [], [], []
+        for limit in problem.scalarization.limits:
+            if limit.name == RESIDUAL or not np.isfinite(limit.size):
+                continue
+            place = problem.transcription.batch.places[limit.name]
+            counted = slice(None if limit.quantity.in_scenarios else 1)
+            values.append(motions.limited[counted, place].ravel() / limit.size)
+            table = motions.limited_jacobian[counted, place]
+            tables.append(table.reshape(-1, table.shape[-1]) / limit.size)
+            below, above = limit.sides
+            uppers.append(np.full(len(values[-1]), above))
+            lowers.append(np.full(len(values[-1]), below))
+        self.values = np.concatenate(values)
+        self.table = np.concatenate(tables)
+        self.upper = np.concatenate(uppers)
+        self.lower = np.concatenate(lowers)
+
+    def _arrival_rows(self, problem: Problem, motions: Derivatives) -> None:
+        """What has to be 0, or within 1: scaled states on arrival, or displacements after it."""
+        transcription = problem.transcription
+        asked = problem.scalarization
+        missed = motions.arrival - transcription.wanted + asked.offset
+        if asked.at_rest:
+            scale = transcription.arrival_scale
+            self.arrival = missed[0] / scale
+            self.arrival_table = motions.arrival_jacobian[0] / scale[:, None]
+            self.allowed = 0.0
+            return
+        rows = list(zip(transcription.tip_rows, missed, motions.arrival_jacobian))
+        limit = asked.residual_limit
+        self.arrival = np.concatenate([tips @ state / limit for tips, state, _ in rows])
+        self.arrival_table = np.concatenate([tips @ table / limit for tips, _, table in rows])
+        self.allowed = 1.0
+
+    @property
+    def excess(self) -> float:
+        """The share by which the motion itself exceeds its limits."""
+        return float(np.maximum(self.values / self.upper, self.values / self.lower).max()) - 1
+
+    @property
+    def missed(self) -> float:
+        """What it misses on arrival, beyond what is allowed."""
+        return float(np.abs(self.arrival).max(initial=0.0)) - self.allowed
+
+    def step_of_least_excess(self, reach: float) -> Array | None:
+        """The step within a reach, and then the linearised excess; None where there is none.
+
+        Rows that the step exceeds join the program until there is none.
+        """
+        above = _Rows(self.table, self.upper - self.values, self.upper)
+        below = _Rows(-self.table, self.values - self.lower, -self.lower)
+        limits = above.and_(below)
+        count = len(limits.room)
+        chosen = np.zeros(count, dtype=bool)
+        chosen[:: max(1, count // _ROWS_AT_FIRST)] = True
+        for _ in range(_MOST_ROUNDS_OF_ROWS):
+            solution = self._solve(limits, np.flatnonzero(chosen), reach)
+            if solution is None:
+                return None
+            needed = limits.excess_at(solution[:-1])
+            if needed.max() <= solution[-1] + _EXCEEDED:
+                break
+            chosen |= _peaks(needed, solution[-1] + _EXCEEDED)
+        return np.append(solution[:-1], needed.max())
+
+    def _solve(self, limits: _Rows, chosen: NDArray[np.intp], reach: float) -> Array | None:
+        """The step and the excess that least exceeds the chosen rows."""
+        size = len(self.coefficients)
+        most = np.minimum(reach, self._box[1] - self.coefficients)
+        least = np.maximum(-reach, self._box[0] - self.coefficients)
+        arrival = np.pad(self.arrival_table, ((0, 0), (0, 1)))
+        rows = np.column_stack([limits.table[chosen], -limits.give[chosen]])
+        unlimited = np.full(len(chosen), np.inf)
+        upper = [most, [np.inf], self.allowed - self.arrival, limits.room[chosen]]
+        lower = [least, [-1.0], -self.allowed - self.arrival, -unlimited]
+        marks = np.zeros(size + 1 + len(arrival) + len(chosen), dtype=np.int32)
+        if self.allowed == 0:
+            marks[size + 1 : size + 1 + len(arrival)] = _EQUALITY
+        solution, _, flag, _ = daqp.solve(
+            _TIE * np.eye(size + 1),
+            np.append(np.zeros(size), 1.0),
+            np.vstack([arrival, rows]),
+            np.concatenate(upper),
+            np.concatenate(lower),
+            marks,
+        )
+        return np.asarray(solution) if flag == _SOLVED else None
+
+
+class _Rows(NamedTuple):
+    """Linear limits: table times the step is at most the room, and the excess times what gives."""
+
+    table: Array
+    room: Array
+    give: Array
+
+    def and_(self, more: _Rows) -> _Rows:
+        """These and others."""
+        return _Rows(*map(np.concatenate, zip(self, more)))
+
+    def excess_at(self, step: Array) -> Array:
+        """The excess that a step needs of each row."""
+        return (self.table @ step - self.room) / self.give
+
+
+def _peaks(values: Array, above: float) -> NDArray[np.bool_]:
+    """Where values above a level are no smaller than their neighbours."""
+    before = np.append(-np.inf, values[:-1])
+    after = np.append(values[1:], -np.inf)
+    return (values > above) & (values >= before) & (values >= after)
