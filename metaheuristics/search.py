@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, Preset, preset_of
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
-from quietarm.ocp.checks import whole
+from quietarm.ocp.checks import takes, whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,6 +55,7 @@ class SearchProgress:
     infeasible: int = 0
 
 
+@takes(task=PointToPoint, profile=JointProfile, start=Front)
 def search(
     task: PointToPoint,
     algorithm: str | Algorithm = "nsga2",

@@ -14,10 +14,11 @@ from importlib import import_module
 from numbers import Real
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Any, ClassVar
+from typing import Any, ClassVar, final
 
 import numpy as np
 from quietarm.models.drawing import Body, rigid_link
+from quietarm.models.final import refuse_overridden
 from quietarm.models.joint_motion import ROTARY, Expression, JointMotion, Modes
 from quietarm.models.validation import check_contract, check_passive
 
@@ -46,8 +47,12 @@ class Plant(ABC):
     ------
     ValueError
         When a parameter is not a finite number, or beyond all scale.
+    TypeError
+        When a subclass overrides `parameters`, `units`, `tips` or `validate`.
     """
 
+    example: ClassVar[str] = "a plant, as SingleLinkManipulator() or LinearAxis()"
+    """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which commands and files know the plant."""
     modes: ClassVar[int]
@@ -63,6 +68,7 @@ class Plant(ABC):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
+        refuse_overridden(cls, Plant, "the three equations; other checks belong into __post_init__")
         if not isinstance(name := cls.__dict__.get("name"), str):
             return
         taken = Plant._known.get(name, cls)
@@ -104,11 +110,13 @@ class Plant(ABC):
         return [*links, Body(np.zeros((1, 2)), rigid=True)]
 
     @property
+    @final
     def parameters(self) -> dict[str, float]:
         """The plant's parameters by name, in SI units."""
         return {entry.name: getattr(self, entry.name) for entry in fields(self)}
 
     @classmethod
+    @final
     def units(cls) -> dict[str, str]:
         """The parameters' units by name, "-" where there is none."""
         return {entry.name: entry.metadata.get("unit", "-") for entry in fields(cls)}
@@ -120,10 +128,12 @@ class Plant(ABC):
         return {name: value for name, value in self.parameters.items() if units[name] != COUNT}
 
     @property
+    @final
     def tips(self) -> int:
         """How many tip displacements the plant has."""
         return len(self.tip_displacements([0.0] * self.modes))
 
+    @final
     def validate(self) -> None:
         """Check what integrator and residual rely on; every task does.
 

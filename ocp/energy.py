@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 from typing import Any, ClassVar
 
 from quietarm.models import Expression
-from quietarm.ocp.checks import positive
+from quietarm.ocp.checks import instance, positive
 
 
 def power_of(torque: Any, speed: Any) -> Any:
@@ -21,6 +21,8 @@ class Energy(ABC):
     A new energy is a frozen dataclass of numbers, with a name. They add, and take weights.
     """
 
+    example: ClassVar[str] = "an energy, as AbsolutePower() or CopperLoss(0.12)"
+    """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which files and the command line know the energy."""
     absolute: float = 0.0
@@ -109,7 +111,10 @@ class Mix(Energy):
     parts: tuple[tuple[float, Energy], ...]
 
     def __post_init__(self) -> None:
-        parts = tuple((positive("weight", weight), part) for weight, part in self.parts)
+        parts = tuple(
+            (positive("weight", weight), instance("part of a mix", part, Energy))
+            for weight, part in self.parts
+        )
         object.__setattr__(self, "parts", parts)
         object.__setattr__(self, "absolute", sum(weight * part.absolute for weight, part in parts))
 

@@ -114,6 +114,12 @@ class TorqueSpeedLine:
     points: tuple[tuple[float, float], ...]
 
     def __post_init__(self) -> None:
+        numbers = list(self.points) if isinstance(self.points, Iterable) else []
+        if not numbers or any(not isinstance(pair, Sequence) or len(pair) != 2 for pair in numbers):
+            raise ValueError(
+                f"torque-speed line is {self.points!r}; give pairs of a torque and a speed, as "
+                "[(1.5, 0), (0.8, 20)]"
+            )
         points = tuple(
             (not_negative("torque of the line", torque, "N m"),
              not_negative("speed of the line", speed, "rad/s"))

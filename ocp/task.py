@@ -8,14 +8,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import isclose
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import joint_unit
 from quietarm.models.validation import check_along, check_contract
-from quietarm.ocp.checks import finite, positive
+from quietarm.ocp.checks import finite, instance, positive, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.limits import QUANTITIES, Bounds, Limit, Quantity, TorqueSpeedLine, quantities_of
@@ -37,13 +37,20 @@ class ModalState:
         When a number is not finite, or the rates do not match the amplitudes.
     """
 
+    example: ClassVar[str] = "a state, as ModalState(W=[0.01], dW=[0.0])"
+
     W: tuple[float, ...]
     dW: tuple[float, ...]
 
     def __post_init__(self) -> None:
         for name, unit in (("W", "m"), ("dW", "m/s")):
-            given = enumerate(getattr(self, name), start=1)
-            numbers = tuple(finite(f"{name} of mode {i}", one, unit) for i, one in given)
+            modes = getattr(self, name)
+            if isinstance(modes, str) or not isinstance(modes, Iterable):
+                raise ValueError(f"{name} is {modes!r}; give a list, a number for each mode")
+            numbers = tuple(
+                finite(f"{name} of mode {i}", number, unit)
+                for i, number in enumerate(modes, start=1)
+            )
             object.__setattr__(self, name, numbers)
         if len(self.W) != len(self.dW):
             raise ValueError(
@@ -60,18 +67,14 @@ _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual window": "
     f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()
 }
 _TIMES = {"duration": "s", "residual_window": "s"}
+_CLASSES = {
+    "initial": ModalState, "final": ModalState, "energy": Energy, "uncertainty": Uncertainty,
+}  # fmt: skip
+"""What the fields hold that are neither numbers nor a plant."""
 _MOST = 1e6
 """Beyond this [rad, m, s] no joint moves, and double precision does not follow."""
 LEAST_DURATION, LEAST_MOVE = 1e-6, 1e-6
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
-
-
-def _plant_for(given: object) -> str:
-    """What to give instead of something that is no plant: the class of a name, made."""
-    kinds = known_plants()
-    kind = given if isinstance(given, type) else kinds.get(str(given))
-    names: Iterable[Any] = [kind] if kind in kinds.values() else kinds.values()
-    return f"a plant, as {' or '.join(f'{one.__name__}()' for one in names)}"
 
 
 @dataclass(frozen=True)
@@ -113,6 +116,10 @@ class PointToPoint:
         When an angle beyond a turn looks like degrees, as 30 or 22.5.
     """
 
+    example: ClassVar[str] = (
+        "a task, as PointToPoint(SingleLinkManipulator(), target=deg(30), duration=0.8)"
+    )
+
     plant: Plant
     target: float
     duration: float
@@ -133,8 +140,12 @@ class PointToPoint:
     @keep_interrupts()  # casadi loses a Ctrl-C
     def __post_init__(self) -> None:
         if not isinstance(self.plant, Plant):
-            raise TypeError(f"plant is {self.plant!r}; give {_plant_for(self.plant)}")
+            known_plants()  # so that each is known by its name
+            instance("plant", self.plant, Plant)
         self.plant.validate()
+        for name, kind in _CLASSES.items():
+            if name == "energy" or getattr(self, name) is not None:
+                instance(name, getattr(self, name), kind)
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)
         way = joint_unit("rad", self.plant.joint)
@@ -147,14 +158,14 @@ class PointToPoint:
                 bounds = _check_bounds(quantity, getattr(self, quantity.limit))
                 object.__setattr__(self, quantity.limit, bounds)
         if self.torque_speed is not None:
-            line = TorqueSpeedLine(tuple(self.torque_speed))
+            line = TorqueSpeedLine(self.torque_speed)
             object.__setattr__(self, "torque_speed", line.points)
         for name, angle in (("start", self.start), ("target", self.target)):
             more = way == "rad" and abs(angle) > 2 * math.pi
             if more and (2 * angle).is_integer():  # no multiple of pi is
                 warnings.warn(
                     f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
-                    f"numpy.radians({angle:g})",
+                    f"quietarm.deg({angle:g})",
                     stacklevel=5,
                 )
         if abs(self.span) < LEAST_MOVE:
@@ -268,6 +279,7 @@ def _check_bounds(quantity: Quantity, given: Any) -> Bounds:
     return upper if lower == -upper else (lower, upper)
 
 
+@takes(one=PointToPoint, other=PointToPoint)
 def task_difference(one: PointToPoint, other: PointToPoint) -> str:
     """Every entry in which two tasks differ, in words; empty where they are the same.
 

@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
 from numbers import Real
+from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes
 from quietarm.models.validation import check_contract, outputs_of
-from quietarm.ocp.checks import has_no, positive
+from quietarm.ocp.checks import has_no, positive, takes
 
 FREQUENCY, DAMPING = "frequency", "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
@@ -67,6 +68,7 @@ class ScaledModes(Plant):
         return self.plant.tip_displacements(W)
 
 
+@takes(plant=Plant)
 def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     """The perturbed plant.
 
@@ -129,6 +131,8 @@ def _refuse_beyond(name: str, error: float) -> None:
 
 def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
     """Ranges as numbers; ValueError where there are none, or one turns a sign."""
+    if not isinstance(ranges, Mapping):
+        raise ValueError(f"errors are {ranges!r}; give them by name, as {{{FREQUENCY!r}: 0.1}}")
     if not ranges:
         raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
     sizes = {name: positive(f"range of {name}", size) for name, size in ranges.items()}
@@ -193,6 +197,8 @@ class Uncertainty:
     ValueError
         When there are too many ranges, or a number is out of range.
     """
+
+    example: ClassVar[str] = "ranges, as Uncertainty({'frequency': 0.1}) for 10 %"
 
     ranges: Mapping[str, float]
     samples: tuple[Scenario, ...] = ()

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.objective.population import PopulationObjective, replace_failures
 from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import takes, unknown
 from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.record import coefficient_bound
 
@@ -52,6 +52,7 @@ class MoveFunction:
         When there is no bound, a quantity is not known, or a number is out of range.
     """
 
+    @takes(task=PointToPoint, profile=JointProfile)
     def __init__(
         self,
         task: PointToPoint,

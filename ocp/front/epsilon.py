@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.checks import positive
+from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
@@ -37,6 +37,7 @@ Best = Mapping[float, Solution]
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def epsilon_front(
     task: PointToPoint,
     profile: JointProfile | None = None,

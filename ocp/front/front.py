@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import Count, NotNegative, Positive, not_negative, whole
+from quietarm.ocp.checks import Count, NotNegative, Positive, not_negative, takes, whole
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import (
     FailedPoint,
@@ -144,6 +144,7 @@ class Front(Answer):
 
     @classmethod
     @one_at_a_time
+    @takes(task=PointToPoint, profile=JointProfile)
     def from_coefficients(
         cls,
         task: PointToPoint,
@@ -267,6 +268,8 @@ class Front(Answer):
         )
 
 
+@takes(task=PointToPoint)
+@takes(task=PointToPoint)
 def reference_corner(task: PointToPoint) -> tuple[float, float]:
     """The corner that hypervolumes of a task's fronts are measured from.
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.checks import not_negative
+from quietarm.ocp.checks import not_negative, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Asked, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
@@ -29,6 +29,7 @@ Minimum = tuple[Solution, Asked]
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def weighted_front(
     task: PointToPoint,
     profile: JointProfile | None = None,

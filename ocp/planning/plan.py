@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import NotNegative, positive
+from quietarm.ocp.checks import NotNegative, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.interrupts import one_at_a_time
@@ -184,6 +184,7 @@ class Plan(MotionAnswer):
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def evaluate_coefficients(
     task: PointToPoint,
     coefficients: ArrayLike,

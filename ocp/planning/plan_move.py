@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.checks import takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
@@ -69,6 +70,7 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def plan_move(
     task: PointToPoint,
     profile: JointProfile | None = None,

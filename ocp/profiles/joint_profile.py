@@ -7,13 +7,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, final
 
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion
-from quietarm.ocp.checks import finite
+from quietarm.models.final import refuse_overridden
+from quietarm.ocp.checks import finite, instance
 from quietarm.ocp.interrupts import keep_interrupts
 
 Values = Sequence[Expression]
@@ -34,8 +35,17 @@ class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
     A new family is a frozen dataclass with a `size` and `derivatives`; casadi derives the jerk.
+    `inner` and `outer` may state the same in two steps. `motion` and `path` follow and are final:
+    what they return is what was checked.
+
+    Raises
+    ------
+    TypeError
+        When a subclass overrides `motion` or `path`.
     """
 
+    example: ClassVar[str] = "a profile, as CycloidPolynomial(6) or CycloidSpline(12)"
+    """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which files know the family."""
     term: ClassVar[str] = "coefficient"
@@ -46,6 +56,10 @@ class JointProfile(ABC):
     """Whether a motion may turn within a hundredth of the move without a break."""
     random_starts: ClassVar[int] = 1
     """The gradient's random starts for each that is asked for, several where minima are many."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        refuse_overridden(cls, JointProfile, "derivatives, or inner and outer together")
 
     @property
     @abstractmethod
@@ -130,6 +144,7 @@ class JointProfile(ABC):
         """Angle, speed and acceleration of the joint from the values of `inner`."""
         return JointMotion(*inner)
 
+    @final
     def motion(
         self, coefficients: Values, fraction: Expression, *move: Expression, jerk: bool = False
     ) -> JointMotion:
@@ -146,6 +161,7 @@ class JointProfile(ABC):
         motion: Any = ca.substitute([*values, rate], [at], [place])
         return JointMotion(*(motion if kinds & {ca.SX, ca.MX} else map(ca.evalf, motion)))
 
+    @final
     def path(
         self, coefficients: ArrayLike, start: float, target: float, duration: float
     ) -> JointPath:
@@ -206,8 +222,6 @@ class JointPath:
         return np.where(outside, 0.0, values) if order else values
 
 
-@lru_cache(maxsize=256)
-@keep_interrupts()  # casadi loses a Ctrl-C
 def check_profile(profile: JointProfile) -> None:
     """Refuse a profile whose motion is not from rest to rest, or whose derivatives are not.
 
@@ -215,29 +229,42 @@ def check_profile(profile: JointProfile) -> None:
 
     Raises
     ------
+    TypeError
+        When it is no profile, or one that may change.
     ValueError
         With the value, where it is, and what it has to be.
     """
-    duration = max(_DURATION, 2 * profile.least_duration)
+    instance("profile", profile, JointProfile)
+    if type(profile).__hash__ is None:
+        raise TypeError(
+            f"profile {type(profile).__name__} has no hash; make its class a frozen dataclass of "
+            "numbers, strings and tuples"
+        )
+    _check_at_random(profile)
+
+
+@lru_cache(maxsize=256)
+def _check_at_random(profile: JointProfile) -> None:
     within = profile.start_box(profile.default_bound)
-    a = np.random.default_rng(1).uniform(*within).tolist()
-    at = ca.SX.sym("fraction")
-    motion = [ca.SX(x) for x in profile.derivatives(a, at, _START, _TARGET, duration)[:3]]
-    move = _START, _TARGET, duration
-    joined = profile.outer(profile.inner(a, at, *move), *move)[:3]
-    rates = [ca.jacobian(one, at) / duration for one in motion[:2]]
-    every = ca.Function("motion", [at], [ca.densify(ca.horzcat(*motion, *rates, *joined))])
-    table = every.map(len(_SHARES))(_SHARES[None]).full().reshape(len(_SHARES), -1)
-    angle, speed, acceleration, by_angle, by_speed, *others = table.T
-    ends = f"its end of a move from {_START} to {_TARGET} rad"
+    coefficients = np.random.default_rng(1).uniform(*within)
+    duration = max(_DURATION, 2 * profile.least_duration)
+    check_motion(profile, coefficients, _START, _TARGET, duration)
+
+
+def check_motion(
+    profile: JointProfile, coefficients: ArrayLike, start: float, target: float, duration: float
+) -> None:
+    """Refuse one motion likewise, at its own coefficients: what an answer has was looked at."""
+    table = _compared_values(profile, np.asarray(coefficients, float), start, target, duration)
+    angle, speed, acceleration, angle_rate, speed_rate, *joined = table
+    ends = f"its end of a move from {start:.4g} to {target:.4g}"
     compared = [
-        ("angle", angle, [_START, _TARGET], ends),
+        ("angle", angle, [start, target], ends),
         ("speed", speed, [0.0, 0.0], "rest at both ends"),
-        ("speed", speed, by_angle, "the derivative of the angle"),
-        ("acceleration", acceleration, by_speed, "the derivative of the speed"),
+        ("speed", speed, angle_rate, "the derivative of the angle"),
+        ("acceleration", acceleration, speed_rate, "the derivative of the speed"),
     ]
-    names = "angle", "speed", "acceleration"
-    for name, other, value in zip(names, others, table.T[:3]):
+    for name, value, other in zip(("angle", "speed", "acceleration"), table[:3], joined):
         compared.append(
             (f"{name} by outer(inner(...))", other, value, f"the {name} of derivatives")
         )
@@ -252,3 +279,29 @@ def check_profile(profile: JointProfile) -> None:
                 f"the duration, where {words} is {wanted[k]:.4g}; check the factors and signs in "
                 "derivatives (d/dt is d/dfraction over the duration)"
             )
+
+
+@keep_interrupts()  # casadi loses a Ctrl-C
+def _compared_values(
+    profile: JointProfile, coefficients: NDArray[np.float64], *move: float
+) -> NDArray[np.float64]:
+    """What is compared, at `_SHARES` of the duration, a row each.
+
+    Angle, speed and acceleration; CasADi's rates of the first two; all three by `outer` of `inner`.
+    """
+    function = _comparison(profile)
+    columns = np.tile([*coefficients, *move], (len(_SHARES), 1)).T
+    return function(np.vstack([_SHARES, columns])).full()
+
+
+@lru_cache(maxsize=256)
+def _comparison(profile: JointProfile) -> ca.Function:
+    """What `_compared_values` returns, of columns of a fraction, coefficients and a move."""
+    symbols = ca.SX.sym("given", 1 + profile.size + 3)
+    fraction, *given = ca.vertsplit(symbols)
+    coefficients, move = given[: profile.size], given[profile.size :]
+    motion = [ca.SX(x) for x in profile.derivatives(coefficients, fraction, *move)[:3]]
+    joined = profile.outer(profile.inner(coefficients, fraction, *move), *move)[:3]
+    rates = [ca.jacobian(value, fraction) / move[-1] for value in motion[:2]]
+    results = ca.densify(ca.vertcat(*motion, *rates, *joined))
+    return ca.Function("motion", [symbols], [results]).map(len(_SHARES))

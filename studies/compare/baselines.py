@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from quietarm.ocp import Candidate, Plan, PointToPoint, evaluate_coefficients, shaped_cycloid
-from quietarm.ocp.checks import install, unknown
+from quietarm.ocp.checks import install, takes, unknown
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS, Impulses, convolved
 from quietarm.ocp.simulation.free_vibration import FreeVibration
@@ -31,6 +31,7 @@ def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(chosen)
 
 
+@takes(task=PointToPoint)
 def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
     """A baseline's motion of a task; ValueError where there is none."""
     task = task.certain

@@ -8,6 +8,7 @@ from functools import partial
 import pandas as pd
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import Plan, PointToPoint, QuietarmError
+from quietarm.ocp.checks import takes
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies import figures
 from quietarm.studies.compare.baselines import baseline, choose_baselines
@@ -25,6 +26,7 @@ _TURNED = 1e-4
 """A joint that goes back by more [rad] is said to."""
 
 
+@takes(plans=[Plan], task=PointToPoint)
 def compare_plans(
     plans: Mapping[str, Plan],
     baselines: Sequence[str] = (),

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from quietarm.ocp import Front, Polish
+from quietarm.ocp.checks import takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
@@ -32,6 +33,7 @@ _LEAST_SPAN = 0.01
 """The axis of energies spans at least this share of their median: seeds that agree lie close."""
 
 
+@takes(fronts=[Front])
 def draw_fronts(
     fronts: Sequence[Front],
     ax: Axes | None = None,
@@ -109,6 +111,7 @@ def _names(fronts: Sequence[Front]) -> list[str]:
     return names
 
 
+@takes(fronts=[Front])
 def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     """Draw hypervolume against candidates: the median over the seeds, and the quartiles.
 
@@ -142,6 +145,7 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     return ax
 
 
+@takes(fronts=[Front])
 def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     """Draw every seed's least energy within 1 mm, with median and quartiles.
 
@@ -176,6 +180,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     return ax
 
 
+@takes(fronts=[Front])
 def front_figure(fronts: Sequence[Front]) -> Figure:
     """Draw fronts of one method, a line for each seed; of a search what it found on the way, too.
 
@@ -209,6 +214,7 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     return figure
 
 
+@takes(before=Front)
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """Draw a front before and after polishing, and the energy that this saved point by point."""
     name = label_of(polish.front.record.method)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from textwrap import fill
+from typing import ClassVar
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
+from quietarm.ocp.checks import instance, takes
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.figures.axes import (
     TITLE,
@@ -59,6 +61,8 @@ class Line:
     style : str or tuple
         Its dashes, where there is a colour.
     """
+
+    example: ClassVar[str] = "a line, as Line(plan, 'plan')"
 
     plan: Plan | Floor
     label: str
@@ -193,6 +197,7 @@ def motion_figure(
     return figure
 
 
+@takes(floor=Floor, plan=Plan)
 def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
     """The panels of a floor, over the plan where there is one."""
     lines = [Line(floor, f"floor, {floor.energy:.4g} J", BLUE)]
@@ -209,8 +214,11 @@ def lines_of(motions: Motions) -> list[Line]:
         motions = [Line(cycloid, "plain cycloid", GREY), Line(motions, "this plan", BLUE)]
     elif isinstance(motions, Floor):
         motions = [Line(motions, f"floor, {motions.energy:.4g} J", BLUE)]
+    instance("motions", motions, Sequence)
     if not motions:
         raise ValueError("no motion is given; give one or more")
+    for i, line in enumerate(motions, start=1):
+        instance(f"motion {i}", line, Line)
     looks = map(look, range(len(motions)))
     return [
         line if line.colour else replace(line, colour=own.colour, style=own.dash)

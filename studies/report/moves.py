@@ -10,7 +10,7 @@ import numpy as np
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import CycloidPolynomial, Floor, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.limits import QUANTITIES, quantities_of
+from quietarm.ocp.limits import QUANTITIES, Limit, quantities_of
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
@@ -22,23 +22,31 @@ if TYPE_CHECKING:
     from quietarm.studies.reading.path import RecordedPath
 
 Row = tuple[str, str]
-HARD_REMEDY = "give what the drive can do, as --acceleration-limit or --torque-limit"
+HARD_REMEDIES: Mapping[str, str] = {
+    "acceleration": "give what the drive can do, as --acceleration-limit or --torque-limit",
+    "jerk": "give what the drive can do, as --jerk-limit",
+}
+"""What to do about a peak that a drive may not follow, by quantity."""
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
+_DRIVE_RISES, _OF_CYCLOID = 0.005, 0.1
+"""A warning of the jerk: at its peak the acceleration would change by its own peak within this [s],
+the rise time (0.35 over the bandwidth) of a position loop of 70 Hz, and five set points at 1 kHz;
+and within this share of the time that the plain cycloid takes."""
 _FAR = 0.1
 """A limit that a motion does not come to this share of does not act, and silences no warning."""
 _SEEN, _ROUNDING = 1e-6, 1e-12
 """A joint turns back where it does so by more [rad]; smaller angles are rounding errors."""
 
 
-def plan_rows(plan: Plan, remedy: str = HARD_REMEDY) -> list[Row]:
-    """A plan's coefficients, figures and verification; and a remedy where it is too hard."""
+def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[Row]:
+    """A plan's coefficients, figures and verification; and remedies where it is too hard."""
     back = plan.turns_back
     return [
         *_move_rows(plan.task, plan.motion, plan.residual_limit or 0.0),
         _choice(plan),
         *_terms_rows(plan),
-        *_figure_rows(plan.task, plan.motion, remedy),
+        *_figure_rows(plan.task, plan.motion, remedies),
         *([("turns back", f"by {_way(back, plan.task)} on the way")] if back > _SEEN else []),
         *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
         ("status", plan.status.text),
@@ -167,7 +175,9 @@ def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) 
     ]
 
 
-def _figure_rows(task: PointToPoint, motion: Motion, remedy: str = HARD_REMEDY) -> list[Row]:
+def _figure_rows(
+    task: PointToPoint, motion: Motion, remedies: Mapping[str, str] = HARD_REMEDIES
+) -> list[Row]:
     """A motion's energy, residual, peaks and overshoot."""
     residual = millimetres(motion.residual)
     if motion.residual < REST:  # nobody sees a difference
@@ -177,7 +187,7 @@ def _figure_rows(task: PointToPoint, motion: Motion, remedy: str = HARD_REMEDY) 
     return [
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         ("residual (F1)", f"{residual} at the {_tip(task)} within {task.residual_window:g} s"),
-        *((_peak_name(name, task), _peak(name, task, motion, remedy)) for name in known),
+        *((_peak_name(name, task), _peak(name, task, motion, remedies)) for name in known),
         ("overshoot", _way(motion.overshoot, task) if motion.overshoot > _ROUNDING else "none"),
     ]
 
@@ -192,7 +202,7 @@ def _way(size: float, task: PointToPoint) -> str:
     return f"{size:.3g} {joint_unit('rad', task.plant.joint)}"
 
 
-def _peak(name: str, task: PointToPoint, motion: Motion, remedy: str) -> str:
+def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
     peak, unit = motion.peak(name), quantities_of(task.plant.joint)[name].unit
     if name == "deflection":
@@ -203,13 +213,33 @@ def _peak(name: str, task: PointToPoint, motion: Motion, remedy: str) -> str:
             f"{millimetres(peak)}  (warning: beyond {millimetres(small)}, up to which the plant's "
             "deflections count as small; its equations are less exact there)"
         )
-    words = f"{peak:.4g} {unit}"
+    warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
+    too_hard = warnings[name](task, motion) if name in warnings else ""
+    warning = f"  (warning: {too_hard}; {remedies[name]})" if too_hard else ""
+    return f"{peak:.4g} {unit}{warning}"
+
+
+def _hard_acceleration(task: PointToPoint, motion: Motion) -> str:
+    """How far the acceleration is above the plain cycloid's, where no limit is near."""
     plain = CycloidPolynomial(0).path([], task.start, task.target, task.duration)
-    cycloid = abs(float(plain(task.duration / 4, order=2)))  # its peak
-    near = any(one.peak_of(motion) > _FAR * one.size for one in task.limits)
-    if name == "acceleration" and not near and peak > _HARD * cycloid:
-        words += f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {remedy})"
-    return words
+    times = motion.peak_acceleration / abs(float(plain(task.duration / 4, order=2)))  # its peak
+    limited = any(_is_near(limit, motion) for limit in task.limits)
+    return "" if limited or times <= _HARD else f"{times:.2g} times the plain cycloid's"
+
+
+def _hard_jerk(task: PointToPoint, motion: Motion) -> str:
+    """How fast the acceleration changes, where no limit of the jerk is near."""
+    limit = task.limit_of("jerk")
+    ramp = motion.peak_acceleration / motion.peak_jerk
+    of_cycloid = task.duration / (2 * math.pi)
+    limited = limit is not None and _is_near(limit, motion)
+    if limited or ramp >= min(_DRIVE_RISES, _OF_CYCLOID * of_cycloid):
+        return ""
+    return f"at this rate the acceleration changes by its peak in {1e3 * ramp:.2g} ms"
+
+
+def _is_near(limit: Limit, motion: Motion) -> bool:
+    return limit.peak_of(motion) > _FAR * limit.size
 
 
 def _choice(plan: Plan) -> Row:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, SolveSettings
-from quietarm.ocp.checks import has_no
+from quietarm.ocp.checks import has_no, takes
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.sweep.cells import plan_chunk
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 _REMEDY = "what is done is kept; give the same line again to go on"
 
 
+@takes(task=PointToPoint, profile=JointProfile)
 def sweep(
     task: PointToPoint,
     axes: Mapping[str, Sequence[float]],
