@@ -93,8 +93,8 @@ class PointToPoint:
         [m] and rate of change of the joint's acceleration [rad/s^3] on the way; or of each the
         least value and the largest one, as (-30, 40).
     torque_speed : sequence of (float, float), optional
-        Largest torque [N m] of the drive at speeds [rad/s], as [(1.5, 0), (0.8, 20)]: see
-        `TorqueSpeedLine`.
+        Largest torque [N m] of the drive at speeds [rad/s], as [(1.5, 0), (0.8, 20)]; of a linear
+        joint forces [N] at speeds [m/s]. See `TorqueSpeedLine`.
     residual_window : float, optional
         Time after arrival in which the residual is measured [s]; eq (11) has 1 s.
     initial, final : ModalState, optional
@@ -158,7 +158,7 @@ class PointToPoint:
                 bounds = _check_bounds(quantity, getattr(self, quantity.limit))
                 object.__setattr__(self, quantity.limit, bounds)
         if self.torque_speed is not None:
-            line = TorqueSpeedLine(self.torque_speed)
+            line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
             object.__setattr__(self, "torque_speed", line.points)
         for name, angle in (("start", self.start), ("target", self.target)):
             more = way == "rad" and abs(angle) > 2 * math.pi
@@ -255,8 +255,10 @@ class PointToPoint:
         quantities = quantities_of(self.plant.joint).values()
         given = [(one, getattr(self, one.limit)) for one in quantities]
         limits = [Limit.within(one, bounds) for one, bounds in given if bounds is not None]
-        line = [] if self.torque_speed is None else [TorqueSpeedLine(self.torque_speed)]
-        return (*limits, *map(Limit.of_line, line))
+        if self.torque_speed is not None:
+            line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
+            limits.append(Limit.of_line(line))
+        return tuple(limits)
 
     def limit_of(self, name: str) -> Limit | None:
         """The limit of a quantity by name; None where it has none."""

@@ -9,9 +9,9 @@ from typing import Any
 import click
 from click.core import ParameterSource
 from quietarm.models import Plant
-from quietarm.models.joint_motion import ROTARY, joint_unit
+from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import JointProfile, PointToPoint
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
 from quietarm.studies.cli.plants import (
     Kind,
     build_plant,
@@ -24,9 +24,9 @@ from quietarm.studies.cli.quantities import parse_of_joint
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
 
-_OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()))
+_OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()), TORQUE_SPEED)
 """Options that are read once the plant is known: in radians, or in metres of a linear axis."""
-_OTHERS = ("residual_window", "initial", "final", "energy", "torque_speed")
+_OTHERS = ("residual_window", "initial", "final", "energy")
 _NEEDED = {"target": "30deg", "duration": "0.8"}
 
 
@@ -100,8 +100,6 @@ class Given:
         given |= {name: (value,) for name, value in known.items()}
         typed = [name for name in _OF_JOINT if name not in known]
         given |= {name: self.read_of_joint(name, plant.joint) for name in typed}
-        if plant.joint != ROTARY and given["torque_speed"] is not None:
-            raise ValueError("--torque-speed is for a joint that turns; give --torque-limit in N")
         for name, example in _NEEDED.items():
             if given[name] is None:
                 raise click.UsageError(f"Missing option '--{name}'. Give it as --{name} {example}")
