@@ -248,14 +248,26 @@ def _check_at_random(profile: JointProfile) -> None:
     within = profile.start_box(profile.default_bound)
     coefficients = np.random.default_rng(1).uniform(*within)
     duration = max(_DURATION, 2 * profile.least_duration)
-    check_motion(profile, coefficients, _START, _TARGET, duration)
+    table = _compared_values(profile, coefficients, _START, _TARGET, duration)
+    _refuse_difference(profile, table, _START, _TARGET)
 
 
 def check_motion(
     profile: JointProfile, coefficients: ArrayLike, start: float, target: float, duration: float
 ) -> None:
-    """Refuse one motion likewise, at its own coefficients: what an answer has was looked at."""
+    """Refuse one motion likewise, at its own coefficients, as every answer's is.
+
+    One that overflows is left to the integrator, which says so.
+    """
     table = _compared_values(profile, np.asarray(coefficients, float), start, target, duration)
+    if np.isfinite(table).all():
+        _refuse_difference(profile, table, start, target)
+
+
+def _refuse_difference(
+    profile: JointProfile, table: NDArray[np.float64], start: float, target: float
+) -> None:
+    """ValueError where rows of `_compared_values` differ, or are not at rest at the ends."""
     angle, speed, acceleration, angle_rate, speed_rate, *joined = table
     ends = f"its end of a move from {start:.4g} to {target:.4g}"
     compared = [

@@ -163,7 +163,7 @@ def test_a_profile_is_a_value(tasks):
         derivatives = _Waves.derivatives
 
     with pytest.raises(TypeError, match="Changing has no hash; make its class a frozen dataclass"):
-        qa.plan_move(tasks["arm"], Changing(4))
+        qa.plan_move(tasks["arm"], Changing())
 
 
 @dataclass(frozen=True)
