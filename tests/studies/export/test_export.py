@@ -4,7 +4,7 @@ import csv
 from ctypes import c_double
 from dataclasses import replace
 from functools import partial
-from math import pi
+from math import inf, nan, pi
 
 import numpy as np
 import pytest
@@ -57,6 +57,8 @@ def test_c_gives_the_joints_motion_at_any_time(profile, tmp_path):
     assert found == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.abs(expected).max())
     assert joint(c_double(-1.0)) == [-0.2, 0.0, 0.0]
     assert joint(c_double(5.0)) == [pi / 6, 0.0, 0.0]
+    assert joint(c_double(inf)) == [pi / 6, 0.0, 0.0]
+    assert joint(c_double(nan)) == [-0.2, 0.0, 0.0]  # no number, and no motion
 
 
 def test_csv_has_the_columns_units_and_rate_that_are_asked_for(plan, tmp_path):
