@@ -53,6 +53,7 @@ class SearchProgress:
     seconds: float
     failed: int = 0
     infeasible: int = 0
+    tip_unit: str = "m"
 
 
 @takes(task=PointToPoint, profile=JointProfile, start=Front)
@@ -202,6 +203,7 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
     return SearchProgress(
         done, max(generations, done), residual, energy, archive.share_of_box(),
         archive.evaluations, archive.seconds, function.failed, function.infeasible,
+        function.task.plant.tip_unit,
     )  # fmt: skip
 
 

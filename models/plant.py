@@ -19,7 +19,7 @@ from typing import Any, ClassVar, final
 import numpy as np
 from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.final import refuse_overridden
-from quietarm.models.joint_motion import ROTARY, Expression, JointMotion, Modes
+from quietarm.models.joint_motion import LINEAR, ROTARY, Expression, JointMotion, Modes
 from quietarm.models.validation import check_contract, check_passive
 
 COUNT = "count"
@@ -60,8 +60,10 @@ class Plant(ABC):
 
     joint: ClassVar[str] = ROTARY
     """The kind of joint: rotary, in rad and N m, or linear, in m and N (`joint_unit`)."""
+    tip_unit: ClassVar[str] = "m"
+    """Unit of the tips' displacements: m, or rad where they turn, as the load of a shaft does."""
     small_deflection: ClassVar[float | None] = None
-    """Largest tip displacement that the equations are made for [m]; None where none is stated."""
+    """Largest tip displacement that the equations are made for; None where none is stated."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
@@ -69,6 +71,12 @@ class Plant(ABC):
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         refuse_overridden(cls, Plant, "the three equations; other checks belong into __post_init__")
+        for entry, kinds in _KINDS.items():
+            if getattr(cls, entry) not in kinds:
+                raise ValueError(
+                    f"{entry} of {cls.__name__} is {getattr(cls, entry)!r}; give "
+                    f"{' or '.join(map(repr, kinds))}"
+                )
         if not isinstance(name := cls.__dict__.get("name"), str):
             return
         taken = Plant._known.get(name, cls)
@@ -99,7 +107,7 @@ class Plant(ABC):
 
     @abstractmethod
     def tip_displacements(self, W: Modes) -> Sequence[Expression]:
-        """Displacements of the tips that must come to rest [m], linear in `W` [m]."""
+        """Displacements of the tips that must come to rest [`tip_unit`], linear in `W`."""
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The structure seen from above, by default a straight link of 1 m for each tip.
@@ -148,6 +156,8 @@ class Plant(ABC):
         check_passive(self)
 
 
+_KINDS = {"joint": (ROTARY, LINEAR), "tip_unit": ("m", "rad")}
+"""What entries of a class may be."""
 _MOST_PARAMETER = 1e100
 """Powers of larger ones are beyond double precision."""
 

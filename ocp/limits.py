@@ -72,11 +72,15 @@ QUANTITIES: Mapping[str, Quantity] = {
 
 
 @lru_cache
-def quantities_of(joint: str) -> Mapping[str, Quantity]:
-    """The same in the units of a kind of joint: metres and newtons of a linear one."""
+def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
+    """The same in a plant's units: metres and newtons of a linear joint, rad where a tip turns."""
     return {
-        name: replace(one, unit=joint_unit(one.unit, joint), label=joint_label(one.label, joint))
-        for name, one in QUANTITIES.items()
+        name: replace(
+            quantity,
+            unit=tip_unit if quantity.unit == "m" else joint_unit(quantity.unit, joint),
+            label=joint_label(quantity.label, joint),
+        )
+        for name, quantity in QUANTITIES.items()
     }
 
 
@@ -209,9 +213,9 @@ class Limit:
         return cls(quantity, lower, upper)
 
     @classmethod
-    def of_residual(cls, largest: float) -> Limit:
-        """Of the residual [m]: 0 asks for rest on arrival."""
-        return cls(_RESIDUAL, -largest, largest)
+    def of_residual(cls, largest: float, tip_unit: str = "m") -> Limit:
+        """Of the residual, in the tip's unit: 0 asks for rest on arrival."""
+        return cls(replace(_RESIDUAL, unit=tip_unit), -largest, largest)
 
     @classmethod
     def of_line(cls, line: TorqueSpeedLine) -> Limit:

@@ -153,7 +153,7 @@ class PointToPoint:
             check = positive if name in _TIMES else finite
             number = check(name.replace("_", " "), getattr(self, name), unit, _MOST)
             object.__setattr__(self, name, number)
-        for quantity in quantities_of(self.plant.joint).values():
+        for quantity in quantities_of(self.plant.joint, self.plant.tip_unit).values():
             if getattr(self, quantity.limit) is not None:
                 bounds = _check_bounds(quantity, getattr(self, quantity.limit))
                 object.__setattr__(self, quantity.limit, bounds)
@@ -252,7 +252,7 @@ class PointToPoint:
     @property
     def limits(self) -> tuple[Limit, ...]:
         """The limits that are set."""
-        quantities = quantities_of(self.plant.joint).values()
+        quantities = quantities_of(self.plant.joint, self.plant.tip_unit).values()
         given = [(one, getattr(self, one.limit)) for one in quantities]
         limits = [Limit.within(one, bounds) for one, bounds in given if bounds is not None]
         if self.torque_speed is not None:

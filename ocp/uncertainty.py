@@ -41,7 +41,7 @@ class ScaledModes(Plant):
     damping: Expression = 1.0
 
     def __post_init__(self) -> None:  # a factor may be a symbol, so no check of numbers
-        for name in ("name", "modes", "small_deflection"):
+        for name in ("name", "modes", "joint", "tip_unit", "small_deflection"):
             object.__setattr__(self, name, getattr(self.plant, name))
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:

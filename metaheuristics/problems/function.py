@@ -77,8 +77,8 @@ class MoveFunction:
         self.lower, self.upper = (np.array(side, dtype=float) for side in profile.box(bound))
         self.variables = tuple(f"a_{i + 1}" for i in range(profile.size))
         self.objectives = ("residual", "energy", *(f"peak_{name}" for name in self.peaks))
-        units = quantities_of(task.plant.joint)
-        self.units = ("m", "J", *(units[name].unit for name in self.peaks))
+        units = quantities_of(task.plant.joint, task.plant.tip_unit)
+        self.units = (task.plant.tip_unit, "J", *(units[name].unit for name in self.peaks))
         self.constraints = tuple(limit.quantity.limit for limit in task.limits)
         # a peak is read from its violation of a limit; one that has no limit gets 1
         limited = {limit.name: limit for limit in task.limits}

@@ -21,7 +21,7 @@ from quietarm.studies.cli.quantities import (
     parse_share_of_work,
     parse_state,
 )
-from quietarm.studies.cli.types import LENGTH, SETTING, TIME, Named, Parsed
+from quietarm.studies.cli.types import SETTING, TIME, Named, Parsed
 from quietarm.studies.reading.profiles import FAMILIES, POLYNOMIAL
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
@@ -120,7 +120,7 @@ TASK = (
 """What describes a task: a command with these has `Given.read_task`."""
 BOUND = option("--bound", type=float, help="Largest size of a coefficient. [default: none; a "
                "search of polynomials needs one]")  # fmt: skip
-RESIDUAL_LIMIT = option("--residual-limit", type=LENGTH, help="Largest tip displacement after "
+RESIDUAL_LIMIT = option("--residual-limit", metavar="LENGTH", help="Largest tip displacement after "
                         "arrival. [default: at rest; with --error 5 % of the plain cycloid's "
                         "largest deflection, or less]")  # fmt: skip
 SEED = option("--seed", default=0, help="Seed of the random numbers; the first of several.")

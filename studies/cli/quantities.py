@@ -55,6 +55,7 @@ UNITS: Mapping[str, tuple[str, Mapping[str, float]]] = {
 
 Dividing by 1000 is exact where multiplying by 0.001 is not.
 """
+RESIDUAL_LIMIT = "residual_limit"
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""
 
@@ -117,8 +118,8 @@ def parse_parameter(text: str, unit: str, name: str) -> float:
     return parse_quantity(text, unit, f"a value of {name}")
 
 
-def parse_of_joint(name: str, text: str, joint: str) -> Any:
-    """Read an end or the duration of a move, or a limit of it, in the units of a kind of joint.
+def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
+    """Read an end or the duration of a move, or a limit of it, in the units of joint and tip.
 
     The former have one value or several; a limit is a number, or one for each side: ``-30:40``.
     """
@@ -128,7 +129,10 @@ def parse_of_joint(name: str, text: str, joint: str) -> Any:
         return axis_values(text, partial(parse_usual, *kind))
     if name == TORQUE_SPEED:
         return parse_torque_speed(text, joint)
-    limited, sides = quantities_of(joint)[name.removesuffix("_limit")], text.split(":")
+    if name == RESIDUAL_LIMIT:
+        return parse_usual(tip_unit, "a length" if tip_unit == "m" else "an angle", text)
+    quantities = quantities_of(joint, tip_unit)
+    limited, sides = quantities[name.removesuffix("_limit")], text.split(":")
     what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
     values = [parse_usual(limited.unit, what, side) for side in sides]
     if len(values) > 2:

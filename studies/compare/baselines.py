@@ -43,7 +43,10 @@ def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
     impulses = _impulses(task, shaper) if shaper else Impulses((1.0,), (0.0,))
     left = task.duration - impulses.times[-1]
     if left < _LEAST_SHARE * task.duration:
-        raise ValueError(f"the shaper alone takes {impulses.times[-1]:.3g} s")
+        raise ValueError(
+            f"the shaper alone takes {impulses.times[-1]:.3g} s, of a move of {task.duration:.4g} "
+            "s; give a longer duration"
+        )
     free = shaped(ruckig_motion(replace(task, duration=left)), impulses)
     return Candidate.of_free_motion(task, free)
 
@@ -63,7 +66,10 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
     except ImportError:
         raise ValueError(f"ruckig is not installed; {install('ruckig')}") from None
     if task.acceleration_limit is None:
-        raise ValueError("ruckig needs an acceleration limit")
+        raise ValueError(
+            "ruckig moves within an acceleration limit, and the move has none; plan it with one, "
+            "as --acceleration-limit 40"
+        )
     asked, found, free = InputParameter(1), Trajectory(1), (-np.inf, np.inf)
     asked.current_position, asked.target_position = [task.start], [task.target]
     bounds = {limit.name: (limit.lower, limit.upper) for limit in task.limits}
@@ -73,11 +79,13 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
     asked.min_acceleration, asked.max_acceleration = [least], [most]
     asked.max_jerk = [min(np.abs(bounds.get("jerk", free)))]
     asked.minimum_duration = task.duration
-    Ruckig(1).calculate(asked, found)
+    result = Ruckig(1).calculate(asked, found)
+    if int(result) < 0:
+        raise ValueError(f"ruckig finds no motion ({result}); give wider limits")
     if found.duration > task.duration * (1 + 1e-6):
         raise ValueError(
             f"within the limits it takes {found.duration:.4g} s, more than the "
-            f"{task.duration:.4g} s that it has"
+            f"{task.duration:.4g} s that it has; give a longer duration or wider limits"
         )
     one = found.profiles[0][0]
     lengths = np.array(one.t)

@@ -56,7 +56,7 @@ class Page:
             "terms": lambda now, terms: now.choose_profile(now.profile, terms),
         }
         self._sliders: tuple[list[str], float] = [], 0.0
-        self._plots = Plots(document, explored.task.plant.joint, self._pick)
+        self._plots = Plots(document, explored.task.plant, self._pick)
         self._file = ColumnDataSource({"name": [], "text": [], "time": []})
         save = CustomJS(args={"file": self._file}, code=(_HERE / "save.js").read_text())
         self._file.js_on_change("data", save)

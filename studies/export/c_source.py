@@ -11,7 +11,7 @@ from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.report.templates import templates
-from quietarm.studies.report.words import limit_words, move_of, moved
+from quietarm.studies.report.words import limit_words, move_of, moved, tip_words
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.interpolation import ORDERS
 from quietarm.studies.sweep.library import MoveLibrary
@@ -31,7 +31,8 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
     if isinstance(moves, Plan):
         task, versions, between, axes = moves.task, moves.record.versions, None, ()
         title = f"{moved(task)}, {move_of(task)}"
-        figures = f"energy {moves.energy:.4g} J, residual {1e3 * moves.residual:.3g} mm"
+        residual = tip_words(moves.residual, task.plant.tip_unit)
+        figures = f"energy {moves.energy:.4g} J, residual {residual}"
         figures = ", ".join([figures, *limit_words(task)])
     else:
         task, versions = moves.grid.task, moves.store.note("versions")

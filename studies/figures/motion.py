@@ -24,7 +24,7 @@ from quietarm.studies.figures.axes import (
     new_figure,
 )
 from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
-from quietarm.studies.report.words import raised, title_of
+from quietarm.studies.report.words import raised, tip_scale, title_of
 
 Array = NDArray[np.float64]
 _SHOWN, _ABOVE = 0.99, 1.15
@@ -97,7 +97,8 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
         When there is no motion.
     """
     ax, lines = axes_or_new(ax), lines_of(motions)
-    title, drawn = heading(quantity, lines[0].plan.task.plant.joint), list[Array]()
+    plant, drawn = lines[0].plan.task.plant, list[Array]()
+    title = heading(quantity, plant.joint, plant.tip_unit)
     for line in lines:
         drawn += curves(line.plan, quantity)
         others = [style for style in (":", "-.", "--") if style != line.style]
@@ -126,19 +127,20 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
         columns = QUANTITIES[quantity].of(at.motion, list(at.tips.T), at.torque)
     else:
         columns = [at.joint[:, 0] if quantity == "angle" else at.power]
-    return [scale_of(quantity) * np.asarray(column) for column in columns]
+    scale = scale_of(quantity, motion.task.plant.tip_unit)
+    return [scale * np.asarray(column) for column in columns]
 
 
-def heading(quantity: str, joint: str = ROTARY) -> str:
+def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
     """A quantity with the unit that is shown: tip displacement [mm]."""
     label, unit = _LABELS[quantity]
-    unit = "mm" if unit == "m" else raised(joint_unit(unit, joint))
+    unit = tip_scale(tip_unit)[0] if unit == "m" else raised(joint_unit(unit, joint))
     return f"{joint_label(label, joint)} [{unit}]"
 
 
-def scale_of(quantity: str) -> float:
+def scale_of(quantity: str, tip_unit: str = "m") -> float:
     """From the quantity's unit to the one that is shown."""
-    return 1e3 if _LABELS[quantity][1] == "m" else 1.0
+    return tip_scale(tip_unit)[1] if _LABELS[quantity][1] == "m" else 1.0
 
 
 def motion_figure(
@@ -229,9 +231,10 @@ def lines_of(motions: Motions) -> list[Line]:
 def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list[float]:
     """The limits of a quantity that its values come near, in the unit that is shown."""
     limits = [line.plan.task.limit_of(quantity) for line in lines]
+    scale = scale_of(quantity, lines[0].plan.task.plant.tip_unit)
     bounds = {bound for one in limits if one is not None for bound in (one.lower, one.upper)}
     return [
-        level for level in sorted(scale_of(quantity) * bound for bound in bounds)
+        level for level in sorted(scale * bound for bound in bounds)
         if (values * np.sign(level)).max() >= _IN_SIGHT * abs(level)
     ]  # fmt: skip
 

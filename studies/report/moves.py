@@ -16,7 +16,7 @@ from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.planning.profiles import CHOSEN, OF_SIX
 from quietarm.ocp.record import AGREEMENT, REST
-from quietarm.studies.report.words import millimetres, move_of, moved, state_words
+from quietarm.studies.report.words import move_of, moved, state_words, tip_words
 
 if TYPE_CHECKING:
     from quietarm.studies.reading.path import RecordedPath
@@ -110,21 +110,26 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
     for scenario in task.scenarios[1:]:
         errors = dict(zip(task.error_names, scenario))
         residual = candidate.perturbed(errors).residual
-        rows.append(("residual", f"{millimetres(residual)} with {_signed(errors)}"))
+        words = tip_words(residual, task.plant.tip_unit)
+        rows.append(("residual", f"{words} with {_signed(errors)}"))
     return [*rows, ("verified", "by CVODES alone, along the spline")]
 
 
 def sensitivity_rows(plan: Plan) -> list[Row]:
     """What a parameter that is 1 % larger adds to residual and energy."""
+    tip_unit = plan.task.plant.tip_unit
     return [
-        (one.parameter, f"{10 * one.residual:.3g} mm, {one.energy / plan.energy:+.3g} %")
-        for one in plan.sensitivities
+        (
+            change.parameter,
+            f"{tip_words(change.residual / 100, tip_unit)}, {change.energy / plan.energy:+.3g} %",
+        )
+        for change in plan.sensitivities
     ]
 
 
-def worst_in_words(worst: Worst) -> str:
+def worst_in_words(worst: Worst, tip_unit: str) -> str:
     """The residual of the worst case, and the parameter errors that it comes with."""
-    return f"{millimetres(worst.residual)} with {_signed(worst.errors)}"
+    return f"{tip_words(worst.residual, tip_unit)} with {_signed(worst.errors)}"
 
 
 def _signed(errors: Mapping[str, float]) -> str:
@@ -133,7 +138,7 @@ def _signed(errors: Mapping[str, float]) -> str:
 
 def _worst_of_plan(plan: Plan, worst: Worst) -> str:
     """The worst case of a robust plan, and how far it is from the residual limit."""
-    words = worst_in_words(worst)
+    words = worst_in_words(worst, plan.task.plant.tip_unit)
     if plan.excess is None:
         return words
     share = f"{100 * abs(plan.excess):.1f} %"
@@ -150,7 +155,8 @@ def _worst_of_plan(plan: Plan, worst: Worst) -> str:
 def _verified_row(plan: Plan) -> Row:
     """How far the two integrators agree; the word `verified` only where that is near enough."""
     check = plan.verification
-    differ = f"{check.energy_share:.0e} in energy and {millimetres(abs(check.residual_difference))}"
+    residual = tip_words(abs(check.residual_difference), plan.task.plant.tip_unit)
+    differ = f"{check.energy_share:.0e} in energy and {residual}"
     if check.agrees:
         return "verified", f"by CVODES, which differs by {differ}"
     remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
@@ -162,15 +168,16 @@ def _verified_row(plan: Plan) -> Row:
 
 def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and which of them the motion breaks."""
-    limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
+    tip_unit = task.plant.tip_unit
+    limits = [f"residual {tip_words(residual_limit, tip_unit)}"] * (residual_limit > 0)
     for limit in task.limits:
         peak = limit.peak_of(motion)
         broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
         limits.append(f"{limit}{broken}")
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
-        *([("at the start", state_words(task.initial))] if task.initial else []),
-        *([("on arrival", state_words(task.final))] if task.final else []),
+        *([("at the start", state_words(task.initial, tip_unit))] if task.initial else []),
+        *([("on arrival", state_words(task.final, tip_unit))] if task.final else []),
         *([("limits", ", ".join(limits))] if limits else []),
     ]
 
@@ -179,10 +186,10 @@ def _figure_rows(
     task: PointToPoint, motion: Motion, remedies: Mapping[str, str] = HARD_REMEDIES
 ) -> list[Row]:
     """A motion's energy, residual, peaks and overshoot."""
-    residual = millimetres(motion.residual)
+    residual = tip_words(motion.residual, task.plant.tip_unit)
     if motion.residual < REST:  # nobody sees a difference
         where = "as wanted" if task.final else "at rest"
-        residual = f"{where} (below {millimetres(REST)})"
+        residual = f"{where} (below {tip_words(REST, task.plant.tip_unit)})"
     known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
@@ -204,13 +211,14 @@ def _way(size: float, task: PointToPoint) -> str:
 
 def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
-    peak, unit = motion.peak(name), quantities_of(task.plant.joint)[name].unit
+    peak, tip_unit = motion.peak(name), task.plant.tip_unit
+    unit = quantities_of(task.plant.joint, tip_unit)[name].unit
     if name == "deflection":
-        small = task.plant.small_deflection
+        small, words = task.plant.small_deflection, tip_words(peak, tip_unit)
         if small is None or max(motion.peak_deflection, motion.residual) <= small:
-            return millimetres(peak)
+            return words
         return (
-            f"{millimetres(peak)}  (warning: beyond {millimetres(small)}, up to which the plant's "
+            f"{words}  (warning: beyond {tip_words(small, tip_unit)}, up to which the plant's "
             "deflections count as small; its equations are less exact there)"
         )
     warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
@@ -230,7 +238,7 @@ def _hard_acceleration(task: PointToPoint, motion: Motion) -> str:
 def _hard_jerk(task: PointToPoint, motion: Motion) -> str:
     """How fast the acceleration changes, where no limit of the jerk is near."""
     limit = task.limit_of("jerk")
-    ramp = motion.peak_acceleration / motion.peak_jerk
+    ramp = motion.peak_acceleration / motion.peak("jerk")
     of_cycloid = task.duration / (2 * math.pi)
     limited = limit is not None and _is_near(limit, motion)
     if limited or ramp >= min(_DRIVE_RISES, _OF_CYCLOID * of_cycloid):

@@ -47,9 +47,20 @@ def spread_words(spread: Spread, form: str, unit: str = "") -> str:
     return f"{middle}{unit} ({low} to {high}{some})"
 
 
+def tip_scale(tip_unit: str) -> tuple[str, float]:
+    """The unit in which a tip's displacements are shown, and the factor to it: mm, or rad."""
+    return ("mm", 1e3) if tip_unit == "m" else (tip_unit, 1.0)
+
+
+def tip_words(displacement: float, tip_unit: str) -> str:
+    """A tip's displacement in the unit that is shown."""
+    shown, factor = tip_scale(tip_unit)
+    return f"{factor * displacement:.3g} {shown}"
+
+
 def millimetres(length: float) -> str:
     """A length [m] in millimetres."""
-    return f"{length * 1e3:.3g} mm"
+    return tip_words(length, "m")
 
 
 def span_words(begin: float, end: float) -> str:
@@ -57,9 +68,9 @@ def span_words(begin: float, end: float) -> str:
     return " to ".join(f"{round(time, 3):.12g}" for time in (begin, end)) + " s"
 
 
-def residual_words(residual: float) -> str:
-    """A residual [m] in millimetres; `rest` where it counts as that."""
-    return "rest" if residual < REST else millimetres(residual)
+def residual_words(residual: float, tip_unit: str) -> str:
+    """A residual in the unit that is shown; `rest` where it counts as that."""
+    return "rest" if residual < REST else tip_words(residual, tip_unit)
 
 
 def plant_words(plant: Plant) -> str:
@@ -92,10 +103,11 @@ def move_of(task: PointToPoint) -> str:
     return ", ".join([f"{ends} in {task.duration:g} s{ringing}{wanted}", *energy_words(task)])
 
 
-def state_words(state: ModalState) -> str:
-    """What rings, in millimetres: "W 5 mm, W' -300 mm/s"."""
-    W, dW = (" and ".join(f"{1e3 * one:.3g}" for one in of) for of in (state.W, state.dW))
-    return f"W {W} mm, W' {dW} mm/s"
+def state_words(state: ModalState, tip_unit: str) -> str:
+    """What rings, in millimetres, "W 5 mm, W' -300 mm/s", or in rad where the tip has that."""
+    shown, factor = tip_scale(tip_unit)
+    W, dW = (" and ".join(f"{factor * one:.3g}" for one in of) for of in (state.W, state.dW))
+    return f"W {W} {shown}, W' {dW} {shown}/s"
 
 
 def energy_words(task: PointToPoint) -> list[str]:
