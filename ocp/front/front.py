@@ -115,7 +115,8 @@ class Front(Answer):
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        head = "residual F1 [m]", "energy F2 [J]", "shadow price [J/m]", "coefficients"
+        unit = self.task.plant.tip_unit
+        head = f"residual F1 [{unit}]", "energy F2 [J]", f"shadow price [J/{unit}]", "coefficients"
         rows = [
             (
                 f"{point.residual:.3g}" if point.residual > REST else "0",

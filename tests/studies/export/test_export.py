@@ -147,13 +147,11 @@ def residual_by_small_steps(task, acceleration, speed):
         half_rate = rate + h / 2 * (force - k * W - damping * rate)
         half = W + h / 2 * rate
         W, rate = W + h * half_rate, rate + h * (force - k * half - damping * half_rate)
-    # free vibration of an oscillator: its amplitude decays by less than a per cent in its first peak
-    t = np.linspace(0, 1, 20_001)
+    # then the free vibration of a damped oscillator
+    t, decay = np.linspace(0, 1, 20_001), link.zeta * link.omega
     damped = link.omega * np.sqrt(1 - link.zeta**2)
-    swing = W * np.cos(damped * t) + (rate + link.zeta * link.omega * W) / damped * np.sin(
-        damped * t
-    )
-    return link.phi * np.abs(swing * np.exp(-link.zeta * link.omega * t)).max()
+    swing = W * np.cos(damped * t) + (rate + decay * W) / damped * np.sin(damped * t)
+    return link.phi * np.abs(swing * np.exp(-decay * t)).max()
 
 
 @pytest.mark.parametrize(
