@@ -8,7 +8,7 @@ import math
 import operator
 import re
 import reprlib
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import wraps
 from os import PathLike
 from typing import Annotated, Any, ParamSpec, TypeVar
@@ -80,6 +80,15 @@ def instance(name: str, value: Any, *kinds: type[T]) -> T:
     raise TypeError(f"{name} is {shown}; give {_instead_of(value, kinds[0])}")
 
 
+def hashable(name: str, value: object) -> None:
+    """Refuse an object that may change; TypeError says how to write its class."""
+    if type(value).__hash__ is None:
+        raise TypeError(
+            f"{name} {type(value).__name__} has no hash; make its class a frozen dataclass of "
+            "numbers, strings and tuples"
+        )
+
+
 def _instead_of(value: Any, kind: type[Any]) -> str:
     """What to give: an object of the class that was given or named, else the class's example."""
     meant = value if isinstance(value, type) and issubclass(value, kind) else None
@@ -134,7 +143,7 @@ def _check_kind(name: str, value: Any, kind: type[Any] | list[type[Any]]) -> Non
     if not isinstance(kind, list):
         instance(name, value, kind)
         return
-    if isinstance(value, kind[0] | str) or not isinstance(value, Iterable):
+    if isinstance(value, kind[0] | str) or not isinstance(value, Collection):
         what = f"a list of objects of {kind[0].__name__}"
         raise TypeError(f"{name} is {reprlib.repr(value)}; give {what}")
     entries = value.items() if isinstance(value, Mapping) else enumerate(value, start=1)

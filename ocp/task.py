@@ -16,7 +16,7 @@ from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import joint_unit
 from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import finite, instance, positive, takes
-from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
+from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.limits import QUANTITIES, Bounds, Limit, Quantity, TorqueSpeedLine, quantities_of
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
@@ -67,10 +67,8 @@ _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual window": "
     f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()
 }
 _TIMES = {"duration": "s", "residual_window": "s"}
-_CLASSES = {
-    "initial": ModalState, "final": ModalState, "energy": Energy, "uncertainty": Uncertainty,
-}  # fmt: skip
-"""What the fields hold that are neither numbers nor a plant."""
+_CLASSES = {"initial": ModalState, "final": ModalState, "uncertainty": Uncertainty}
+"""What fields hold that may be None."""
 _MOST = 1e6
 """Beyond this [rad, m, s] no joint moves, and double precision does not follow."""
 LEAST_DURATION, LEAST_MOVE = 1e-6, 1e-6
@@ -143,8 +141,9 @@ class PointToPoint:
             known_plants()  # so that each is known by its name
             instance("plant", self.plant, Plant)
         self.plant.validate()
+        check_energy(self.energy)
         for name, kind in _CLASSES.items():
-            if name == "energy" or getattr(self, name) is not None:
+            if getattr(self, name) is not None:
                 instance(name, getattr(self, name), kind)
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)

@@ -271,7 +271,6 @@ class Front(Answer):
 
 
 @takes(task=PointToPoint)
-@takes(task=PointToPoint)
 def reference_corner(task: PointToPoint) -> tuple[float, float]:
     """The corner that hypervolumes of a task's fronts are measured from.
 

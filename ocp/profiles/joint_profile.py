@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion
 from quietarm.models.final import refuse_overridden
-from quietarm.ocp.checks import finite, instance
+from quietarm.ocp.checks import finite, hashable, instance
 from quietarm.ocp.interrupts import keep_interrupts
 
 Values = Sequence[Expression]
@@ -235,11 +235,7 @@ def check_profile(profile: JointProfile) -> None:
         With the value, where it is, and what it has to be.
     """
     instance("profile", profile, JointProfile)
-    if type(profile).__hash__ is None:
-        raise TypeError(
-            f"profile {type(profile).__name__} has no hash; make its class a frozen dataclass of "
-            "numbers, strings and tuples"
-        )
+    hashable("profile", profile)
     _check_at_random(profile)
 
 

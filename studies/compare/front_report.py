@@ -13,7 +13,8 @@ from quietarm.studies import figures
 from quietarm.studies.compare.fronts import Comparison, Group, compare_fronts
 from quietarm.studies.figures.comparison import KnownPoint
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import spread_words, tip_scale, tip_words, title_of
+from quietarm.studies.report.words import spread_words, title_of
+from quietarm.studies.tips import tip_scale, tip_words
 
 _INDICATORS = {"hypervolume": ".4f", "igd_plus": ".2g", "epsilon": ".2g"}
 _HEADINGS = {"hypervolume": "hypervolume", "igd_plus": "IGD+", "epsilon": "epsilon"}

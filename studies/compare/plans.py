@@ -20,7 +20,8 @@ from quietarm.studies.compare.judged import (
     refuse_other_moves,
 )
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import tip_scale, title_of
+from quietarm.studies.report.words import title_of
+from quietarm.studies.tips import tip_scale
 
 _WHY = "why there is none"
 """Column of a table for files; a page lists the reasons below."""

@@ -18,7 +18,8 @@ from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
 from quietarm.studies.figures.structure import INK, structures_of
-from quietarm.studies.report.words import residual_words, tip_scale
+from quietarm.studies.report.words import residual_words
+from quietarm.studies.tips import tip_scale
 
 GREY = "#9e9e9e"
 PANELS = ("deflection", "angle", "torque", "speed", "acceleration", "jerk")

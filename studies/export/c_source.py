@@ -11,10 +11,11 @@ from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.report.templates import templates
-from quietarm.studies.report.words import limit_words, move_of, moved, tip_words
+from quietarm.studies.report.words import limit_words, move_of, moved
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.interpolation import ORDERS
 from quietarm.studies.sweep.library import MoveLibrary
+from quietarm.studies.tips import tip_words
 
 _HELPER = re.compile(r"^double casadi_\w+\([^)]*\) \{.*?\}$", re.M | re.S)
 _STATEMENTS = re.compile(r"^static int casadi_f0\([^)]*\) \{\n(.*?)\n  return 0;", re.M | re.S)

@@ -11,8 +11,9 @@ from quietarm.models import Expression, JointMotion
 from quietarm.models.joint_motion import joint_label
 from quietarm.ocp import Candidate, Plan
 from quietarm.ocp.profiles.free_motion import PiecewiseMotion
+from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
 from quietarm.studies.export.tables import times_of
-from quietarm.studies.report.words import tip_words
+from quietarm.studies.tips import tip_words
 
 Array = NDArray[np.float64]
 OF_POINTS = ("angle", "speed", "acceleration")
@@ -25,12 +26,12 @@ _BETWEEN = {
 """How it is interpolated, by how many of `OF_POINTS` there are."""
 _TOLD = 1e-3
 """Share of the largest deflection on the way: so much more than the plan's residual is told."""
-_DOUBLINGS = 8
-"""At most so many times the rate is doubled to find one that does."""
 
 
 def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) -> str:
     """What is left at a rate [Hz] that is too coarse, and a rate that does; else nothing.
+
+    Points as close as the solver's smallest steps are never too coarse, and not looked at.
 
     Parameters
     ----------
@@ -48,20 +49,19 @@ def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POIN
         return ""
     wanted = max(plan.residual, plan.residual_limit or 0.0)
     most = wanted + _TOLD * plan.motion.peak_deflection
-    left = residual_between(plan, rate, derivatives)
-    if left <= most:
-        return ""
-    plant = plan.task.plant
-    angle = joint_label("angle", plant.joint)
-    note = (
-        f"{rate:g} Hz is coarse: a controller that interpolates by "
-        f"{_BETWEEN[derivatives].format(angle)} leaves {tip_words(left, plant.tip_unit)}"
-    )
-    for finer in (rate * 2**k for k in range(1, _DOUBLINGS + 1)):
-        left = residual_between(plan, finer, derivatives)
+    note, plant = "", plan.task.plant
+    while rate * plan.task.duration < MOST_SOLVER_STEPS:
+        left = residual_between(plan, rate, derivatives)
+        words = tip_words(left, plant.tip_unit)
         if left <= most:
-            return f"{note}; --rate {finer:g} leaves {tip_words(left, plant.tip_unit)}"
-    return f"{note}; export .c, which is exact at any time"
+            return note and f"{note}; --rate {rate:g} leaves {words}"
+        between = _BETWEEN[derivatives].format(joint_label("angle", plant.joint))
+        coarse = (
+            f"{rate:g} Hz is coarse: a controller that interpolates by {between} leaves {words}"
+        )
+        note = note or coarse
+        rate *= 2
+    return note and f"{note}; export .c, which is exact at any time"
 
 
 def residual_between(plan: Plan, rate: float, derivatives: int) -> float:

@@ -24,7 +24,8 @@ from quietarm.studies.figures.axes import (
     new_figure,
 )
 from quietarm.studies.figures.looks import Look, look
-from quietarm.studies.report.words import tip_scale, title_of
+from quietarm.studies.report.words import title_of
+from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
     from quietarm.studies.compare.fronts import Comparison, Group

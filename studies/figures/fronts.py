@@ -23,7 +23,8 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.looks import BLUE, RED, look
 from quietarm.studies.report.methods import is_gradient, label_of
-from quietarm.studies.report.words import spread_words, tip_scale, tip_words, title_of
+from quietarm.studies.report.words import spread_words, title_of
+from quietarm.studies.tips import tip_scale, tip_words
 
 _MOST_NAMED = 10
 """More fronts than this are drawn without a name."""

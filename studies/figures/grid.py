@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import logarithmic, name_objectives, new_figure
 from quietarm.studies.figures.looks import look
-from quietarm.studies.report.words import tip_scale
 from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.grid import Axis
 from quietarm.studies.sweep.store import Store
+from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
 _MOST_SLICES = 4

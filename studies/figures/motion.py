@@ -24,7 +24,8 @@ from quietarm.studies.figures.axes import (
     new_figure,
 )
 from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
-from quietarm.studies.report.words import raised, tip_scale, title_of
+from quietarm.studies.report.words import raised, title_of
+from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
 _SHOWN, _ABOVE = 0.99, 1.15

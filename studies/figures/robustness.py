@@ -18,7 +18,7 @@ from quietarm.studies.figures.axes import (
     side_by_side,
 )
 from quietarm.studies.figures.looks import look
-from quietarm.studies.report.words import tip_scale
+from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
     from quietarm.studies.compare.judged import Judged

@@ -12,13 +12,8 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness import worst_of
 from quietarm.studies.report.moves import worst_in_words
-from quietarm.studies.report.words import (
-    counted,
-    energy_words,
-    residual_words,
-    spread_words,
-    tip_words,
-)
+from quietarm.studies.report.words import counted, energy_words, residual_words, spread_words
+from quietarm.studies.tips import tip_words
 
 _ROWS = 10
 """Points that the list of gains shows."""

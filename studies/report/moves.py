@@ -16,7 +16,8 @@ from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.planning.profiles import CHOSEN, OF_SIX
 from quietarm.ocp.record import AGREEMENT, REST
-from quietarm.studies.report.words import move_of, moved, state_words, tip_words
+from quietarm.studies.report.words import move_of, moved, state_words
+from quietarm.studies.tips import tip_words
 
 if TYPE_CHECKING:
     from quietarm.studies.reading.path import RecordedPath
@@ -27,6 +28,8 @@ HARD_REMEDIES: Mapping[str, str] = {
     "jerk": "give what the drive can do, as --jerk-limit",
 }
 """What to do about a peak that a drive may not follow, by quantity."""
+_OF_ACCELERATION = {"acceleration": HARD_REMEDIES["acceleration"]}
+"""Of a floor, which nobody drives, and of a recorded path, whose smoothness has a row of its own."""
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
 _DRIVE_RISES, _OF_CYCLOID = 0.005, 0.1
@@ -75,7 +78,7 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
     return [
         *_move_rows(floor.task, motion),
         ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
-        *_figure_rows(floor.task, motion),
+        *_figure_rows(floor.task, motion, _OF_ACCELERATION),
         ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%})"),
         ("intervals", ", ".join(f"{one.steps}: {one.energy:.6g} J" for one in floor.levels)),
         ("starts", ", ".join(starts)),
@@ -105,7 +108,7 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
         *_move_rows(task, candidate.motion),
         ("path", f"{free.steps + 1} points, {' to '.join(dict.fromkeys(ends))} ms apart"),
         ("smoothness", f"acceleration changes by up to {jump:.3g} {unit} from point to point"),
-        *_figure_rows(task, candidate.motion),
+        *_figure_rows(task, candidate.motion, _OF_ACCELERATION),
     ]
     for scenario in task.scenarios[1:]:
         errors = dict(zip(task.error_names, scenario))
@@ -182,10 +185,8 @@ def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) 
     ]
 
 
-def _figure_rows(
-    task: PointToPoint, motion: Motion, remedies: Mapping[str, str] = HARD_REMEDIES
-) -> list[Row]:
-    """A motion's energy, residual, peaks and overshoot."""
+def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> list[Row]:
+    """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
     residual = tip_words(motion.residual, task.plant.tip_unit)
     if motion.residual < REST:  # nobody sees a difference
         where = "as wanted" if task.final else "at rest"
@@ -222,7 +223,7 @@ def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, 
             "deflections count as small; its equations are less exact there)"
         )
     warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
-    too_hard = warnings[name](task, motion) if name in warnings else ""
+    too_hard = warnings[name](task, motion) if name in remedies else ""
     warning = f"  (warning: {too_hard}; {remedies[name]})" if too_hard else ""
     return f"{peak:.4g} {unit}{warning}"
 

@@ -10,7 +10,8 @@ from math import isnan
 
 from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Front
-from quietarm.studies.report.words import print_lines, tip_scale, tip_words
+from quietarm.studies.report.words import print_lines
+from quietarm.studies.tips import tip_scale, tip_words
 from rich.console import Console
 from rich.progress import (
     BarColumn,

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from quietarm.ocp import SolveStatus
 from quietarm.ocp.record import REST
-from quietarm.studies.report.words import moved, tip_scale, tip_words
+from quietarm.studies.report.words import moved
 from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
+from quietarm.studies.tips import tip_scale, tip_words
 
 _MOST_LINES = 30
 """Cells along one axis that are listed."""

@@ -11,6 +11,7 @@ from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.record import REST
+from quietarm.studies.tips import tip_scale, tip_words
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -45,17 +46,6 @@ def spread_words(spread: Spread, form: str, unit: str = "") -> str:
         return f"{middle}{unit}"
     some = f", {spread.count} of {spread.seeds} seeds" if spread.count < spread.seeds else ""
     return f"{middle}{unit} ({low} to {high}{some})"
-
-
-def tip_scale(tip_unit: str) -> tuple[str, float]:
-    """The unit in which a tip's displacements are shown, and the factor to it: mm, or rad."""
-    return ("mm", 1e3) if tip_unit == "m" else (tip_unit, 1.0)
-
-
-def tip_words(displacement: float, tip_unit: str) -> str:
-    """A tip's displacement in the unit that is shown."""
-    shown, factor = tip_scale(tip_unit)
-    return f"{factor * displacement:.3g} {shown}"
 
 
 def millimetres(length: float) -> str:

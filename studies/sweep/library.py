@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import InfeasibleTaskError, Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.studies.report.words import tip_words
 from quietarm.studies.sweep.cells import by_plant, plan_cells
 from quietarm.studies.sweep.definition import COEFFICIENTS
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.store import Store
+from quietarm.studies.tips import tip_words
 
 Array = NDArray[np.float64]
 _SAMPLES = 100

@@ -94,12 +94,12 @@ def export(given: Given) -> None:
         notes = [_write_film(plans, output, settings)]
     else:
         (plan,) = load_plans(plans).values()
+        notes = _notes(plan, name, settings)
         if output == STDOUT:
             content = content_of(plan, name, **settings)
             files, written = [(STDOUT, lambda path: write_whole(path, content))], []
         else:
             written = export_plan(plan, output, **settings)
-        notes = _notes(plan, name, settings)
     finish(files, *notes, *(f"wrote {path}" for path in written))
 
 
