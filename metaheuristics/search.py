@@ -246,12 +246,18 @@ def _own(
     algorithm: Algorithm, population: int | None, settings: Mapping[str, object] | None
 ) -> tuple[Algorithm, dict[str, Any]]:
     """A copy of an algorithm that was given, and what it is set to."""
+    from pymoo.core.algorithm import Algorithm as PymooAlgorithm
     from quietarm.metaheuristics.algorithms.own import own_algorithm
     from quietarm.metaheuristics.algorithms.own_settings import settings_of
 
     given: Any = algorithm
     if inspect.isclass(given):
         raise ValueError(f"give an algorithm, as {given.__name__}(), not its class")
+    if not isinstance(given, PymooAlgorithm):
+        raise TypeError(
+            f"algorithm is {given!r}; give a name, as 'nsga2', or an algorithm of pymoo; a profile "
+            "is given as profile=..."
+        )
     chosen = own_algorithm(algorithm)
     for name, value in (("population", population), ("settings", settings)):
         if value:

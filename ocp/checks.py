@@ -8,7 +8,7 @@ import math
 import operator
 import re
 import reprlib
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
 from os import PathLike
 from typing import Annotated, Any, ParamSpec, TypeVar
@@ -80,6 +80,13 @@ def instance(name: str, value: Any, *kinds: type[T]) -> T:
     raise TypeError(f"{name} is {shown}; give {_instead_of(value, kinds[0])}")
 
 
+def several(name: str, value: Any, of: str) -> list[Any]:
+    """A sequence as a list; ValueError where it is a single value, or text."""
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        raise ValueError(f"{name} is {value!r}; give a list of {of}")
+    return list(value)
+
+
 def hashable(name: str, value: object) -> None:
     """Refuse an object that may change; TypeError says how to write its class."""
     if type(value).__hash__ is None:
@@ -112,11 +119,12 @@ def _construction(kind: type[Any]) -> str:
     return f"{kind.__name__}({', '.join(needed)})"
 
 
-def takes(**kinds: type[Any] | list[type[Any]]) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Check arguments of a public function by name: each is of its class, or the default.
+Kind = type[Any] | list[type[Any]] | dict[type[str], type[Any]]
+"""A class; in a list for a sequence of its objects, or for objects by name as `{str: Plan}`."""
 
-    A list of a class stands for a sequence of such objects, or a mapping to them.
-    """
+
+def takes(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Check arguments of a public function by name: each is of its kind, or the default."""
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
         parameters = inspect.signature(function)
@@ -139,16 +147,22 @@ def takes(**kinds: type[Any] | list[type[Any]]) -> Callable[[Callable[P, R]], Ca
     return decorate
 
 
-def _check_kind(name: str, value: Any, kind: type[Any] | list[type[Any]]) -> None:
-    if not isinstance(kind, list):
+def _check_kind(name: str, value: Any, kind: Kind) -> None:
+    if isinstance(kind, dict):
+        if not isinstance(value, Mapping):
+            example = f"{{'mine': {name[:-1]}}}"
+            raise TypeError(f"{name} is {reprlib.repr(value)}; give them by name, as {example}")
+        for key, entry in value.items():
+            instance(f"{name} {key!r}", entry, kind[str])
+    elif isinstance(kind, list):
+        (entry_kind,) = kind
+        if isinstance(value, entry_kind | str) or not isinstance(value, Collection):
+            what = f"a list of objects of {entry_kind.__name__}"
+            raise TypeError(f"{name} is {reprlib.repr(value)}; give {what}")
+        for number, entry in enumerate(value, start=1):
+            instance(f"{name} {number}", entry, entry_kind)
+    else:
         instance(name, value, kind)
-        return
-    if isinstance(value, kind[0] | str) or not isinstance(value, Collection):
-        what = f"a list of objects of {kind[0].__name__}"
-        raise TypeError(f"{name} is {reprlib.repr(value)}; give {what}")
-    entries = value.items() if isinstance(value, Mapping) else enumerate(value, start=1)
-    for key, entry in entries:
-        instance(f"{name} {key}", entry, kind[0])
 
 
 def unknown(what: str, name: str, known: Collection[str], also: str = "") -> str:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import joint_unit
 from quietarm.models.validation import check_along, check_contract
-from quietarm.ocp.checks import finite, instance, positive, takes
+from quietarm.ocp.checks import finite, instance, positive, several, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.limits import QUANTITIES, Bounds, Limit, Quantity, TorqueSpeedLine, quantities_of
@@ -44,9 +44,7 @@ class ModalState:
 
     def __post_init__(self) -> None:
         for name, unit in (("W", "m"), ("dW", "m/s")):
-            modes = getattr(self, name)
-            if isinstance(modes, str) or not isinstance(modes, Iterable):
-                raise ValueError(f"{name} is {modes!r}; give a list, a number for each mode")
+            modes = several(name, getattr(self, name), "numbers, one for each mode")
             numbers = tuple(
                 finite(f"{name} of mode {i}", number, unit)
                 for i, number in enumerate(modes, start=1)

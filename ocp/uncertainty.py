@@ -90,6 +90,7 @@ def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     ValueError
         When there is no such parameter, or a number makes the frequency 0 or the damping negative.
     """
+    _by_name(errors)
     refuse_unknown(plant, errors)
     own = (name for name in errors if name not in _OF_MODES)
     values = {name: getattr(plant, name) * (1 + errors[name]) for name in own}
@@ -131,8 +132,7 @@ def _refuse_beyond(name: str, error: float) -> None:
 
 def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
     """Ranges as numbers; ValueError where there are none, or one turns a sign."""
-    if not isinstance(ranges, Mapping):
-        raise ValueError(f"errors are {ranges!r}; give them by name, as {{{FREQUENCY!r}: 0.1}}")
+    _by_name(ranges)
     if not ranges:
         raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
     sizes = {name: positive(f"range of {name}", size) for name, size in ranges.items()}
@@ -141,8 +141,15 @@ def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
     return sizes
 
 
+def _by_name(errors: object) -> None:
+    """Refuse errors that are no mapping."""
+    if not isinstance(errors, Mapping):
+        raise ValueError(f"errors are {errors!r}; give them by name, as {{{FREQUENCY!r}: 0.1}}")
+
+
 def check_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
     """Ranges as numbers; ValueError unless the plant keeps its contract at the ends of each."""
+    _by_name(ranges)
     refuse_unknown(plant, ranges)
     sizes = _sizes(ranges)
     for name, size in sizes.items():

@@ -70,7 +70,7 @@ def right():
     return {
         "task": task, "one": task, "other": task, "tasks": [task], "plant": link,
         "profile": qa.CycloidPolynomial(1), "coefficients": [0.0], "target": 0.5, "duration": 0.8,
-        "plans": {}, "fronts": [], "floor": object.__new__(qa.Floor),
+        "plans": {}, "fronts": [], "quantity": "speed", "floor": object.__new__(qa.Floor),
     }  # fmt: skip
 
 
@@ -138,7 +138,7 @@ def test_a_field_of_a_task_is_of_its_class(field, value, told):
 @pytest.mark.parametrize(
     ("make", "told"),
     [
-        (lambda: qa.ModalState(0.01, 0), r"W is 0.01; give a list, a number for each mode"),
+        (lambda: qa.ModalState(0.01, 0), r"W is 0.01; give a list of numbers, one for each mode"),
         (lambda: qa.Uncertainty(0.1), r"errors are 0.1; give them by name, as {'frequency': 0.1}"),
         (lambda: qa.Uncertainty("frequency"), "errors are 'frequency'; give them by name"),
         (
@@ -154,6 +154,28 @@ def test_a_field_of_a_task_is_of_its_class(field, value, told):
 def test_numbers_stand_in_lists_and_by_names(make, told):
     with pytest.raises(ValueError, match=told):
         make()
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda task: qa.search(task, qa.CycloidPolynomial(6), bound=0.2), "profile=..."),
+        (lambda task: qa.motion_figure("plan.json"), "give Plan.load('plan.json')"),
+        (lambda task: qa.motion_figure(6), "give a plan, as Plan.load('plan.json')"),
+        (lambda task: qa.draw_quantity([], "sped"), "did you mean 'speed'?"),
+        (lambda task: qa.plan_move(task, guess="a"), "coefficients are 'a'; give 6 numbers"),
+        (lambda task: qa.epsilon_front(task, at=0.1), "at is 0.1; give a list of residuals"),
+        (lambda task: qa.weighted_front(task, weights=0.3), "give pairs of residual and energy"),
+        (lambda task: qa.perturb_plant(task.plant, 0.1), "by name, as {'frequency': 0.1}"),
+        (lambda task: qa.sweep(task, {"target": 0.1}, "x.zarr"), "give a list of values"),
+        (lambda task: qa.compare_plans([task]), "give them by name, as {'mine': plan}"),
+        (lambda task: qa.compare_plans({}, "zv", task=task), "give a list of names"),
+        (lambda task: qa.ShapedCycloid("zv", 10.0, [0.1]), "frequencies is 10.0; give a list"),
+    ],
+)
+def test_other_arguments_say_so_as_well(right, call, told):
+    with pytest.raises((TypeError, ValueError), match=re.escape(told)):
+        call(right["task"])
 
 
 def test_one_move_is_no_list_of_moves(right):

@@ -72,6 +72,7 @@ class Plan(MotionAnswer):
         empty if nothing was optimised.
     """
 
+    example: ClassVar[str] = "a plan, as Plan.load('plan.json')"
     kind: ClassVar[str] = "plan"
     version: ClassVar[int] = 4
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -181,7 +182,12 @@ class JointProfile(ABC):
                 f"duration is {duration:g} s, too short for the {self.label}; give "
                 f"{math.ceil(1e4 * self.least_duration) / 1e4:g} s or more"
             )
-        values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+        try:
+            values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+        except (TypeError, ValueError):
+            raise ValueError(
+                f"coefficients are {reprlib.repr(coefficients)}; give {self.size} numbers"
+            ) from None
         if values.shape != (self.size,):
             raise ValueError(
                 f"got {values.size} coefficients for a profile of {self.size}; "

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from quietarm.ocp import Candidate, Plan, PointToPoint, evaluate_coefficients, shaped_cycloid
-from quietarm.ocp.checks import install, takes, unknown
+from quietarm.ocp.checks import install, several, takes, unknown
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS, Impulses, convolved
 from quietarm.ocp.simulation.free_vibration import FreeVibration
@@ -24,6 +24,7 @@ _LEAST_SHARE = 0.02
 
 def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
     """Baselines of these names, of "all" every one, each once; ValueError where one is unknown."""
+    names = several("baselines", names, "names")
     chosen = dict.fromkeys(one for name in names for one in (BASELINES if name == ALL else [name]))
     for name in chosen:
         if name not in BASELINES:

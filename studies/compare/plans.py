@@ -29,7 +29,7 @@ _TURNED = 1e-4
 """A joint that goes back by more [rad] is said to."""
 
 
-@takes(plans=[Plan], task=PointToPoint)
+@takes(plans={str: Plan}, task=PointToPoint)
 def compare_plans(
     plans: Mapping[str, Plan],
     baselines: Sequence[str] = (),

@@ -56,10 +56,8 @@ def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POIN
         if left <= most:
             return note and f"{note}; --rate {rate:g} leaves {words}"
         between = _BETWEEN[derivatives].format(joint_label("angle", plant.joint))
-        coarse = (
-            f"{rate:g} Hz is coarse: a controller that interpolates by {between} leaves {words}"
-        )
-        note = note or coarse
+        coarse = f"{rate:g} Hz is coarse: a controller that interpolates by {between} leaves"
+        note = note or f"{coarse} {words}"
         rate *= 2
     return note and f"{note}; export .c, which is exact at any time"
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
-from quietarm.ocp.checks import instance, takes
+from quietarm.ocp.checks import instance, takes, unknown
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.figures.axes import (
     TITLE,
@@ -95,8 +95,10 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     Raises
     ------
     ValueError
-        When there is no motion.
+        When there is no motion, or the quantity is not known.
     """
+    if quantity not in QUANTITIES_DRAWN:
+        raise ValueError(unknown("quantity", quantity, QUANTITIES_DRAWN))
     ax, lines = axes_or_new(ax), lines_of(motions)
     plant, drawn = lines[0].plan.task.plant, list[Array]()
     title = heading(quantity, plant.joint, plant.tip_unit)
@@ -217,7 +219,8 @@ def lines_of(motions: Motions) -> list[Line]:
         motions = [Line(cycloid, "plain cycloid", GREY), Line(motions, "this plan", BLUE)]
     elif isinstance(motions, Floor):
         motions = [Line(motions, f"floor, {motions.energy:.4g} J", BLUE)]
-    instance("motions", motions, Sequence)
+    if not isinstance(motions, Sequence) or isinstance(motions, str):
+        instance("motions", motions, Plan)  # which is what was meant
     if not motions:
         raise ValueError("no motion is given; give one or more")
     for i, line in enumerate(motions, start=1):

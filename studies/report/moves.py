@@ -29,7 +29,7 @@ HARD_REMEDIES: Mapping[str, str] = {
 }
 """What to do about a peak that a drive may not follow, by quantity."""
 _OF_ACCELERATION = {"acceleration": HARD_REMEDIES["acceleration"]}
-"""Of a floor, which nobody drives, and of a recorded path, whose smoothness has a row of its own."""
+"""Of a floor, which nobody drives, and of a recorded path, whose smoothness has its own row."""
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
 _DRIVE_RISES, _OF_CYCLOID = 0.005, 0.1
