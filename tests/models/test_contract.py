@@ -105,3 +105,11 @@ def test_a_right_angle_between_the_samples_is_looked_at():
 def test_what_the_checks_rely_on_is_not_overridden(name):
     with pytest.raises(TypeError, match=f"Unchecked has its own {name}, .*override the three"):
         type("Unchecked", (Sound,), {name: lambda self: {}})
+
+
+@pytest.mark.parametrize(
+    ("entry", "kinds"), [("joint", "'rotary' or 'linear'"), ("tip_unit", "'m' or 'rad'")]
+)
+def test_kinds_of_joints_and_units_of_tips_are_known(entry, kinds):
+    with pytest.raises(ValueError, match=f"{entry} of Odd is 'deg'; give {kinds}"):
+        type("Odd", (Sound,), {entry: "deg"})
