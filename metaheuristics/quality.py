@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.objective.claims import objective_of
 from quietarm.ocp import Front, JointProfile, PointToPoint, Quality
+from quietarm.ocp.checks import takes
 from quietarm.ocp.front.points import LEVELS
 
 Array = NDArray[np.float64]
@@ -32,6 +33,7 @@ class Reference:
         The reference front; ValueError where it is a single motion, which is no scale.
     """
 
+    @takes(front=Front)
     def __init__(self, front: Front) -> None:
         if len(front.points) < 2:
             raise ValueError(

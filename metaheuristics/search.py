@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, Preset, preset_of
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
-from quietarm.ocp.checks import whole
+from quietarm.ocp.checks import takes, whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,8 +53,10 @@ class SearchProgress:
     seconds: float
     failed: int = 0
     infeasible: int = 0
+    tip_unit: str = "m"
 
 
+@takes(task=PointToPoint, profile=JointProfile, start=Front)
 def search(
     task: PointToPoint,
     algorithm: str | Algorithm = "nsga2",
@@ -201,6 +203,7 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
     return SearchProgress(
         done, max(generations, done), residual, energy, archive.share_of_box(),
         archive.evaluations, archive.seconds, function.failed, function.infeasible,
+        function.task.plant.tip_unit,
     )  # fmt: skip
 
 
@@ -243,12 +246,18 @@ def _own(
     algorithm: Algorithm, population: int | None, settings: Mapping[str, object] | None
 ) -> tuple[Algorithm, dict[str, Any]]:
     """A copy of an algorithm that was given, and what it is set to."""
+    from pymoo.core.algorithm import Algorithm as PymooAlgorithm
     from quietarm.metaheuristics.algorithms.own import own_algorithm
     from quietarm.metaheuristics.algorithms.own_settings import settings_of
 
     given: Any = algorithm
     if inspect.isclass(given):
         raise ValueError(f"give an algorithm, as {given.__name__}(), not its class")
+    if not isinstance(given, PymooAlgorithm):
+        raise TypeError(
+            f"algorithm is {given!r}; give a name, as 'nsga2', or an algorithm of pymoo; a profile "
+            "is given as profile=..."
+        )
     chosen = own_algorithm(algorithm)
     for name, value in (("population", population), ("settings", settings)):
         if value:

@@ -9,7 +9,7 @@ from quietarm.models.arm_on_flexible_link import ArmOnFlexibleLink
 from quietarm.models.drawing import Body, flexible_link, rigid_link
 from quietarm.models.dual_link import DualLinkManipulator
 from quietarm.models.flexible_beam import FlexibleBeam
-from quietarm.models.joint_motion import Expression, JointMotion, joint_unit
+from quietarm.models.joint_motion import Expression, JointMotion, deg, joint_unit
 from quietarm.models.linear_axis import LinearAxis
 from quietarm.models.plant import Plant, known_plants, parameter
 from quietarm.models.plant_file import PlantFile, file_of_plant, load_plant_file
@@ -29,6 +29,7 @@ __all__ = [
     "PlantFile",
     "SingleLinkManipulator",
     "__version__",
+    "deg",
     "file_of_plant",
     "flexible_link",
     "joint_unit",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -33,6 +34,11 @@ def joint_label(label: str, joint: str) -> str:
     if joint == ROTARY:
         return label
     return label.replace("joint torque", "drive force").replace("angle", "position")
+
+
+def deg(degrees: float) -> float:
+    """An angle in degrees as radians: `PointToPoint(..., target=deg(30))`."""
+    return math.radians(degrees)
 
 
 class JointMotion(NamedTuple):

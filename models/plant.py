@@ -14,11 +14,12 @@ from importlib import import_module
 from numbers import Real
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Any, ClassVar
+from typing import Any, ClassVar, final
 
 import numpy as np
 from quietarm.models.drawing import Body, rigid_link
-from quietarm.models.joint_motion import ROTARY, Expression, JointMotion, Modes
+from quietarm.models.final import refuse_overridden
+from quietarm.models.joint_motion import LINEAR, ROTARY, Expression, JointMotion, Modes
 from quietarm.models.validation import check_contract, check_passive
 
 COUNT = "count"
@@ -46,8 +47,12 @@ class Plant(ABC):
     ------
     ValueError
         When a parameter is not a finite number, or beyond all scale.
+    TypeError
+        When a subclass overrides `parameters`, `units`, `tips` or `validate`.
     """
 
+    example: ClassVar[str] = "a plant, as SingleLinkManipulator() or LinearAxis()"
+    """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which commands and files know the plant."""
     modes: ClassVar[int]
@@ -55,14 +60,23 @@ class Plant(ABC):
 
     joint: ClassVar[str] = ROTARY
     """The kind of joint: rotary, in rad and N m, or linear, in m and N (`joint_unit`)."""
+    tip_unit: ClassVar[str] = "m"
+    """Unit of the tips' displacements: m, or rad where they turn, as the load of a shaft does."""
     small_deflection: ClassVar[float | None] = None
-    """Largest tip displacement that the equations are made for [m]; None where none is stated."""
+    """Largest tip displacement that the equations are made for; None where none is stated."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
+        refuse_overridden(cls, Plant, "the three equations; other checks belong into __post_init__")
+        for entry, kinds in _KINDS.items():
+            if getattr(cls, entry) not in kinds:
+                raise ValueError(
+                    f"{entry} of {cls.__name__} is {getattr(cls, entry)!r}; give "
+                    f"{' or '.join(map(repr, kinds))}"
+                )
         if not isinstance(name := cls.__dict__.get("name"), str):
             return
         taken = Plant._known.get(name, cls)
@@ -93,7 +107,7 @@ class Plant(ABC):
 
     @abstractmethod
     def tip_displacements(self, W: Modes) -> Sequence[Expression]:
-        """Displacements of the tips that must come to rest [m], linear in `W` [m]."""
+        """Displacements of the tips that must come to rest [`tip_unit`], linear in `W`."""
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The structure seen from above, by default a straight link of 1 m for each tip.
@@ -104,11 +118,13 @@ class Plant(ABC):
         return [*links, Body(np.zeros((1, 2)), rigid=True)]
 
     @property
+    @final
     def parameters(self) -> dict[str, float]:
         """The plant's parameters by name, in SI units."""
         return {entry.name: getattr(self, entry.name) for entry in fields(self)}
 
     @classmethod
+    @final
     def units(cls) -> dict[str, str]:
         """The parameters' units by name, "-" where there is none."""
         return {entry.name: entry.metadata.get("unit", "-") for entry in fields(cls)}
@@ -120,10 +136,12 @@ class Plant(ABC):
         return {name: value for name, value in self.parameters.items() if units[name] != COUNT}
 
     @property
+    @final
     def tips(self) -> int:
         """How many tip displacements the plant has."""
         return len(self.tip_displacements([0.0] * self.modes))
 
+    @final
     def validate(self) -> None:
         """Check what integrator and residual rely on; every task does.
 
@@ -138,6 +156,8 @@ class Plant(ABC):
         check_passive(self)
 
 
+_KINDS = {"joint": (ROTARY, LINEAR), "tip_unit": ("m", "rad")}
+"""What entries of a class may be."""
 _MOST_PARAMETER = 1e100
 """Powers of larger ones are beyond double precision."""
 

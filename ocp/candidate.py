@@ -16,10 +16,11 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import JointMotion
+from quietarm.ocp.checks import takes
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
-from quietarm.ocp.profiles.joint_profile import JointProfile, check_profile
+from quietarm.ocp.profiles.joint_profile import JointProfile, check_motion, check_profile
 from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.grid import Grid
@@ -67,14 +68,18 @@ class Candidate(Ranged):
     errors: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
+    @takes(task=PointToPoint)
     def of_profile(
         cls, task: PointToPoint, profile: JointProfile, coefficients: ArrayLike
     ) -> Candidate:
         """The move along a profile; ValueError where coefficients or duration do not fit it."""
         check_profile(profile)
-        return cls(task, PiecewiseMotion.of_profile(task, profile, coefficients))
+        path = PiecewiseMotion.of_profile(task, profile, coefficients)
+        check_motion(profile, path.given[: profile.size, 0], *task.move)
+        return cls(task, path)
 
     @classmethod
+    @takes(task=PointToPoint, free=FreeMotion)
     def of_free_motion(cls, task: PointToPoint, free: FreeMotion) -> Candidate:
         """The move by a free motion from the task's start."""
         return cls(task, PiecewiseMotion.of_free_motion(task, free))

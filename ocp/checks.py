@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import difflib
+import inspect
 import math
 import operator
 import re
-from collections.abc import Collection
-from typing import Annotated, Any, TypeVar
+import reprlib
+from collections.abc import Callable, Collection, Iterable, Mapping
+from functools import wraps
+from os import PathLike
+from typing import Annotated, Any, ParamSpec, TypeVar
 
 from msgspec import Meta
 
 T = TypeVar("T")
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
@@ -63,6 +69,102 @@ _PART = 3
 """So many letters of a longer name are enough."""
 
 
+def instance(name: str, value: Any, *kinds: type[T]) -> T:
+    """A value that has to be of a class, or of one of several; TypeError that says what to give.
+
+    The first class may have an `example`, which completes 'give ...'.
+    """
+    if isinstance(value, kinds):
+        return value
+    shown = value.__name__ if isinstance(value, type) else reprlib.repr(value)
+    raise TypeError(f"{name} is {shown}; give {_instead_of(value, kinds[0])}")
+
+
+def several(name: str, value: Any, of: str) -> list[Any]:
+    """A sequence as a list; ValueError where it is a single value, or text."""
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        raise ValueError(f"{name} is {value!r}; give a list of {of}")
+    return list(value)
+
+
+def hashable(name: str, value: object) -> None:
+    """Refuse an object that may change; TypeError says how to write its class."""
+    if type(value).__hash__ is None:
+        raise TypeError(
+            f"{name} {type(value).__name__} has no hash; make its class a frozen dataclass of "
+            "numbers, strings and tuples"
+        )
+
+
+def _instead_of(value: Any, kind: type[Any]) -> str:
+    """What to give: an object of the class that was given or named, else the class's example."""
+    meant = value if isinstance(value, type) and issubclass(value, kind) else None
+    if isinstance(value, str):
+        named = known(kind)
+        meant = named.get(_nearest(value, named))
+    if meant is not None:
+        return f"an object, as {_construction(meant)}"
+    if isinstance(value, str | PathLike) and hasattr(kind, "load"):
+        return f"{kind.__name__}.load({str(value)!r})"
+    return getattr(kind, "example", f"an object of {kind.__name__}")
+
+
+def _construction(kind: type[Any]) -> str:
+    """How an object of a class is made, with the arguments that it needs."""
+    needed = [
+        name
+        for name, parameter in inspect.signature(kind).parameters.items()
+        if parameter.default is parameter.empty
+    ]
+    return f"{kind.__name__}({', '.join(needed)})"
+
+
+Kind = type[Any] | list[type[Any]] | dict[type[str], type[Any]]
+"""A class; in a list for a sequence of its objects, or for objects by name as `{str: Plan}`."""
+
+
+def takes(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Check arguments of a public function by name: each is of its kind, or the default."""
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        parameters = inspect.signature(function)
+
+        @wraps(function)
+        def checked(*args: P.args, **kwargs: P.kwargs) -> R:
+            try:
+                arguments = parameters.bind_partial(*args, **kwargs).arguments
+            except TypeError:  # the function's own error says more
+                return function(*args, **kwargs)
+            for name, kind in kinds.items():
+                default = parameters.parameters[name].default
+                value = arguments.get(name, default)
+                if value is not default:
+                    _check_kind(name, value, kind)
+            return function(*args, **kwargs)
+
+        return checked
+
+    return decorate
+
+
+def _check_kind(name: str, value: Any, kind: Kind) -> None:
+    if isinstance(kind, dict):
+        if not isinstance(value, Mapping):
+            example = f"{{'mine': {name[:-1]}}}"
+            raise TypeError(f"{name} is {reprlib.repr(value)}; give them by name, as {example}")
+        for key, entry in value.items():
+            instance(f"{name} {key!r}", entry, kind[str])
+    elif isinstance(kind, list):
+        (entry_kind,) = kind
+        if isinstance(value, entry_kind | str) or not isinstance(value, Collection):
+            what = f"a list of objects of {entry_kind.__name__}"
+            raise TypeError(f"{name} is {reprlib.repr(value)}; give {what}")
+        for number, entry in enumerate(value, start=1):
+            instance(f"{name} {number}", entry, entry_kind)
+    else:
+        instance(name, value, kind)
+
+
 def unknown(what: str, name: str, known: Collection[str], also: str = "") -> str:
     """The message about a name that is not known."""
     return f"unknown {what} {name!r}{nearest(name, known)} (known: {', '.join(known)}{also})"
@@ -76,10 +178,16 @@ def has_no(owner: str, what: str, name: str, known: Collection[str]) -> str:
 
 def nearest(name: str, known: Collection[str]) -> str:
     """A question for a message, with the known name that is most like an unknown one."""
+    near = _nearest(name, known)
+    return f"; did you mean {near!r}?" if near else ""
+
+
+def _nearest(name: str, known: Collection[str]) -> str:
+    """The known name that is most like another; an empty one where none is."""
     same = [other for other in known if spelling(other) == spelling(name)]
     part = [other for other in known if len(name) >= _PART and name.lower() in other.lower()]
     near = same or part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=_ALIKE)
-    return f"; did you mean {near[0]!r}?" if near else ""
+    return near[0] if near else ""
 
 
 def spelling(name: str) -> str:

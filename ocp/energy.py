@@ -4,10 +4,16 @@ from __future__ import annotations
 
 from abc import ABC
 from dataclasses import astuple, dataclass
+from functools import lru_cache
+from numbers import Real
 from typing import Any, ClassVar
 
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
 from quietarm.models import Expression
-from quietarm.ocp.checks import positive
+from quietarm.ocp.checks import hashable, instance, not_negative, positive
+from quietarm.ocp.interrupts import keep_interrupts
 
 
 def power_of(torque: Any, speed: Any) -> Any:
@@ -21,6 +27,8 @@ class Energy(ABC):
     A new energy is a frozen dataclass of numbers, with a name. They add, and take weights.
     """
 
+    example: ClassVar[str] = "an energy, as AbsolutePower() or CopperLoss(0.12)"
+    """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which files and the command line know the energy."""
     absolute: float = 0.0
@@ -109,7 +117,10 @@ class Mix(Energy):
     parts: tuple[tuple[float, Energy], ...]
 
     def __post_init__(self) -> None:
-        parts = tuple((positive("weight", weight), part) for weight, part in self.parts)
+        parts = tuple(
+            (positive("weight", weight), instance("part of a mix", part, Energy))
+            for weight, part in self.parts
+        )
         object.__setattr__(self, "parts", parts)
         object.__setattr__(self, "absolute", sum(weight * part.absolute for weight, part in parts))
 
@@ -123,6 +134,62 @@ class Mix(Energy):
         weights = ("" if weight == 1 else f"{weight:.12g}*" for weight, _ in self.parts)
         labels = (part.label for _, part in self.parts)
         return "+".join(map("".join, zip(weights, labels)))
+
+
+_ROWS = 7
+"""Candidates at which an energy is looked at."""
+_SAME = 1e-9
+"""Share by which an integrand of one candidate may differ from that among others."""
+
+
+def check_energy(energy: Energy) -> None:
+    """Refuse an energy whose integrand is no number, fails on symbols or mixes candidates.
+
+    Raises
+    ------
+    TypeError
+        When it is no energy, or one that may change.
+    ValueError
+        With what is wrong, and what to write.
+    """
+    instance("energy", energy, Energy)
+    hashable("energy", energy)
+    _check_integrand(energy)
+
+
+@lru_cache(maxsize=64)
+@keep_interrupts()  # casadi loses a Ctrl-C
+def _check_integrand(energy: Energy) -> None:
+    name = f"absolute of energy {energy.name!r}"
+    if not isinstance(energy.absolute, Real):
+        raise ValueError(f"{name} is {energy.absolute!r}; give a number, 0 or more")
+    not_negative(name, energy.absolute)
+    torques, speeds = np.random.default_rng(0).uniform(-2.0, 2.0, (2, _ROWS))
+    together = _integrand(energy, torques, speeds)
+    each = zip(torques[:, None], speeds[:, None])
+    alone = np.concatenate([_integrand(energy, torque, speed) for torque, speed in each])
+    wrong = ~(np.abs(together - alone) <= _SAME * np.abs(alone).max())  # nan is wrong as well
+    if wrong.any():
+        k = int(wrong.argmax())
+        raise ValueError(
+            f"energy {energy.name!r}: at {torques[k]:.4g} N m and {speeds[k]:.4g} rad/s its smooth "
+            f"is {together[k]:.4g} W among other candidates and {alone[k]:.4g} W alone; write "
+            "operations with finite values that work element by element"
+        )
+
+
+def _integrand(energy: Energy, torques: NDArray[np.float64], speeds: NDArray[np.float64]) -> Any:
+    """The smooth integrand of candidates [W], by symbols, as the solvers evaluate it."""
+    torque, speed = (ca.MX.sym(name, len(torques)) for name in ("torque", "speed"))
+    try:
+        found = ca.MX.zeros(len(torques)) + energy.smooth(torque, speed)
+        return ca.Function("smooth", [torque, speed], [found])(torques, speeds).full().ravel()
+    except Exception as error:  # of any kind: a user's own lines
+        text = " ".join(f"{type(error).__name__}: {error}".split())
+        raise ValueError(
+            f"energy {energy.name!r}: its smooth fails ({text}); write (self, torque, speed) that "
+            "returns one expression, with casadi.exp and its like"
+        ) from None
 
 
 def _parts(energy: Energy) -> tuple[tuple[float, Energy], ...]:

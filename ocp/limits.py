@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.models.joint_motion import joint_label, joint_unit
+from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp.checks import not_negative
 
 Of = Callable[[JointMotion, Sequence[Expression], Expression], Sequence[Expression]]
@@ -72,11 +72,15 @@ QUANTITIES: Mapping[str, Quantity] = {
 
 
 @lru_cache
-def quantities_of(joint: str) -> Mapping[str, Quantity]:
-    """The same in the units of a kind of joint: metres and newtons of a linear one."""
+def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
+    """The same in a plant's units: metres and newtons of a linear joint, rad where a tip turns."""
     return {
-        name: replace(one, unit=joint_unit(one.unit, joint), label=joint_label(one.label, joint))
-        for name, one in QUANTITIES.items()
+        name: replace(
+            quantity,
+            unit=tip_unit if quantity.unit == "m" else joint_unit(quantity.unit, joint),
+            label=joint_label(quantity.label, joint),
+        )
+        for name, quantity in QUANTITIES.items()
     }
 
 
@@ -104,6 +108,8 @@ class TorqueSpeedLine:
     ----------
     points : tuple of (float, float)
         Torques [N m] at speeds [rad/s] that rise.
+    joint : str
+        The kind of joint; of a linear one they are forces [N] and speeds [m/s].
 
     Raises
     ------
@@ -112,20 +118,31 @@ class TorqueSpeedLine:
     """
 
     points: tuple[tuple[float, float], ...]
+    joint: str = ROTARY
 
     def __post_init__(self) -> None:
+        words = joint_label("joint torque", self.joint).split()[-1]
+        try:
+            pairs = [(torque, speed) for torque, speed in self.points]
+        except (TypeError, ValueError):
+            raise ValueError(
+                f"torque-speed line is {self.points!r}; give pairs of a {words} and a speed, as "
+                "[(1.5, 0), (0.8, 20)]"
+            ) from None
+        unit, unit_of_speed = (joint_unit(unit, self.joint) for unit in ("N m", "rad/s"))
         points = tuple(
-            (not_negative("torque of the line", torque, "N m"),
-             not_negative("speed of the line", speed, "rad/s"))
-            for torque, speed in self.points
+            (not_negative(f"{words} of the line", torque, unit),
+             not_negative("speed of the line", speed, unit_of_speed))
+            for torque, speed in pairs
         )  # fmt: skip
         object.__setattr__(self, "points", points)
         rises = len(points) > 1 and all(one[1] < other[1] for one, other in pairwise(points))
         falls = [fall for _, fall in self._pieces] if rises else [0.0]
         if falls[-1] <= 0 or falls != sorted(falls) or falls[0] < 0:
+            example = TorqueSpeedLine(((1.5, 0.0), (0.8, 20.0)), self.joint)
             raise ValueError(
                 f"torque-speed line is {self}; give two points or more by rising speed, between "
-                "which the torque falls ever steeper, as 1.5Nm@0,0.8Nm@20"
+                f"which the {words} falls ever steeper, as {example}"
             )
 
     @property
@@ -155,7 +172,8 @@ class TorqueSpeedLine:
         ]
 
     def __str__(self) -> str:
-        return ",".join(f"{torque:g}Nm@{speed:g}" for torque, speed in self.points)
+        unit = joint_unit("N m", self.joint).replace(" ", "")
+        return ",".join(f"{torque:g}{unit}@{speed:g}" for torque, speed in self.points)
 
 
 class Ranged:
@@ -195,9 +213,9 @@ class Limit:
         return cls(quantity, lower, upper)
 
     @classmethod
-    def of_residual(cls, largest: float) -> Limit:
-        """Of the residual [m]: 0 asks for rest on arrival."""
-        return cls(_RESIDUAL, -largest, largest)
+    def of_residual(cls, largest: float, tip_unit: str = "m") -> Limit:
+        """Of the residual, in the tip's unit: 0 asks for rest on arrival."""
+        return cls(replace(_RESIDUAL, unit=tip_unit), -largest, largest)
 
     @classmethod
     def of_line(cls, line: TorqueSpeedLine) -> Limit:

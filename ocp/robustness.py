@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import NotNegative, whole
+from quietarm.ocp.checks import NotNegative, takes, whole
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -298,6 +298,7 @@ def _plain(task: PointToPoint) -> Candidate:
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def evaluate_robustness(
     task: PointToPoint,
     profile: JointProfile,

@@ -8,15 +8,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import isclose
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import joint_unit
 from quietarm.models.validation import check_along, check_contract
-from quietarm.ocp.checks import finite, positive
-from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
+from quietarm.ocp.checks import finite, instance, positive, several, takes
+from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.limits import QUANTITIES, Bounds, Limit, Quantity, TorqueSpeedLine, quantities_of
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
@@ -37,13 +37,18 @@ class ModalState:
         When a number is not finite, or the rates do not match the amplitudes.
     """
 
+    example: ClassVar[str] = "a state, as ModalState(W=[0.01], dW=[0.0])"
+
     W: tuple[float, ...]
     dW: tuple[float, ...]
 
     def __post_init__(self) -> None:
         for name, unit in (("W", "m"), ("dW", "m/s")):
-            given = enumerate(getattr(self, name), start=1)
-            numbers = tuple(finite(f"{name} of mode {i}", one, unit) for i, one in given)
+            modes = several(name, getattr(self, name), "numbers, one for each mode")
+            numbers = tuple(
+                finite(f"{name} of mode {i}", number, unit)
+                for i, number in enumerate(modes, start=1)
+            )
             object.__setattr__(self, name, numbers)
         if len(self.W) != len(self.dW):
             raise ValueError(
@@ -60,18 +65,12 @@ _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual window": "
     f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()
 }
 _TIMES = {"duration": "s", "residual_window": "s"}
+_CLASSES = {"initial": ModalState, "final": ModalState, "uncertainty": Uncertainty}
+"""What fields hold that may be None."""
 _MOST = 1e6
 """Beyond this [rad, m, s] no joint moves, and double precision does not follow."""
 LEAST_DURATION, LEAST_MOVE = 1e-6, 1e-6
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
-
-
-def _plant_for(given: object) -> str:
-    """What to give instead of something that is no plant: the class of a name, made."""
-    kinds = known_plants()
-    kind = given if isinstance(given, type) else kinds.get(str(given))
-    names: Iterable[Any] = [kind] if kind in kinds.values() else kinds.values()
-    return f"a plant, as {' or '.join(f'{one.__name__}()' for one in names)}"
 
 
 @dataclass(frozen=True)
@@ -90,8 +89,8 @@ class PointToPoint:
         [m] and rate of change of the joint's acceleration [rad/s^3] on the way; or of each the
         least value and the largest one, as (-30, 40).
     torque_speed : sequence of (float, float), optional
-        Largest torque [N m] of the drive at speeds [rad/s], as [(1.5, 0), (0.8, 20)]: see
-        `TorqueSpeedLine`.
+        Largest torque [N m] of the drive at speeds [rad/s], as [(1.5, 0), (0.8, 20)]; of a linear
+        joint forces [N] at speeds [m/s]. See `TorqueSpeedLine`.
     residual_window : float, optional
         Time after arrival in which the residual is measured [s]; eq (11) has 1 s.
     initial, final : ModalState, optional
@@ -113,6 +112,10 @@ class PointToPoint:
         When an angle beyond a turn looks like degrees, as 30 or 22.5.
     """
 
+    example: ClassVar[str] = (
+        "a task, as PointToPoint(SingleLinkManipulator(), target=deg(30), duration=0.8)"
+    )
+
     plant: Plant
     target: float
     duration: float
@@ -133,8 +136,13 @@ class PointToPoint:
     @keep_interrupts()  # casadi loses a Ctrl-C
     def __post_init__(self) -> None:
         if not isinstance(self.plant, Plant):
-            raise TypeError(f"plant is {self.plant!r}; give {_plant_for(self.plant)}")
+            known_plants()  # so that each is known by its name
+            instance("plant", self.plant, Plant)
         self.plant.validate()
+        check_energy(self.energy)
+        for name, kind in _CLASSES.items():
+            if getattr(self, name) is not None:
+                instance(name, getattr(self, name), kind)
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)
         way = joint_unit("rad", self.plant.joint)
@@ -142,19 +150,19 @@ class PointToPoint:
             check = positive if name in _TIMES else finite
             number = check(name.replace("_", " "), getattr(self, name), unit, _MOST)
             object.__setattr__(self, name, number)
-        for quantity in quantities_of(self.plant.joint).values():
+        for quantity in quantities_of(self.plant.joint, self.plant.tip_unit).values():
             if getattr(self, quantity.limit) is not None:
                 bounds = _check_bounds(quantity, getattr(self, quantity.limit))
                 object.__setattr__(self, quantity.limit, bounds)
         if self.torque_speed is not None:
-            line = TorqueSpeedLine(tuple(self.torque_speed))
+            line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
             object.__setattr__(self, "torque_speed", line.points)
         for name, angle in (("start", self.start), ("target", self.target)):
             more = way == "rad" and abs(angle) > 2 * math.pi
             if more and (2 * angle).is_integer():  # no multiple of pi is
                 warnings.warn(
                     f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
-                    f"numpy.radians({angle:g})",
+                    f"quietarm.deg({angle:g})",
                     stacklevel=5,
                 )
         if abs(self.span) < LEAST_MOVE:
@@ -241,11 +249,13 @@ class PointToPoint:
     @property
     def limits(self) -> tuple[Limit, ...]:
         """The limits that are set."""
-        quantities = quantities_of(self.plant.joint).values()
+        quantities = quantities_of(self.plant.joint, self.plant.tip_unit).values()
         given = [(one, getattr(self, one.limit)) for one in quantities]
         limits = [Limit.within(one, bounds) for one, bounds in given if bounds is not None]
-        line = [] if self.torque_speed is None else [TorqueSpeedLine(self.torque_speed)]
-        return (*limits, *map(Limit.of_line, line))
+        if self.torque_speed is not None:
+            line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
+            limits.append(Limit.of_line(line))
+        return tuple(limits)
 
     def limit_of(self, name: str) -> Limit | None:
         """The limit of a quantity by name; None where it has none."""
@@ -268,6 +278,7 @@ def _check_bounds(quantity: Quantity, given: Any) -> Bounds:
     return upper if lower == -upper else (lower, upper)
 
 
+@takes(one=PointToPoint, other=PointToPoint)
 def task_difference(one: PointToPoint, other: PointToPoint) -> str:
     """Every entry in which two tasks differ, in words; empty where they are the same.
 

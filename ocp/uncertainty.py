@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
 from numbers import Real
+from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes
 from quietarm.models.validation import check_contract, outputs_of
-from quietarm.ocp.checks import has_no, positive
+from quietarm.ocp.checks import has_no, positive, takes
 
 FREQUENCY, DAMPING = "frequency", "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
@@ -40,7 +41,7 @@ class ScaledModes(Plant):
     damping: Expression = 1.0
 
     def __post_init__(self) -> None:  # a factor may be a symbol, so no check of numbers
-        for name in ("name", "modes", "small_deflection"):
+        for name in ("name", "modes", "joint", "tip_unit", "small_deflection"):
             object.__setattr__(self, name, getattr(self.plant, name))
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
@@ -67,6 +68,7 @@ class ScaledModes(Plant):
         return self.plant.tip_displacements(W)
 
 
+@takes(plant=Plant)
 def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     """The perturbed plant.
 
@@ -88,6 +90,7 @@ def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     ValueError
         When there is no such parameter, or a number makes the frequency 0 or the damping negative.
     """
+    _by_name(errors)
     refuse_unknown(plant, errors)
     own = (name for name in errors if name not in _OF_MODES)
     values = {name: getattr(plant, name) * (1 + errors[name]) for name in own}
@@ -129,6 +132,7 @@ def _refuse_beyond(name: str, error: float) -> None:
 
 def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
     """Ranges as numbers; ValueError where there are none, or one turns a sign."""
+    _by_name(ranges)
     if not ranges:
         raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
     sizes = {name: positive(f"range of {name}", size) for name, size in ranges.items()}
@@ -137,8 +141,15 @@ def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
     return sizes
 
 
+def _by_name(errors: object) -> None:
+    """Refuse errors that are no mapping."""
+    if not isinstance(errors, Mapping):
+        raise ValueError(f"errors are {errors!r}; give them by name, as {{{FREQUENCY!r}: 0.1}}")
+
+
 def check_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
     """Ranges as numbers; ValueError unless the plant keeps its contract at the ends of each."""
+    _by_name(ranges)
     refuse_unknown(plant, ranges)
     sizes = _sizes(ranges)
     for name, size in sizes.items():
@@ -193,6 +204,8 @@ class Uncertainty:
     ValueError
         When there are too many ranges, or a number is out of range.
     """
+
+    example: ClassVar[str] = "ranges, as Uncertainty({'frequency': 0.1}) for 10 %"
 
     ranges: Mapping[str, float]
     samples: tuple[Scenario, ...] = ()

@@ -2,7 +2,7 @@
 
     import quietarm as qa
 
-    task = qa.PointToPoint(qa.SingleLinkManipulator(), target=0.5236, duration=0.8)
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), target=qa.deg(30), duration=0.8)
     plan = qa.plan_move(task)
 
 Every public name of `quietarm.models`, `quietarm.ocp` and `quietarm.metaheuristics`, and of

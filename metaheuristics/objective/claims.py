@@ -81,7 +81,7 @@ def check_plan(plan: Plan, name: str) -> None:
         _check_worst(plan, name)
     except SolverFailedError as error:
         raise SolverFailedError(f"{name}: {error}") from None
-    known = quantities_of(plan.task.plant.joint)
+    known = quantities_of(plan.task.plant.joint, plan.task.plant.tip_unit)
     peaks = ((name, quantity.unit, 0.0) for name, quantity in known.items())
     for figure, unit, least in (*FIGURES, *peaks):
         stated, gives = plan.motion.peak(figure), found.peak(figure)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import JointProfile, PointToPoint
-from quietarm.ocp.checks import whole
+from quietarm.ocp.checks import takes, whole
 from quietarm.ocp.front.points import table_of
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
+from quietarm.ocp.profiles.joint_profile import check_profile
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Batch, batch
@@ -75,6 +76,7 @@ class PopulationObjective:
 
     @one_at_a_time
     @keep_interrupts()  # casadi loses a Ctrl-C
+    @takes(task=PointToPoint, profile=JointProfile)
     def __init__(
         self,
         task: PointToPoint,
@@ -83,6 +85,7 @@ class PopulationObjective:
         steps: int | None = None,
         threads: int = 1,
     ) -> None:
+        check_profile(profile)
         self.task, self.profile, self.threads = task, profile, whole("threads", threads, 1)
         self.steps = search_steps(task, profile) if steps is None else whole("steps", steps, 1)
         self._scenarios = np.array(task.scenarios)

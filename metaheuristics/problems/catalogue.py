@@ -26,7 +26,7 @@ from quietarm.ocp import (
     Uncertainty,
     epsilon_front,
 )
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import takes, unknown
 from quietarm.ocp.front.points import LEVELS
 
 if TYPE_CHECKING:
@@ -85,6 +85,7 @@ class NamedProblem:
             )
 
     @classmethod
+    @takes(front=Front)
     def of_front(cls, name: str, front: Front) -> NamedProblem:
         """The problem that a front solves, which becomes its reference front.
 

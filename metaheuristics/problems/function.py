@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.objective.population import PopulationObjective, replace_failures
 from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import takes, unknown
 from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.record import coefficient_bound
 
@@ -52,6 +52,7 @@ class MoveFunction:
         When there is no bound, a quantity is not known, or a number is out of range.
     """
 
+    @takes(task=PointToPoint, profile=JointProfile)
     def __init__(
         self,
         task: PointToPoint,
@@ -76,8 +77,8 @@ class MoveFunction:
         self.lower, self.upper = (np.array(side, dtype=float) for side in profile.box(bound))
         self.variables = tuple(f"a_{i + 1}" for i in range(profile.size))
         self.objectives = ("residual", "energy", *(f"peak_{name}" for name in self.peaks))
-        units = quantities_of(task.plant.joint)
-        self.units = ("m", "J", *(units[name].unit for name in self.peaks))
+        units = quantities_of(task.plant.joint, task.plant.tip_unit)
+        self.units = (task.plant.tip_unit, "J", *(units[name].unit for name in self.peaks))
         self.constraints = tuple(limit.quantity.limit for limit in task.limits)
         # a peak is read from its violation of a limit; one that has no limit gets 1
         limited = {limit.name: limit for limit in task.limits}

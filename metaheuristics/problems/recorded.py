@@ -14,7 +14,7 @@ from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.quality import measured
 from quietarm.ocp import Front, JointProfile, PointToPoint
-from quietarm.ocp.checks import whole
+from quietarm.ocp.checks import takes, whole
 from quietarm.ocp.front.points import beyond, table_of
 from quietarm.ocp.record import Setting
 
@@ -50,6 +50,7 @@ class RecordedFunction(MoveFunction):
         Candidates so far whose values were not finite, and that violated a limit.
     """
 
+    @takes(task=PointToPoint, profile=JointProfile)
     def __init__(
         self,
         task: PointToPoint,

@@ -15,7 +15,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import CountFromOne, Positive, positive, whole
+from quietarm.ocp.checks import CountFromOne, Positive, positive, takes, whole
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.interrupts import one_at_a_time
@@ -153,6 +153,7 @@ class Floor(MotionAnswer):
 
 
 @one_at_a_time
+@takes(task=PointToPoint)
 def energy_floor(
     task: PointToPoint,
     *,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from quietarm.ocp.checks import takes
 from quietarm.ocp.front.curve import Curve, Report, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
@@ -57,6 +58,7 @@ class CrossCheck:
 
 
 @one_at_a_time
+@takes(front=Front)
 def cross_check(front: Front, points: int = 7, report: Report = no_report) -> CrossCheck:
     """Solve points of a front by the solver that did not find them, from the plain cycloid.
 

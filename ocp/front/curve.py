@@ -94,7 +94,7 @@ class Curve:
         solved = [solution for solution, _ in found if solution.status.solved]
         problems = [self.problem(np.inf if free else one.residual) for one in solved]
         tolerances = OF_A_PLAN if free else self.tolerances
-        limits = (Limit.of_residual(most_residual), *self.task.limits)
+        limits = (Limit.of_residual(most_residual, self.task.plant.tip_unit), *self.task.limits)
         outcomes = iter(certify(problems, solved, self.solver, tolerances, limits))
         ended = [next(outcomes) if one.status.solved else one.status.text for one, _ in found]
         return [

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.checks import positive
+from quietarm.ocp.checks import positive, several, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
@@ -37,6 +37,7 @@ Best = Mapping[float, Solution]
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def epsilon_front(
     task: PointToPoint,
     profile: JointProfile | None = None,
@@ -86,7 +87,7 @@ def epsilon_front(
     """
     profile = CycloidPolynomial() if profile is None else profile
     points = number_of_points(points)
-    at = [positive("residual", one, "m") for one in at]
+    at = [positive("residual", one, "m") for one in several("at", at, "residuals")]
     settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)
     began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, settings))
     wanted = _limits_at(ends, at)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import Count, NotNegative, Positive, not_negative, whole
+from quietarm.ocp.checks import Count, NotNegative, Positive, not_negative, takes, whole
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import (
     FailedPoint,
@@ -69,6 +69,7 @@ class Front(Answer):
         coefficients or is not finite, or the points are out of order, or one is dominated.
     """
 
+    example: ClassVar[str] = "a front, as Front.load('front.json')"
     kind: ClassVar[str] = "front"
     version: ClassVar[int] = 4
 
@@ -106,15 +107,17 @@ class Front(Answer):
         return np.array([point.energy for point in self.points])
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
-        """``residual_m``, ``energy_J`` and ``a_1``, ``a_2``, ... of all points, by name."""
+        """``residual_m`` (or ``_rad``), ``energy_J`` and ``a_1``, ``a_2``, ... of all points."""
         shape = len(self.points), self.profile.size
         coefficients = np.array([point.coefficients for point in self.points]).reshape(shape)
         named = {f"a_{i + 1}": column for i, column in enumerate(coefficients.T)}
-        return {"residual_m": self.residuals, "energy_J": self.energies, **named}
+        residual = f"residual_{self.task.plant.tip_unit}"
+        return {residual: self.residuals, "energy_J": self.energies, **named}
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        head = "residual F1 [m]", "energy F2 [J]", "shadow price [J/m]", "coefficients"
+        unit = self.task.plant.tip_unit
+        head = f"residual F1 [{unit}]", "energy F2 [J]", f"shadow price [J/{unit}]", "coefficients"
         rows = [
             (
                 f"{point.residual:.3g}" if point.residual > REST else "0",
@@ -144,6 +147,7 @@ class Front(Answer):
 
     @classmethod
     @one_at_a_time
+    @takes(task=PointToPoint, profile=JointProfile)
     def from_coefficients(
         cls,
         task: PointToPoint,
@@ -214,16 +218,16 @@ class Front(Answer):
 
         ValueError when there is none, with the least residual there is.
         """
-        points = self._nonempty()
+        points, unit = self._nonempty(), self.task.plant.tip_unit
         if residual_limit is None:
             return points[-1]
         if not residual_limit >= 0:  # nor NaN; all of them are below infinity
-            raise ValueError(f"residual limit is {residual_limit:g} m; give 0 or more")
+            raise ValueError(f"residual limit is {residual_limit:g} {unit}; give 0 or more")
         still = [point for point in points if point.residual <= residual_limit]
         if not still:
             raise ValueError(
-                f"no point of the front has a residual of {residual_limit:g} m or less; give at "
-                f"least the smallest residual, {points[0].residual:.3g} m"
+                f"no point of the front has a residual of {residual_limit:g} {unit} or less; give "
+                f"at least the smallest residual, {points[0].residual:.3g} {unit}"
             )
         return still[-1]
 
@@ -267,6 +271,7 @@ class Front(Answer):
         )
 
 
+@takes(task=PointToPoint)
 def reference_corner(task: PointToPoint) -> tuple[float, float]:
     """The corner that hypervolumes of a task's fronts are measured from.
 

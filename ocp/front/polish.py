@@ -6,6 +6,7 @@ import time
 from dataclasses import dataclass, replace
 
 import numpy as np
+from quietarm.ocp.checks import takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
@@ -48,6 +49,7 @@ class Polish:
 
 
 @one_at_a_time
+@takes(front=Front)
 def polish_front(front: Front, *, steps: int | None = None, report: Report = no_report) -> Polish:
     """Start the gradient from every point of a front, with the point's residual as the limit.
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.checks import not_negative
+from quietarm.ocp.checks import not_negative, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Asked, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
@@ -29,6 +29,7 @@ Minimum = tuple[Solution, Asked]
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def weighted_front(
     task: PointToPoint,
     profile: JointProfile | None = None,
@@ -94,9 +95,15 @@ def weighted_front(
 
 def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     """The weights that were given, each pair checked."""
+    try:
+        both = [(of_residual, of_energy) for of_residual, of_energy in weights]
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"weights are {weights!r}; give pairs of residual and energy, as [(1, 0), (1, 3)]"
+        ) from None
     pairs = [
         (not_negative("weight", of_residual), not_negative("weight", of_energy))
-        for of_residual, of_energy in weights
+        for of_residual, of_energy in both
     ]
     if not pairs:
         raise ValueError("no weights are given; give a pair of residual and energy, or none at all")

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.limits import QUANTITIES, Limit, Quantity, Ranged
+from quietarm.ocp.profiles.joint_profile import check_motion
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Batch, Values, batch
@@ -289,6 +290,7 @@ def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
         wanted = np.array([task.final_state for task in tasks])
         figures = zip(values.energy, vibrations.peak(values.arrival - wanted))
         for row, arrival, (energy, residual) in zip(own, values.arrival, figures):
+            check_motion(of[0].profile, row.best.coefficients, *row.transcription.task.move)
             row.judged(FinerFigures(float(energy), float(residual), arrival[None]))
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from quietarm.ocp.checks import positive
+from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES, TorqueSpeedLine
@@ -57,6 +57,7 @@ class Fastest:
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def fastest_move(
     task: PointToPoint,
     profile: JointProfile | None = None,

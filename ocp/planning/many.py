@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.checks import takes
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
@@ -69,6 +70,7 @@ class Moves:
 
 
 @one_at_a_time
+@takes(tasks=[PointToPoint], profile=JointProfile)
 def plan_moves(
     tasks: Sequence[PointToPoint],
     profile: JointProfile | None = None,

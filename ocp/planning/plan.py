@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import NotNegative, positive
+from quietarm.ocp.checks import NotNegative, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.interrupts import one_at_a_time
@@ -72,6 +72,7 @@ class Plan(MotionAnswer):
         empty if nothing was optimised.
     """
 
+    example: ClassVar[str] = "a plan, as Plan.load('plan.json')"
     kind: ClassVar[str] = "plan"
     version: ClassVar[int] = 4
 
@@ -142,7 +143,8 @@ class Plan(MotionAnswer):
     def _repr_html_(self) -> str:
         """What a notebook shows."""
         task, motion = self.task, self.motion
-        residual = f"{motion.residual:.3g} m" if motion.residual > REST else "none"
+        left = f"{motion.residual:.3g} {task.plant.tip_unit}"
+        residual = left if motion.residual > REST else "none"
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
         rows = {
             "plant": task.plant.name,
@@ -168,7 +170,8 @@ class Plan(MotionAnswer):
         ticks = ticks_of_move(self.task.duration, sample_rate)
         sampled = self.sampled(np.arange(ticks + 1) / sample_rate)
         tips = sampled.tips.shape[1]
-        tip_names = ["tip_m"] if tips == 1 else [f"tip_{i + 1}_m" for i in range(tips)]
+        numbers = [""] if tips == 1 else [f"_{i + 1}" for i in range(tips)]
+        tip_names = [f"tip{number}_{self.task.plant.tip_unit}" for number in numbers]
         way, force = "angle_rad", "torque_Nm"
         if self.task.plant.joint != ROTARY:
             way, force = "position_m", "force_N"
@@ -184,6 +187,7 @@ class Plan(MotionAnswer):
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def evaluate_coefficients(
     task: PointToPoint,
     coefficients: ArrayLike,
@@ -232,8 +236,10 @@ def only_motion(
 ) -> Plan:
     """The figures of the only motion that a profile has, within the task's limits."""
     plan = evaluate_coefficients(task, [], profile=profile, method="evaluated")
-    residual = [] if residual_limit is None else [Limit.of_residual(max(residual_limit, STILL))]
-    limits = {limit.name: limit for limit in (*residual, *task.limits)}
+    limits = {limit.name: limit for limit in task.limits}
+    if residual_limit is not None:
+        residual = Limit.of_residual(max(residual_limit, STILL), task.plant.tip_unit)
+        limits = {residual.name: residual} | limits
     broken = [
         f"its {name} reaches {limits[name].describe(limits[name].peak_of(plan.motion))}, above "
         f"{limits[name].bounds}"

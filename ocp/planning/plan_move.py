@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.checks import takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
@@ -69,6 +70,7 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
 
 
 @one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile)
 def plan_move(
     task: PointToPoint,
     profile: JointProfile | None = None,
@@ -158,10 +160,11 @@ def _plan_within(
     else:
         plan = _hold(task, profile, replace(settings, residual_limit=largest))
         if plan.worst is not None and (plan.excess or 0.0) > OVERRUN:
+            unit = task.plant.tip_unit
             raise SolverFailedError(
-                f"the residual is {plan.worst.residual:.4g} m in the worst case, above its limit "
-                f"of {largest:g} m: give a larger residual limit, more {profile.term}s or a "
-                "smaller uncertainty"
+                f"the residual is {plan.worst.residual:.4g} {unit} in the worst case, above its "
+                f"limit of {largest:g} {unit}: give a larger residual limit, more {profile.term}s "
+                "or a smaller uncertainty"
             )
     return plan.restated(seconds=time.perf_counter() - began)
 

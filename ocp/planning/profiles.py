@@ -14,6 +14,7 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
+from quietarm.ocp.checks import takes
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import best_of_starts, solver_of, start_coefficients
@@ -92,6 +93,7 @@ def _solve_with_six(task: PointToPoint, settings: SolveSettings) -> Solution:
 
 
 @one_at_a_time
+@takes(task=PointToPoint)
 def shaped_cycloid(
     task: PointToPoint, shaper: str, at: Literal["target", "average"] = "target"
 ) -> ShapedCycloid:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, final
 
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion
-from quietarm.ocp.checks import finite
+from quietarm.models.final import refuse_overridden
+from quietarm.ocp.checks import finite, hashable, instance
 from quietarm.ocp.interrupts import keep_interrupts
 
 Values = Sequence[Expression]
@@ -34,8 +36,17 @@ class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
     A new family is a frozen dataclass with a `size` and `derivatives`; casadi derives the jerk.
+    `inner` and `outer` may state the same in two steps. `motion` and `path` follow and are final:
+    what they return is what was checked.
+
+    Raises
+    ------
+    TypeError
+        When a subclass overrides `motion` or `path`.
     """
 
+    example: ClassVar[str] = "a profile, as CycloidPolynomial(6) or CycloidSpline(12)"
+    """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which files know the family."""
     term: ClassVar[str] = "coefficient"
@@ -48,6 +59,10 @@ class JointProfile(ABC):
     """Steps that resolve the motion between two of its `breaks`."""
     random_starts: ClassVar[int] = 1
     """The gradient's random starts for each that is asked for, several where minima are many."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        refuse_overridden(cls, JointProfile, "derivatives, or inner and outer together")
 
     @property
     @abstractmethod
@@ -132,6 +147,7 @@ class JointProfile(ABC):
         """Angle, speed and acceleration of the joint from the values of `inner`."""
         return JointMotion(*inner)
 
+    @final
     def motion(
         self, coefficients: Values, fraction: Expression, *move: Expression, jerk: bool = False
     ) -> JointMotion:
@@ -148,6 +164,7 @@ class JointProfile(ABC):
         motion: Any = ca.substitute([*values, rate], [at], [place])
         return JointMotion(*(motion if kinds & {ca.SX, ca.MX} else map(ca.evalf, motion)))
 
+    @final
     def path(
         self, coefficients: ArrayLike, start: float, target: float, duration: float
     ) -> JointPath:
@@ -167,7 +184,12 @@ class JointProfile(ABC):
                 f"duration is {duration:g} s, too short for the {self.label}; give "
                 f"{math.ceil(1e4 * self.least_duration) / 1e4:g} s or more"
             )
-        values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+        try:
+            values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+        except (TypeError, ValueError):
+            raise ValueError(
+                f"coefficients are {reprlib.repr(coefficients)}; give {self.size} numbers"
+            ) from None
         if values.shape != (self.size,):
             raise ValueError(
                 f"got {values.size} coefficients for a profile of {self.size}; "
@@ -208,8 +230,6 @@ class JointPath:
         return np.where(outside, 0.0, values) if order else values
 
 
-@lru_cache(maxsize=256)
-@keep_interrupts()  # casadi loses a Ctrl-C
 def check_profile(profile: JointProfile) -> None:
     """Refuse a profile whose motion is not from rest to rest, or whose derivatives are not.
 
@@ -217,29 +237,50 @@ def check_profile(profile: JointProfile) -> None:
 
     Raises
     ------
+    TypeError
+        When it is no profile, or one that may change.
     ValueError
         With the value, where it is, and what it has to be.
     """
-    duration = max(_DURATION, 2 * profile.least_duration)
+    instance("profile", profile, JointProfile)
+    hashable("profile", profile)
+    _check_at_random(profile)
+
+
+@lru_cache(maxsize=256)
+def _check_at_random(profile: JointProfile) -> None:
     within = profile.start_box(profile.default_bound)
-    a = np.random.default_rng(1).uniform(*within).tolist()
-    at = ca.SX.sym("fraction")
-    motion = [ca.SX(x) for x in profile.derivatives(a, at, _START, _TARGET, duration)[:3]]
-    move = _START, _TARGET, duration
-    joined = profile.outer(profile.inner(a, at, *move), *move)[:3]
-    rates = [ca.jacobian(one, at) / duration for one in motion[:2]]
-    every = ca.Function("motion", [at], [ca.densify(ca.horzcat(*motion, *rates, *joined))])
-    table = every.map(len(_SHARES))(_SHARES[None]).full().reshape(len(_SHARES), -1)
-    angle, speed, acceleration, by_angle, by_speed, *others = table.T
-    ends = f"its end of a move from {_START} to {_TARGET} rad"
+    coefficients = np.random.default_rng(1).uniform(*within)
+    duration = max(_DURATION, 2 * profile.least_duration)
+    table = _compared_values(profile, coefficients, _START, _TARGET, duration)
+    _refuse_difference(profile, table, _START, _TARGET)
+
+
+def check_motion(
+    profile: JointProfile, coefficients: ArrayLike, start: float, target: float, duration: float
+) -> None:
+    """Refuse one motion likewise, at its own coefficients, as every answer's is.
+
+    One that overflows is left to the integrator, which says so.
+    """
+    table = _compared_values(profile, np.asarray(coefficients, float), start, target, duration)
+    if np.isfinite(table).all():
+        _refuse_difference(profile, table, start, target)
+
+
+def _refuse_difference(
+    profile: JointProfile, table: NDArray[np.float64], start: float, target: float
+) -> None:
+    """ValueError where rows of `_compared_values` differ, or are not at rest at the ends."""
+    angle, speed, acceleration, angle_rate, speed_rate, *joined = table
+    ends = f"its end of a move from {start:.4g} to {target:.4g}"
     compared = [
-        ("angle", angle, [_START, _TARGET], ends),
+        ("angle", angle, [start, target], ends),
         ("speed", speed, [0.0, 0.0], "rest at both ends"),
-        ("speed", speed, by_angle, "the derivative of the angle"),
-        ("acceleration", acceleration, by_speed, "the derivative of the speed"),
+        ("speed", speed, angle_rate, "the derivative of the angle"),
+        ("acceleration", acceleration, speed_rate, "the derivative of the speed"),
     ]
-    names = "angle", "speed", "acceleration"
-    for name, other, value in zip(names, others, table.T[:3]):
+    for name, value, other in zip(("angle", "speed", "acceleration"), table[:3], joined):
         compared.append(
             (f"{name} by outer(inner(...))", other, value, f"the {name} of derivatives")
         )
@@ -254,3 +295,29 @@ def check_profile(profile: JointProfile) -> None:
                 f"the duration, where {words} is {wanted[k]:.4g}; check the factors and signs in "
                 "derivatives (d/dt is d/dfraction over the duration)"
             )
+
+
+@keep_interrupts()  # casadi loses a Ctrl-C
+def _compared_values(
+    profile: JointProfile, coefficients: NDArray[np.float64], *move: float
+) -> NDArray[np.float64]:
+    """What is compared, at `_SHARES` of the duration, a row each.
+
+    Angle, speed and acceleration; CasADi's rates of the first two; all three by `outer` of `inner`.
+    """
+    function = _comparison(profile)
+    columns = np.tile([*coefficients, *move], (len(_SHARES), 1)).T
+    return function(np.vstack([_SHARES, columns])).full()
+
+
+@lru_cache(maxsize=256)
+def _comparison(profile: JointProfile) -> ca.Function:
+    """What `_compared_values` returns, of columns of a fraction, coefficients and a move."""
+    symbols = ca.SX.sym("given", 1 + profile.size + 3)
+    fraction, *given = ca.vertsplit(symbols)
+    coefficients, move = given[: profile.size], given[profile.size :]
+    motion = [ca.SX(x) for x in profile.derivatives(coefficients, fraction, *move)[:3]]
+    joined = profile.outer(profile.inner(coefficients, fraction, *move), *move)[:3]
+    rates = [ca.jacobian(value, fraction) / move[-1] for value in motion[:2]]
+    results = ca.densify(ca.vertcat(*motion, *rates, *joined))
+    return ca.Function("motion", [symbols], [results]).map(len(_SHARES))

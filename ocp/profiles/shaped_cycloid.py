@@ -13,7 +13,7 @@ from typing import ClassVar, NamedTuple
 
 import casadi as ca
 from quietarm.models import Expression
-from quietarm.ocp.checks import finite, positive
+from quietarm.ocp.checks import finite, positive, several
 from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
 TOLERATED = 0.05
@@ -164,8 +164,10 @@ class ShapedCycloid(JointProfile):
     def __post_init__(self) -> None:
         if self.shaper not in SHAPERS:
             raise ValueError(f"shaper is {self.shaper!r}; give {', '.join(SHAPERS)}")
-        frequencies = tuple(positive("frequency", w, "rad/s") for w in self.frequencies)
-        damping = tuple(finite("damping ratio", zeta) for zeta in self.damping_ratios)
+        given = several("frequencies", self.frequencies, "numbers, one for each mode")
+        frequencies = tuple(positive("frequency", frequency, "rad/s") for frequency in given)
+        given = several("damping_ratios", self.damping_ratios, "numbers, one for each mode")
+        damping = tuple(finite("damping ratio", ratio) for ratio in given)
         if not frequencies or len(frequencies) != len(damping):
             raise ValueError(
                 f"got {len(frequencies)} frequencies and {len(damping)} damping ratios; give one "

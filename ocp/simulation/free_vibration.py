@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.ocp.checks import takes
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.simulation.collocation import modal_system
 from quietarm.ocp.task import PointToPoint
@@ -63,6 +64,7 @@ class FreeVibration:
 
     @one_at_a_time
     @keep_interrupts()  # casadi loses a Ctrl-C
+    @takes(plant=Plant)
     def __init__(self, plant: Plant, angle: ArrayLike, window: float = 0.0) -> None:
         self.window = window
         angles, modes = np.atleast_1d(np.asarray(angle, dtype=float)), plant.modes

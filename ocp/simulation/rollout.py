@@ -10,6 +10,7 @@ from typing import NamedTuple
 import casadi as ca
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import is_zero
+from quietarm.ocp.checks import takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, power_of
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import Quantity, ask_for_jerk
@@ -115,6 +116,7 @@ class Simulation(NamedTuple):
 
 
 @one_at_a_time
+@takes(plant=Plant, profile=JointProfile, energy=Energy)
 def symbolic_rollout(
     plant: Plant,
     profile: JointProfile,

@@ -56,7 +56,8 @@ class Transcription:
             task.plant, profile, steps, tuple(one.quantity for one in task.limits),
             task.error_names, task.energy, profile.breaks(task.duration),
         )  # fmt: skip
-        self.limits = {one.name: one for one in (*task.limits, Limit.of_residual(np.inf))}
+        residual = Limit.of_residual(np.inf, task.plant.tip_unit)
+        self.limits = {limit.name: limit for limit in (*task.limits, residual)}
 
     @classmethod
     def of(
@@ -221,7 +222,8 @@ class Problem(NamedTuple):
         minimise: Mapping[str, float] = LEAST_ENERGY,
     ) -> Problem:
         """Within a task's limits and one of the residual [m], the least energy or another sum."""
-        limits = Limit.of_residual(residual_limit), *transcription.task.limits
+        task = transcription.task
+        limits = Limit.of_residual(residual_limit, task.plant.tip_unit), *task.limits
         return cls(transcription, Scalarization(limits, bound, minimise))
 
 

@@ -60,6 +60,8 @@ REPORT_OPTION = output_option(
 def check_folder(path: str | Path) -> Path:
     """Make sure before the work that files can be written in a folder, or that it can be made."""
     folder = Path(path)
+    if folder == STDOUT:
+        raise ValueError(f"this cannot go to standard output; give a name, or ./{folder}")
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"{folder} is a file; give a folder")
     check_writable(folder / "any" if folder.is_dir() else folder)

@@ -9,9 +9,9 @@ from typing import Any
 import click
 from click.core import ParameterSource
 from quietarm.models import Plant
-from quietarm.models.joint_motion import ROTARY, joint_unit
+from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import JointProfile, PointToPoint
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
 from quietarm.studies.cli.plants import (
     Kind,
     build_plant,
@@ -20,13 +20,13 @@ from quietarm.studies.cli.plants import (
     read_parameters,
     warn_of_payload,
 )
-from quietarm.studies.cli.quantities import parse_of_joint
+from quietarm.studies.cli.quantities import RESIDUAL_LIMIT, parse_of_plant
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
 
-_OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()))
+_OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()), TORQUE_SPEED)
 """Options that are read once the plant is known: in radians, or in metres of a linear axis."""
-_OTHERS = ("residual_window", "initial", "final", "energy", "torque_speed")
+_OTHERS = ("residual_window", "initial", "final", "energy")
 _NEEDED = {"target": "30deg", "duration": "0.8"}
 
 
@@ -66,11 +66,15 @@ class Given:
         """Refuse all options that were typed but some."""
         self.refuse({one.name for one in self._context.command.params if one.name} - {*than}, why)
 
-    def read_of_joint(self, name: str, joint: str) -> Any:
-        """What an option says that is in the units of the joint; None where it was not typed."""
+    def read_residual_limit(self, plant: Plant) -> float | None:
+        """The residual limit in the unit of the plant's tips; None where none was typed."""
+        return self.read_of_plant(RESIDUAL_LIMIT, plant)
+
+    def read_of_plant(self, name: str, plant: Plant) -> Any:
+        """What an option says that is in the plant's units; None where it was not typed."""
         text = self._context.params[name]
         try:
-            return None if text is None else parse_of_joint(name, text, joint)
+            return None if text is None else parse_of_plant(name, text, plant.joint, plant.tip_unit)
         except ValueError as error:
             hint = f"'--{name.replace('_', '-')}'"
             raise click.BadParameter(str(error), param_hint=hint) from None
@@ -99,9 +103,7 @@ class Given:
         given: dict[str, Any] = self.pick(*_OTHERS)
         given |= {name: (value,) for name, value in known.items()}
         typed = [name for name in _OF_JOINT if name not in known]
-        given |= {name: self.read_of_joint(name, plant.joint) for name in typed}
-        if plant.joint != ROTARY and given["torque_speed"] is not None:
-            raise ValueError("--torque-speed is for a joint that turns; give --torque-limit in N")
+        given |= {name: self.read_of_plant(name, plant) for name in typed}
         for name, example in _NEEDED.items():
             if given[name] is None:
                 raise click.UsageError(f"Missing option '--{name}'. Give it as --{name} {example}")

@@ -20,9 +20,8 @@ from quietarm.studies.cli.quantities import (
     parse_error,
     parse_share_of_work,
     parse_state,
-    parse_torque_speed,
 )
-from quietarm.studies.cli.types import LENGTH, SETTING, TIME, Named, Parsed
+from quietarm.studies.cli.types import SETTING, TIME, Named, Parsed
 from quietarm.studies.reading.profiles import FAMILIES, POLYNOMIAL
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
@@ -105,8 +104,8 @@ TASK = (
                help=f"Largest {one.label} during the move; by direction as LEAST:LARGEST.")
         for one in QUANTITIES.values()
     ),
-    option("--torque-speed", type=Parsed("torque@speed", parse_torque_speed),
-           help="Torque limit by speed, as points: 1.5Nm@0,0.8Nm@190rpm."),
+    option("--torque-speed", metavar="TORQUE@SPEED", help="Torque limit by speed, as points: "
+           "1.5Nm@0,0.8Nm@190rpm; of a linear axis 100N@0,40N@500mm/s."),
     option("--residual-window", type=TIME, default="1",
            help="Time after arrival in which the residual is measured."),
     option("--initial", type=Parsed("W:W'", parse_state), help="Vibration at the start, modal "
@@ -121,7 +120,7 @@ TASK = (
 """What describes a task: a command with these has `Given.read_task`."""
 BOUND = option("--bound", type=float, help="Largest size of a coefficient. [default: none; a "
                "search of polynomials needs one]")  # fmt: skip
-RESIDUAL_LIMIT = option("--residual-limit", type=LENGTH, help="Largest tip displacement after "
+RESIDUAL_LIMIT = option("--residual-limit", metavar="LENGTH", help="Largest tip displacement after "
                         "arrival. [default: at rest; with --error 5 % of the plain cycloid's "
                         "largest deflection, or less]")  # fmt: skip
 SEED = option("--seed", default=0, help="Seed of the random numbers; the first of several.")

@@ -14,11 +14,11 @@ from functools import partial, reduce
 from operator import add, lt
 from typing import Any, TypeVar
 
-from quietarm.models.joint_motion import ROTARY
+from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, known, unknown
 from quietarm.ocp.energy import Energy, Mix
-from quietarm.ocp.limits import quantities_of
+from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
 from quietarm.studies.reading.units import UNITS as OF_COLUMNS
 from quietarm.studies.reading.units import normal
 from quietarm.studies.sweep.grid import OF_MOVES, axis_values
@@ -42,7 +42,7 @@ UNITS: Mapping[str, tuple[str, Mapping[str, float]]] = {
     "rad/s^2": ("rad/s^2 (2) or 60deg/s^2", _ANGLES),
     "rad/s^3": ("rad/s^3 (2) or 60deg/s^3", _ANGLES),
     "m": ("metres (0.001) or 1mm", _LENGTHS),
-    "m/s": ("m/s (0.5) or 500mm/s", {"m/s": 1.0, "mm/s": 1e3}),
+    "m/s": ("m/s (0.5) or 500mm/s", {"m/s": 1.0, "mps": 1.0, "mm/s": 1e3}),
     "m/s^2": ("m/s^2 (2) or 2000mm/s^2", _LENGTHS),
     "m/s^3": ("m/s^3 (50)", _LENGTHS),
     "s": ("seconds (0.8) or 800ms", {"s": 1.0, "ms": 1e3}),
@@ -55,6 +55,7 @@ UNITS: Mapping[str, tuple[str, Mapping[str, float]]] = {
 
 Dividing by 1000 is exact where multiplying by 0.001 is not.
 """
+RESIDUAL_LIMIT = "residual_limit"
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""
 
@@ -117,8 +118,8 @@ def parse_parameter(text: str, unit: str, name: str) -> float:
     return parse_quantity(text, unit, f"a value of {name}")
 
 
-def parse_of_joint(name: str, text: str, joint: str) -> Any:
-    """Read an end or the duration of a move, or a limit, in the units of a kind of joint.
+def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
+    """Read an end or the duration of a move, or a limit of it, in the units of joint and tip.
 
     The former have one value or several; a limit is a number, or one for each side: ``-30:40``.
     """
@@ -126,7 +127,12 @@ def parse_of_joint(name: str, text: str, joint: str) -> Any:
         end = ("rad", "an angle") if joint == ROTARY else ("m", "a position")
         kind = ("s", "a time") if name == "duration" else end
         return axis_values(text, partial(parse_usual, *kind))
-    limited, sides = quantities_of(joint)[name.removesuffix("_limit")], text.split(":")
+    if name == TORQUE_SPEED:
+        return parse_torque_speed(text, joint)
+    if name == RESIDUAL_LIMIT:
+        return parse_usual(tip_unit, "a length" if tip_unit == "m" else "an angle", text)
+    quantities = quantities_of(joint, tip_unit)
+    limited, sides = quantities[name.removesuffix("_limit")], text.split(":")
     what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
     values = [parse_usual(limited.unit, what, side) for side in sides]
     if len(values) > 2:
@@ -185,11 +191,28 @@ _state = _two(
     ":", _lengths, _lengths,
     "state; give W [m] of each mode, a colon, and W' [m/s] of each, as 5mm:-0.3 or 0,0:0.1,0",
 )  # fmt: skip
-_torque, _speed = (partial(parse_quantity, unit=unit, what="one") for unit in ("N m", "rad/s"))
-_torque_at_speed = _two(
-    "@", _torque, _speed,
-    "torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with speeds in rad/s, or as 190rpm",
-)  # fmt: skip
+
+
+def _of_drive(joint: str, otherwise: str) -> Callable[[str], tuple[float, float]]:
+    """What reads the torque, or the force, that a drive gives at a speed."""
+    torque, speed = (
+        partial(parse_quantity, unit=joint_unit(unit, joint), what="one")
+        for unit in ("N m", "rad/s")
+    )
+    return _two("@", torque, speed, otherwise)
+
+
+_of_drives = {
+    ROTARY: _of_drive(
+        ROTARY,
+        "torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with speeds in rad/s, or as "
+        "190rpm",
+    ),
+    LINEAR: _of_drive(
+        LINEAR,
+        "force at a speed; give two or more, as 100N@0,40N@0.5 with speeds in m/s, or as 500mm/s",
+    ),
+}
 
 
 def parse_state(text: str) -> ModalState:
@@ -197,9 +220,12 @@ def parse_state(text: str) -> ModalState:
     return ModalState(*_state(text))
 
 
-def parse_torque_speed(text: str) -> tuple[tuple[float, float], ...]:
-    """Read what a drive gives, torques at speeds: ``1.5Nm@0,0.8Nm@20`` or ``0.8Nm@190rpm``."""
-    return tuple(map(_torque_at_speed, text.split(",")))
+def parse_torque_speed(text: str, joint: str = ROTARY) -> tuple[tuple[float, float], ...]:
+    """Read what a drive gives, torques at speeds: ``1.5Nm@0,0.8Nm@20`` or ``0.8Nm@190rpm``.
+
+    Of a linear joint forces: ``100N@0,40N@500mm/s``.
+    """
+    return tuple(map(_of_drives[joint], text.split(",")))
 
 
 def parse_pair(

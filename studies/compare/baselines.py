@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from quietarm.ocp import Candidate, Plan, PointToPoint, evaluate_coefficients, shaped_cycloid
-from quietarm.ocp.checks import install, unknown
+from quietarm.ocp.checks import install, several, takes, unknown
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS, Impulses, convolved
 from quietarm.ocp.simulation.free_vibration import FreeVibration
@@ -24,6 +24,7 @@ _LEAST_SHARE = 0.02
 
 def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
     """Baselines of these names, of "all" every one, each once; ValueError where one is unknown."""
+    names = several("baselines", names, "names")
     chosen = dict.fromkeys(one for name in names for one in (BASELINES if name == ALL else [name]))
     for name in chosen:
         if name not in BASELINES:
@@ -31,6 +32,7 @@ def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(chosen)
 
 
+@takes(task=PointToPoint)
 def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
     """A baseline's motion of a task; ValueError where there is none."""
     task = task.certain
@@ -42,7 +44,10 @@ def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
     impulses = _impulses(task, shaper) if shaper else Impulses((1.0,), (0.0,))
     left = task.duration - impulses.times[-1]
     if left < _LEAST_SHARE * task.duration:
-        raise ValueError(f"the shaper alone takes {impulses.times[-1]:.3g} s")
+        raise ValueError(
+            f"the shaper alone takes {impulses.times[-1]:.3g} s, of a move of {task.duration:.4g} "
+            "s; give a longer duration"
+        )
     free = shaped(ruckig_motion(replace(task, duration=left)), impulses)
     return Candidate.of_free_motion(task, free)
 
@@ -62,7 +67,10 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
     except ImportError:
         raise ValueError(f"ruckig is not installed; {install('ruckig')}") from None
     if task.acceleration_limit is None:
-        raise ValueError("ruckig needs an acceleration limit")
+        raise ValueError(
+            "ruckig moves within an acceleration limit, and the move has none; plan it with one, "
+            "as --acceleration-limit 40"
+        )
     asked, found, free = InputParameter(1), Trajectory(1), (-np.inf, np.inf)
     asked.current_position, asked.target_position = [task.start], [task.target]
     bounds = {limit.name: (limit.lower, limit.upper) for limit in task.limits}
@@ -72,11 +80,13 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
     asked.min_acceleration, asked.max_acceleration = [least], [most]
     asked.max_jerk = [min(np.abs(bounds.get("jerk", free)))]
     asked.minimum_duration = task.duration
-    Ruckig(1).calculate(asked, found)
+    result = Ruckig(1).calculate(asked, found)
+    if int(result) < 0:
+        raise ValueError(f"ruckig finds no motion ({result}); give wider limits")
     if found.duration > task.duration * (1 + 1e-6):
         raise ValueError(
             f"within the limits it takes {found.duration:.4g} s, more than the "
-            f"{task.duration:.4g} s that it has"
+            f"{task.duration:.4g} s that it has; give a longer duration or wider limits"
         )
     one = found.profiles[0][0]
     lengths = np.array(one.t)

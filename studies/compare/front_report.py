@@ -13,7 +13,8 @@ from quietarm.studies import figures
 from quietarm.studies.compare.fronts import Comparison, Group, compare_fronts
 from quietarm.studies.figures.comparison import KnownPoint
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import millimetres, spread_words, title_of
+from quietarm.studies.report.words import spread_words, title_of
+from quietarm.studies.tips import tip_scale, tip_words
 
 _INDICATORS = {"hypervolume": ".4f", "igd_plus": ".2g", "epsilon": ".2g"}
 _HEADINGS = {"hypervolume": "hypervolume", "igd_plus": "IGD+", "epsilon": "epsilon"}
@@ -50,8 +51,11 @@ def methods_table(comparison: Comparison) -> pd.DataFrame:
 
 
 def _row(comparison: Comparison, group: Group) -> dict[str, object]:
+    tip_unit = comparison.task.plant.tip_unit
     energies = {
-        f"F2 [J] within {millimetres(level)}": spread_words(group.spread("energies", i), ".4g")
+        f"F2 [J] within {tip_words(level, tip_unit)}": spread_words(
+            group.spread("energies", i), ".4g"
+        )
         for i, level in enumerate(comparison.levels)
     }
     # as found, points of the gradient would lose by steps that its line has not
@@ -77,6 +81,7 @@ def _row(comparison: Comparison, group: Group) -> dict[str, object]:
 def runs_table(comparison: Comparison) -> pd.DataFrame:
     """Every run with all of its figures."""
     rows: list[dict[str, object]] = []
+    shown, scale = tip_scale(comparison.task.plant.tip_unit)
     for group in comparison.groups:
         for run in group.runs:
             front, record = run.front, run.front.record
@@ -88,7 +93,7 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
                 "igd_plus": run.igd_plus, "epsilon": run.epsilon,
             }  # fmt: skip
             for i, level in enumerate(comparison.levels):
-                at = f"at_{1e3 * level:g}mm"
+                at = f"at_{scale * level:g}{shown}"
                 row |= {f"energy_J_{at}": run.energies[i], f"gap_{at}": run.gaps[i],
                         f"gap_between_{at}": run.gaps_between[i]}  # fmt: skip
             for name in ("evaluations", "iterations", "seconds"):
@@ -111,6 +116,7 @@ def fronts_report(
         {
             "parts": list(zip(comparisons, tables, pictures)),
             "title_of": title_of,
+            "tip_words": tip_words,
             "fill": BETWEEN if comparisons[0].fill else 0,
             "several": any(len(g.runs) > 1 for one in comparisons for g in one.groups),
         },

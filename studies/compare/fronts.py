@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics.quality import CORNER, objectives, within
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
+from quietarm.ocp.checks import takes
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.saved import plain
 from quietarm.studies.compare.staircase import best_of, evenly_spaced, filled
@@ -123,6 +124,7 @@ class Comparison:
         return points[:, 1] / within(self.best_front, points[:, 0]) - 1
 
 
+@takes(fronts=[Front], reference=Front)
 def compare_fronts(
     fronts: Sequence[Front],
     names: Sequence[str] = (),

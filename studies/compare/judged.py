@@ -17,6 +17,7 @@ from quietarm.ocp import (
     evaluate_robustness,
     task_difference,
 )
+from quietarm.ocp.checks import takes
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.robustness import worst_case, worst_of
@@ -59,6 +60,7 @@ class Judged:
     why: str = ""
 
 
+@takes(task=PointToPoint)
 def judge(
     name: str,
     moved: Plan | Floor | Candidate,

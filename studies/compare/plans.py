@@ -8,6 +8,7 @@ from functools import partial
 import pandas as pd
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import Plan, PointToPoint, QuietarmError
+from quietarm.ocp.checks import takes
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies import figures
 from quietarm.studies.compare.baselines import baseline, choose_baselines
@@ -20,11 +21,15 @@ from quietarm.studies.compare.judged import (
 )
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import title_of
+from quietarm.studies.tips import tip_scale
 
+_WHY = "why there is none"
+"""Column of a table for files; a page lists the reasons below."""
 _TURNED = 1e-4
 """A joint that goes back by more [rad] is said to."""
 
 
+@takes(plans={str: Plan}, task=PointToPoint)
 def compare_plans(
     plans: Mapping[str, Plan],
     baselines: Sequence[str] = (),
@@ -72,26 +77,30 @@ def compare_plans(
     return judged
 
 
-def motions_table(motions: Sequence[Judged], joint: str = ROTARY) -> pd.DataFrame:
+def motions_table(
+    motions: Sequence[Judged], joint: str = ROTARY, tip_unit: str = "m"
+) -> pd.DataFrame:
     """A row for each motion with all its figures; what is known of none is left out."""
-    rows = [{"motion": one.name, **dict(_cells(one))} for one in motions]
+    rows = [{"motion": one.name, **dict(_cells(one, tip_unit))} for one in motions]
     table = pd.DataFrame(rows).dropna(axis=1, how="all")
     return table.rename(columns=lambda name: joint_unit(str(name), joint))
 
 
-def _cells(one: Judged) -> Iterator[tuple[str, float | str | None]]:
+def _cells(one: Judged, tip_unit: str) -> Iterator[tuple[str, float | str | None]]:
     motion = one.motion
     yield "parameters", one.parameters
     if motion is None:
+        yield _WHY, one.why
         return
     yield "energy [J]", motion.energy
-    yield "residual [mm]", 1e3 * motion.residual
+    shown, scale = tip_scale(tip_unit)
+    yield f"residual [{shown}]", scale * motion.residual
     if one.worst is not None:
-        yield "worst case [mm]", 1e3 * one.worst.residual
+        yield f"worst case [{shown}]", scale * one.worst.residual
         errors = (f"{name} {100 * error:+.3g} %" for name, error in one.worst.errors.items())
         yield "worst case at", ", ".join(errors)
     if one.robustness is not None:
-        yield "95 % of samples [mm]", 1e3 * one.robustness.percentile("residual", 95)
+        yield f"95 % of samples [{shown}]", scale * one.robustness.percentile("residual", 95)
         for sweep in one.robustness.sweeps:
             ends = sweep.insensitivity
             words = "none" if ends is None else f"{100 * ends[0]:.2g} to {100 * ends[1]:.2g} %"
@@ -109,7 +118,7 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     short = {"peak ": "", "acceleration [rad": "accel. [1", "acceleration": "accel."}
     for long, word in short.items():
         rounded.columns = rounded.columns.str.replace(long, word, regex=False)
-    return rounded.drop(columns=["parameters", "time [s]"], errors="ignore")
+    return rounded.drop(columns=["parameters", "time [s]", _WHY], errors="ignore")
 
 
 def remarks(motions: Sequence[Judged], unit: str = "rad") -> list[str]:
@@ -130,7 +139,7 @@ def remarks(motions: Sequence[Judged], unit: str = "rad") -> list[str]:
 def plans_report(task: PointToPoint, motions: Sequence[Judged]) -> Report:
     """Motions as a table, what to know of them, and a picture."""
     joint = task.plant.joint
-    table = motions_table(motions, joint)
+    table = motions_table(motions, joint, task.plant.tip_unit)
     robust = next((one.robustness for one in motions if one.robustness), None)
     ranges = next((one.worst.errors for one in motions if one.worst), {})
     return Report(
@@ -145,5 +154,9 @@ def plans_report(task: PointToPoint, motions: Sequence[Judged]) -> Report:
             "ruckig": any("ruckig" in one.name for one in motions),
         },
         {"motions": table},
-        {"motions.png": partial(figures.motions_figure, motions, title_of(task))},
+        {
+            "motions.png": partial(
+                figures.motions_figure, motions, title_of(task), task.plant.tip_unit
+            )
+        },
     )

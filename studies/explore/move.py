@@ -92,13 +92,15 @@ class Explored:
     def dials(self) -> dict[str, Dial]:
         """What can be set, by name."""
         task, joint = self.opened or self.task, self.task.plant.joint
+        tip_unit = task.plant.tip_unit
         way = tau if joint == ROTARY else max(_FURTHEST, abs(task.start), abs(task.target))
         ends = dict.fromkeys(OF_MOVES, (joint_unit("rad", joint), -way, way))
         ends["duration"] = "s", min(_SHORTEST, task.duration), max(_LONGEST, task.duration)
         for axis in self.library.grid.axes if self.library else ():
             ends[axis.name] = axis.unit, axis.values[0], axis.values[-1]
-        limits = {one.limit: (one.name, one.unit) for one in quantities_of(joint).values()}
-        limits |= {"residual_limit": ("residual", "m"), "bound": ("largest |a_n|", "-")}
+        quantities = quantities_of(joint, tip_unit).values()
+        limits = {quantity.limit: (quantity.name, quantity.unit) for quantity in quantities}
+        limits |= {"residual_limit": ("residual", tip_unit), "bound": ("largest |a_n|", "-")}
         reach = "-", -self.reach, self.reach
         return {
             **{name: _dial("move", name, *one) for name, one in ends.items()},

@@ -33,7 +33,7 @@ from quietarm.studies.explore.move import FILES, Dial, Explored
 from quietarm.studies.explore.plots import GREY, PANELS, Plots
 from quietarm.studies.figures.looks import RED
 from quietarm.studies.reading.profiles import FAMILIES
-from quietarm.studies.report.moves import plan_rows
+from quietarm.studies.report.moves import HARD_REMEDIES, plan_rows
 
 Change = Callable[[Explored], Explored]
 _WAIT = 5
@@ -56,7 +56,7 @@ class Page:
             "terms": lambda now, terms: now.choose_profile(now.profile, terms),
         }
         self._sliders: tuple[list[str], float] = [], 0.0
-        self._plots = Plots(document, explored.task.plant.joint, self._pick)
+        self._plots = Plots(document, explored.task.plant, self._pick)
         self._file = ColumnDataSource({"name": [], "text": [], "time": []})
         save = CustomJS(args={"file": self._file}, code=(_HERE / "save.js").read_text())
         self._file.js_on_change("data", save)
@@ -205,7 +205,8 @@ class Page:
 
 def _facts(explored: Explored) -> str:
     """The figures of `quietarm plan`, in the words of the page."""
-    facts = dict(plan_rows(explored.plan, "enter what the drive can do under Limits"))
+    remedies = dict.fromkeys(HARD_REMEDIES, "enter what the drive can do under Limits")
+    facts = dict(plan_rows(explored.plan, remedies))
     facts["computed in"] = facts.pop("time")
     if explored.of_front:
         facts["status"] = "a point of the front"

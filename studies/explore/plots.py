@@ -12,12 +12,14 @@ from bokeh.document import Document
 from bokeh.models import ColumnDataSource, CustomJS, DataRange1d, ScaleBar
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike, NDArray
+from quietarm.models import Plant
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
 from quietarm.studies.figures.structure import INK, structures_of
 from quietarm.studies.report.words import residual_words
+from quietarm.studies.tips import tip_scale
 
 GREY = "#9e9e9e"
 PANELS = ("deflection", "angle", "torque", "speed", "acceleration", "jerk")
@@ -46,13 +48,17 @@ _COLUMNS: Mapping[str, tuple[str, ...]] = {
 class Plots:
     """All plots by name; `pick` is told the number of a point of the front that is clicked."""
 
-    def __init__(self, document: Document, joint: str, pick: Callable[[int], None]) -> None:
+    def __init__(self, document: Document, plant: Plant, pick: Callable[[int], None]) -> None:
         self._sources = {
             name: ColumnDataSource({one: [] for one in of}) for name, of in _COLUMNS.items()
         }
-        titles = {"robustness": ("residual over the frequency error [mm]", "frequency error [%]")}
-        titles |= {name: (heading(name, joint), "time [s]  (dotted: arrival)") for name in PANELS}
-        self._front = self._tradeoff(pick)
+        shown = tip_scale(plant.tip_unit)[0]
+        below = "time [s]  (dotted: arrival)"
+        titles = {
+            "robustness": (f"residual over the frequency error [{shown}]", "frequency error [%]"),
+            **{name: (heading(name, plant.joint, plant.tip_unit), below) for name in PANELS},
+        }
+        self._front = self._tradeoff(pick, shown)
         panels = [self._panel(name, *words) for name, words in titles.items()]
         self.roots = [self._stage(document), self._front, *panels]
 
@@ -84,10 +90,12 @@ class Plots:
         plot.tags = [play["film"]]  # else it would be no part of the document
         return plot
 
-    def _tradeoff(self, pick: Callable[[int], None]) -> Any:
+    def _tradeoff(self, pick: Callable[[int], None], shown: str) -> Any:
         """The front, and where the motion in hand lies."""
-        axes: dict[str, Any] = {"x_axis_label": "residual F1 [mm]", "y_axis_label": "energy F2 [J]"}
-        plot: Any = figure(name="front", tools="tap", **axes)
+        plot: Any = figure(
+            name="front", tools="tap", x_axis_label=f"residual F1 [{shown}]",
+            y_axis_label="energy F2 [J]",
+        )  # fmt: skip
         points, here = self._sources["points"], self._sources["here"]
         points.selected.on_change("indices", lambda _, old, new: pick(new[0]) if new else None)
         plot.line(*_POINT, source=points, color=BLUE)
@@ -111,7 +119,8 @@ def _drawn(explored: Explored) -> dict[str, Rows]:
     lines = [Line(cycloid, "", GREY, "solid"), Line(plan, "", BLUE, "solid")]
     if explored.kept:
         lines.insert(1, Line(explored.kept, "", ORANGE, "dashed"))
-    points, here = ([(1e3 * one.residual, one.energy) for one in of] for of in (front, [plan]))
+    scale = tip_scale(plan.task.plant.tip_unit)[1]
+    points, here = ([(scale * one.residual, one.energy) for one in of] for of in (front, [plan]))
     rows = {"points": points, "here": here * bool(front), "robustness": _robustness(plan)}
     return rows | _film(lines[-1]) | {name: _quantity(lines, name) for name in PANELS}
 
@@ -132,11 +141,12 @@ def _quantity(lines: list[Line], name: str) -> Rows:
 
 
 def _robustness(plan: Plan) -> Rows:
-    """The residual [mm] over the error of the frequency [%], and what is tolerated."""
+    """The residual over the error of the frequency [%], and what is tolerated."""
     ranges = {"frequency": FREQUENCY}
     found = evaluate_robustness(plan.task, plan.profile, plan.coefficients, ranges, samples=1)
-    (sweep,), tolerated = found.sweeps, 1e3 * found.tolerated
-    errors, residuals = _plain(100 * sweep.errors), _plain(1e3 * sweep.figures.residual)
+    scale = tip_scale(plan.task.plant.tip_unit)[1]
+    (sweep,), tolerated = found.sweeps, scale * found.tolerated
+    errors, residuals = _plain(100 * sweep.errors), _plain(scale * sweep.figures.residual)
     level = [errors[0], errors[-1]], [tolerated, tolerated], GREY, "dashed"
     return [(errors, residuals, BLUE, "solid"), level]
 
@@ -147,7 +157,8 @@ def _film(line: Line) -> dict[str, Rows]:
     end = plan.task.duration + plan.task.residual_window
     times = np.arange(0.0, end, 1 / FRAMES)
     (one,) = structures_of([line], times, end)
-    words = f"{plan.energy:.4g} J, {residual_words(plan.residual)}; {one.scale_words}"
+    residual = residual_words(plan.residual, plan.task.plant.tip_unit)
+    words = f"{plan.energy:.4g} J, {residual}; {one.scale_words}"
     parts = [(*_along(part.points), part.colour, part.width, len(times), words)
              for part in one.bent]  # fmt: skip
     return {"film": parts, "corners": _plain(one.corners), "paths": [*map(_along, one.paths)]}

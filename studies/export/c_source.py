@@ -15,6 +15,7 @@ from quietarm.studies.report.words import limit_words, move_of, moved
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.interpolation import ORDERS
 from quietarm.studies.sweep.library import MoveLibrary
+from quietarm.studies.tips import tip_words
 
 _HELPER = re.compile(r"^double casadi_\w+\([^)]*\) \{.*?\}$", re.M | re.S)
 _STATEMENTS = re.compile(r"^static int casadi_f0\([^)]*\) \{\n(.*?)\n  return 0;", re.M | re.S)
@@ -31,7 +32,8 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
     if isinstance(moves, Plan):
         task, versions, between, axes = moves.task, moves.record.versions, None, ()
         title = f"{moved(task)}, {move_of(task)}"
-        figures = f"energy {moves.energy:.4g} J, residual {1e3 * moves.residual:.3g} mm"
+        residual = tip_words(moves.residual, task.plant.tip_unit)
+        figures = f"energy {moves.energy:.4g} J, residual {residual}"
         figures = ", ".join([figures, *limit_words(task)])
     else:
         task, versions = moves.grid.task, moves.store.note("versions")

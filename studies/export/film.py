@@ -223,10 +223,11 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
 def _title(one: Structure, same: bool, room: int) -> list[str]:
     """The lines above a panel."""
     plan, task = one.line.plan, one.line.plan.task
+    residual = residual_words(plan.residual, task.plant.tip_unit)
     lines = [
         f"{one.line.label}, {one.scale_words}",
         *([] if same else [f"{moved(task)}, {move_of(task)}"]),
-        f"energy {plan.energy:.3g} J, residual {residual_words(plan.residual)}",
+        f"energy {plan.energy:.3g} J, residual {residual}",
     ]
     return [part for line in lines for part in wrap(line, room)]
 

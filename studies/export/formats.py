@@ -23,11 +23,13 @@ class Format:
     """The endings of a format's files, and what of `export` it takes.
 
     `content` is (plan, what it takes) -> text or bytes; None of C, which has two files, and films.
+    `to_stdout` is whether it can go to standard output: a single text.
     """
 
     endings: tuple[str, ...]
     takes: tuple[str, ...] = ()
     content: Callable[..., str | bytes] | None = None
+    to_stdout: bool = False
 
     @property
     def is_film(self) -> bool:
@@ -36,9 +38,9 @@ class Format:
 
 
 FORMATS = {
-    "csv": Format((".csv",), ("columns", "rate"), csv_text),
+    "csv": Format((".csv",), ("columns", "rate"), csv_text, to_stdout=True),
     "c": Format((".c",)),
-    "ros": Format((".yaml", ".yml"), ("rate", "joint"), ros_text),
+    "ros": Format((".yaml", ".yml"), ("rate", "joint"), ros_text, to_stdout=True),
     "mat": Format((".mat",), ("columns", "rate"), mat_bytes),
     "gif": Format((".gif",), _FILM),
     "mp4": Format((".mp4",), _FILM),
@@ -89,14 +91,23 @@ def export_plan(
         When a name, a unit or a rate is out of range, or the file is a film.
     """
     path = Path(path)
-    form = FORMATS[format_of(path)]
-    if form.is_film:
+    name = format_of(path)
+    if FORMATS[name].is_film:
         raise ValueError(f"{path} is a film; make it by animate(plan).save(path)")
-    if form.content is None:
+    if FORMATS[name].content is None:
         return _write_c(plan, path)
-    given = {"columns": columns, "rate": positive("sample rate", rate, "Hz"), "joint": joint}
-    write_whole(path, form.content(plan, **{one: given[one] for one in form.takes}))
+    write_whole(path, content_of(plan, name, columns=columns, rate=rate, joint=joint))
     return [path]
+
+
+def content_of(
+    plan: Plan, name: str, *, columns: str = COLUMNS, rate: float = RATE, joint: str = JOINT
+) -> str | bytes:
+    """What the only file of a format holds; arguments as of `export_plan`."""
+    form = FORMATS[name]
+    assert form.content is not None
+    given = {"columns": columns, "rate": positive("sample rate", rate, "Hz"), "joint": joint}
+    return form.content(plan, **{taken: given[taken] for taken in form.takes})
 
 
 def export_moves(dataset: Path, path: Path) -> list[Path]:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
@@ -25,10 +26,12 @@ _FORCES: Mapping[str, Mapping[str, float]] = {
     ROTARY: {"Nm": 1.0, "mNm": 1e3},
     LINEAR: {"N": 1.0, "kN": 1e-3},
 }
+_TIPS = {"m": _WAYS[LINEAR], "rad": _WAYS[ROTARY]}
+"""By the plant's `tip_unit`."""
 _LINEAR_NAMES = {"angle": "position", "torque": "force"}
 
 
-def units_of(joint: str) -> Mapping[str, Mapping[str, float]]:
+def units_of(joint: str, tip_unit: str) -> Mapping[str, Mapping[str, float]]:
     """What a column may hold, and its units; the first is that where none is given."""
     way, speeds = _WAYS[joint], {"rpm": 30 / np.pi} if joint == ROTARY else {}
     return {
@@ -37,18 +40,18 @@ def units_of(joint: str) -> Mapping[str, Mapping[str, float]]:
         "speed": {f"{unit}/s": factor for unit, factor in way.items()} | speeds,
         "acceleration": {f"{unit}/s^2": factor for unit, factor in way.items()},
         "jerk": {f"{unit}/s^3": factor for unit, factor in way.items()},
-        "tip": _WAYS[LINEAR],
+        "tip": _TIPS[tip_unit],
         "torque": _FORCES[joint],
         "power": {"W": 1.0, "mW": 1e3},
     }
 
 
-def columns_of(text: str, joint: str) -> dict[str, tuple[str, float]]:
+def columns_of(text: str, plant: Plant) -> dict[str, tuple[str, float]]:
     """Columns as `time:ms,angle:deg,speed`: their units and the factors to these.
 
     ValueError where one or its unit is unknown, or one comes twice.
     """
-    columns, known = dict[str, tuple[str, float]](), units_of(joint)
+    columns, known = dict[str, tuple[str, float]](), units_of(plant.joint, plant.tip_unit)
     for one in text.split(","):
         name, _, unit = (part.strip() for part in one.partition(":"))
         if name not in known:
@@ -68,7 +71,7 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     The last row is the first tick at or after arrival. Each tip has a column of its own, and of a
     robust plan in each scenario, which its heading names.
     """
-    times = _ticks(plan, rate)
+    times = times_of(plan, rate)
     motion, tips = plan.sampled(times), _tips(plan, times)
     values: dict[str, Array] = {
         "time": motion.time, "angle": motion.joint[:, 0], "speed": motion.joint[:, 1],
@@ -77,7 +80,7 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     }  # fmt: skip
     names = {} if plan.task.plant.joint == ROTARY else _LINEAR_NAMES
     found: dict[str, Array] = {}
-    for name, (unit, factor) in columns_of(columns, plan.task.plant.joint).items():
+    for name, (unit, factor) in columns_of(columns, plan.task.plant).items():
         ending = unit.replace("/", "_").replace("^", "")
         of_name = tips if name == "tip" else {(names.get(name, name), ""): values[name]}
         found |= {f"{one}_{ending}{after}": factor * v for (one, after), v in of_name.items()}
@@ -96,7 +99,8 @@ def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:
     return found
 
 
-def _ticks(plan: Plan, rate: float) -> Array:
+def times_of(plan: Plan, rate: float) -> Array:
+    """Times of the rows [s] at a rate [Hz], up to the first at or after arrival."""
     return np.arange(ticks_of_move(plan.task.duration, rate) + 1) / rate
 
 
@@ -123,7 +127,7 @@ def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
 
 def ros_text(plan: Plan, rate: float, joint: str) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, for one joint."""
-    motion = plan.sampled(_ticks(plan, rate))
+    motion = plan.sampled(times_of(plan, rate))
     points = [
         (divmod(round(time * 1e9), 1_000_000_000), map(_decimal, moving))
         for time, moving in zip(motion.time, motion.joint)

@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
+from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
 
@@ -46,16 +47,17 @@ def draw_front(
     ax: Axes,
     residuals: Array,
     energies: Array,
+    tip_unit: str,
     exact: bool = False,
     width: float = 0.8,
     **style: Any,
 ) -> None:
-    """Draw a front [m, J]: a line where its points are exact, else a staircase.
+    """Draw a front [tip's unit, J]: a line where its points are exact, else a staircase.
 
     Between two points of a search the stiller one is the best known motion.
     """
     steps = "default" if exact else "steps-post"
-    ax.plot(residuals * 1e3, energies, linewidth=width, drawstyle=steps, **style)
+    ax.plot(residuals * tip_scale(tip_unit)[1], energies, linewidth=width, drawstyle=steps, **style)
 
 
 def letter(axes: Sequence[Axes]) -> None:
@@ -71,9 +73,9 @@ def legend_below(figure: Figure, axes: Sequence[Axes], columns: int, size: float
     )
 
 
-def name_objectives(ax: Axes) -> None:
+def name_objectives(ax: Axes, tip_unit: str) -> None:
     """Label the axes of a front."""
-    ax.set(xlabel="residual F1 [mm]", ylabel="energy F2 [J]")
+    ax.set(xlabel=f"residual F1 [{tip_scale(tip_unit)[0]}]", ylabel="energy F2 [J]")
 
 
 def legend_of(axes: Sequence[Axes]) -> tuple[list[Artist], list[str]]:

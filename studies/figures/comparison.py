@@ -25,6 +25,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.looks import Look, look
 from quietarm.studies.report.words import title_of
+from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
     from quietarm.studies.compare.fronts import Comparison, Group
@@ -114,18 +115,22 @@ def draw_comparison(
         to the worst.
     """
     ax, right = axes_or_new(ax), _right(comparison)
+    tip_unit = comparison.task.plant.tip_unit
+    scale = tip_scale(tip_unit)[1]
     if small:
         right = min(max(*comparison.levels, _END * float(comparison.best_front[0, 0])), right)
     for group, own, wider in _drawn(comparison):
         line = group.by_gradient and len(group.runs) == 1 and comparison.fill
         shown = _up_to(group.runs[0].between if line else group.median, right)
-        draw_front(ax, *shown.T, exact=line, width=1.2 + wider, color=own.colour,
-                   linestyle=own.dash, label=group.label)  # fmt: skip
+        draw_front(
+            ax, shown[:, 0], shown[:, 1], tip_unit, exact=line, width=1.2 + wider,
+            color=own.colour, linestyle=own.dash, label=group.label,
+        )  # fmt: skip
         if len(group.runs) > 1:
             residuals, best, worst = group.band
             shown = residuals <= right
             ax.fill_between(
-                residuals[shown] * 1e3, best[shown], worst[shown], step="post",
+                residuals[shown] * scale, best[shown], worst[shown], step="post",
                 color=own.colour, alpha=0.2, linewidth=0,
             )  # fmt: skip
     for point, mark in zip(known, cycle("*Pv")):
@@ -133,7 +138,7 @@ def draw_comparison(
             ax.axhline(point.energy, color="black", lw=1, ls=":", label=point.label)
         else:
             ax.plot(
-                point.residual * 1e3, point.energy, mark, color="black", markersize=11,
+                point.residual * scale, point.energy, mark, color="black", markersize=11,
                 markeredgecolor="white", label=point.label, zorder=5,
             )  # fmt: skip
     if comparison.floor is not None:
@@ -141,12 +146,12 @@ def draw_comparison(
         ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
     highest = max([_TALLEST * comparison.best_front[0, 1], *(1.05 * one.energy for one in known)])
     ax.set_ylim(top=min(ax.get_ylim()[1], highest))
-    name_objectives(ax)
+    name_objectives(ax, tip_unit)
     ax.set_title("small residuals" if small else "the whole fronts", **TITLE)
     if small:
         _logarithmic(ax, comparison, right)
     else:
-        ax.set_xlim(0, right * 1e3)
+        ax.set_xlim(0, right * scale)
     return ax
 
 
@@ -156,10 +161,10 @@ def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
     Points rather than staircases: the steps of a coarse front would make it look bad between its
     points. Parameters, and what is returned, are those of `draw_comparison`.
     """
-    ax = axes_or_new(ax)
+    ax, scale = axes_or_new(ax), tip_scale(comparison.task.plant.tip_unit)[1]
     for group, own, wider in _drawn(comparison):
         ax.plot(
-            np.maximum(group.median[:, 0], _left(comparison)) * 1e3,
+            np.maximum(group.median[:, 0], _left(comparison)) * scale,
             100 * comparison.above_best(group.median), own.mark, color=own.colour,
             markersize=3.2 + wider, markeredgewidth=0, label=group.label,
         )  # fmt: skip
@@ -196,8 +201,9 @@ def _right(comparison: Comparison) -> float:
 def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
     left = _left(comparison)
     logarithmic(ax, [left, right])
-    ax.set_xlim(left * 1e3, right * 1e3)
-    ax.set_xlabel("residual F1 [mm], logarithmic")
+    shown, scale = tip_scale(comparison.task.plant.tip_unit)
+    ax.set_xlim(left * scale, right * scale)
+    ax.set_xlabel(f"residual F1 [{shown}], logarithmic")
     for level in comparison.levels:
         if left <= level <= right:
-            ax.axvline(level * 1e3, color="0.75", linewidth=0.8, zorder=0)
+            ax.axvline(level * scale, color="0.75", linewidth=0.8, zorder=0)

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from quietarm.ocp import Front, Polish
+from quietarm.ocp.checks import takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
@@ -22,7 +23,8 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.looks import BLUE, RED, look
 from quietarm.studies.report.methods import is_gradient, label_of
-from quietarm.studies.report.words import millimetres, spread_words, title_of
+from quietarm.studies.report.words import spread_words, title_of
+from quietarm.studies.tips import tip_scale, tip_words
 
 _MOST_NAMED = 10
 """More fronts than this are drawn without a name."""
@@ -32,6 +34,7 @@ _LEAST_SPAN = 0.01
 """The axis of energies spans at least this share of their median: seeds that agree lie close."""
 
 
+@takes(fronts=[Front])
 def draw_fronts(
     fronts: Sequence[Front],
     ax: Axes | None = None,
@@ -64,10 +67,11 @@ def draw_fronts(
     ValueError
         When there are not as many labels as fronts.
     """
-    ax = axes_or_new(ax)
+    ax, tip_unit = axes_or_new(ax), _tip_unit(fronts)
+    scale = tip_scale(tip_unit)[1]
     for k, (begin, end) in enumerate(gap for front in fronts for gap in front.gaps):
         label = "_" if k else "no weight reaches these"  # once in the legend
-        ax.axvspan(begin * 1e3, end * 1e3, color="0.5", alpha=0.15, linewidth=0, label=label)
+        ax.axvspan(begin * scale, end * scale, color="0.5", alpha=0.15, linewidth=0, label=label)
     names = _names(fronts) if labels is None else labels
     if len(names) != len(fronts):
         raise ValueError(f"{len(fronts)} fronts have {len(names)} labels; give each front one")
@@ -79,12 +83,12 @@ def draw_fronts(
             ax,
             np.insert(np.maximum(front.residuals, REST), places, np.nan),  # rest has no logarithm
             np.insert(front.energies, places, np.nan),
-            exact=is_gradient(front.record.method), color=own.colour,
+            tip_unit, exact=is_gradient(front.record.method), color=own.colour,
             marker=own.mark, markersize=3, alpha=0.8, label=name,
         )  # fmt: skip
     failures = [one for front in fronts for one in front.failures]
     if failures:  # weights have no residual
-        limits = [1e3 * one.asked.get(RESIDUAL_LIMIT, np.nan) for one in failures]
+        limits = [scale * one.asked.get(RESIDUAL_LIMIT, np.nan) for one in failures]
         ax.plot(
             limits, np.full(len(limits), 0.03), "x", color=RED,
             transform=ax.get_xaxis_transform(), label=f"{len(limits)} not found",
@@ -92,10 +96,15 @@ def draw_fronts(
     if not linear:
         every = [max(point.residual, REST) for front in fronts for point in front.points]
         logarithmic(ax, every, least_span=_LOGARITHMIC_FROM)
-    name_objectives(ax)
+    name_objectives(ax, tip_unit)
     if len(fronts) <= _MOST_NAMED and len(ax.get_legend_handles_labels()[1]) > 1:
         ax.legend(fontsize=8)
     return ax
+
+
+def _tip_unit(fronts: Sequence[Front]) -> str:
+    """The unit of the tips of fronts' plants."""
+    return next((front.task.plant.tip_unit for front in fronts), "m")
 
 
 def _names(fronts: Sequence[Front]) -> list[str]:
@@ -109,6 +118,7 @@ def _names(fronts: Sequence[Front]) -> list[str]:
     return names
 
 
+@takes(fronts=[Front])
 def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     """Draw hypervolume against candidates: the median over the seeds, and the quartiles.
 
@@ -137,18 +147,21 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
         ax.legend(fontsize=8, loc="lower right")
     ax.set_title(f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')}", **TITLE)
     ax.set_xlabel("candidates evaluated")
-    ax.set_ylabel(f"share of the box\nup to {millimetres(residual)} and {energy:.4g} J")
+    corner = f"{tip_words(residual, _tip_unit(fronts))} and {energy:.4g} J"
+    ax.set_ylabel(f"share of the box\nup to {corner}")
     ax.xaxis.set_major_locator(MaxNLocator(5, integer=True))
     return ax
 
 
+@takes(fronts=[Front])
 def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     """Draw every seed's least energy within 1 mm, with median and quartiles.
 
     Parameters and what is returned are those of `draw_hypervolume`; a seed that never reaches that
     residual is a cross.
     """
-    ax, spread, level = axes_or_new(ax), energies_at(fronts), millimetres(SEARCH_RESIDUAL)
+    ax, spread = axes_or_new(ax), energies_at(fronts)
+    level = tip_words(SEARCH_RESIDUAL, _tip_unit(fronts))
     for place, front in enumerate(fronts):
         energy, colour = front.least_energy(SEARCH_RESIDUAL), look(place).colour
         if np.isfinite(energy):
@@ -176,6 +189,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     return ax
 
 
+@takes(fronts=[Front])
 def front_figure(fronts: Sequence[Front]) -> Figure:
     """Draw fronts of one method, a line for each seed; of a search what it found on the way, too.
 
@@ -200,8 +214,10 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     draw_fronts(fronts, axes[0], linear=gradient)
     if len(fronts) == 1 and len(fronts[0].points) > 2:
         knee = fronts[0].knee()
-        label = f"knee: {knee.energy:.4g} J at {millimetres(knee.residual)}"
-        axes[0].plot(1e3 * max(knee.residual, REST), knee.energy, "o", color=BLUE,
+        tip_unit = _tip_unit(fronts)
+        label = f"knee: {knee.energy:.4g} J at {tip_words(knee.residual, tip_unit)}"
+        left = tip_scale(tip_unit)[1] * max(knee.residual, REST)
+        axes[0].plot(left, knee.energy, "o", color=BLUE,
                      fillstyle="none", label=label)  # fmt: skip
         axes[0].legend(fontsize=8)
     for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:]):
@@ -209,17 +225,19 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     return figure
 
 
+@takes(before=Front)
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """Draw a front before and after polishing, and the energy that this saved point by point."""
     name = label_of(polish.front.record.method)
     figure, (ax, saved) = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
     draw_fronts([before, polish.front], ax, ("before", "after"))
     residuals = [max(gain.residual, REST) for gain in polish.gains]
+    shown, scale = tip_scale(before.task.plant.tip_unit)
     axes_or_new(saved).plot(
-        np.multiply(1e3, residuals), [100 * gain.share for gain in polish.gains], "o", color=BLUE,
+        np.multiply(scale, residuals), [100 * gain.share for gain in polish.gains], "o", color=BLUE,
         markersize=3,
     )  # fmt: skip
-    saved.set(xlabel="residual F1 [mm]", ylabel="energy saved [%]")
+    saved.set(xlabel=f"residual F1 [{shown}]", ylabel="energy saved [%]")
     saved.set_ylim(bottom=0)
     logarithmic(saved, residuals, least_span=_LOGARITHMIC_FROM)
     return figure

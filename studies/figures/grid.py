@@ -8,20 +8,18 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
+from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import logarithmic, name_objectives, new_figure
 from quietarm.studies.figures.looks import look
 from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.grid import Axis
 from quietarm.studies.sweep.store import Store
+from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
 _MOST_SLICES = 4
-_SHOWN = {
-    "energy": ("energy F2 [J]", 1.0, 0.0),
-    "residual": ("residual F1 [mm]", 1e3, 1e-3),
-    "price_residual": ("shadow price [J/mm]", 1e-3, 1e-9),
-}
-"""Variables with their labels, factors and least values that are told apart."""
+_LEAST_PRICE = 1e-6
+"""Shadow prices of the residual below this [J by the tip's unit] are none."""
 _GREYS = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")
 """How cells ended, in the order of `STATES`; told apart in print by their lightness as well."""
 
@@ -68,6 +66,7 @@ def fronts_figure(store: Store) -> Figure:
     """Fronts over the last axis, a panel for each of the first values of those before."""
     axes = store.definition.grid.axes
     residual, energy = store.read("front_residual"), store.read("front_energy")
+    tip_unit = store.definition.grid.task.plant.tip_unit
     places = [*np.ndindex(*residual.shape[:-2])][:_MOST_SLICES]
     figure = new_figure(1.0 + 4.0 * len(places), 3.8)
     panels = figure.subplots(1, len(places), squeeze=False, sharey=True)[0]
@@ -76,9 +75,10 @@ def fronts_figure(store: Store) -> Figure:
     colours = ScalarMappable(norm, "viridis")
     for ax, place in zip(panels, places):
         for k, value in enumerate(values):
-            ax.plot(1e3 * residual[(*place, k)], energy[(*place, k)], color=colours.to_rgba(value))
+            left = tip_scale(tip_unit)[1] * residual[(*place, k)]
+            ax.plot(left, energy[(*place, k)], color=colours.to_rgba(value))
         ax.set_title(_words(axes, place), loc="left", fontsize=9)
-        name_objectives(ax)
+        name_objectives(ax, tip_unit)
         ax.grid(alpha=0.25)
         logarithmic(ax, energy.ravel(), "y")
     figure.colorbar(colours, ax=list(panels), label=name)
@@ -105,9 +105,15 @@ def _over_one(store: Store, axis: Axis) -> Figure:
 
 def _variables(store: Store) -> list[tuple[str, Array, float]]:
     """What is shown and known: labels, values that are no less than the least, the least."""
+    shown, scale = tip_scale(store.definition.grid.task.plant.tip_unit)
+    variables = {
+        "energy": ("energy F2 [J]", 1.0, 0.0),
+        "residual": (f"residual F1 [{shown}]", scale, REST * scale),
+        "price_residual": (f"shadow price [J/{shown}]", 1 / scale, _LEAST_PRICE / scale),
+    }
     every = [
         (label, np.maximum(factor * store.read(name), least), least)
-        for name, (label, factor, least) in _SHOWN.items()
+        for name, (label, factor, least) in variables.items()
     ]
     return [one for one in every if np.isfinite(one[1]).any()] or every[:1]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from textwrap import fill
+from typing import ClassVar
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
+from quietarm.ocp.checks import instance, takes, unknown
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.figures.axes import (
     TITLE,
@@ -23,6 +25,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
 from quietarm.studies.report.words import raised, title_of
+from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
 _SHOWN, _ABOVE = 0.99, 1.15
@@ -60,6 +63,8 @@ class Line:
         Its dashes, where there is a colour.
     """
 
+    example: ClassVar[str] = "a line, as Line(plan, 'plan')"
+
     plan: Plan | Floor
     label: str
     colour: str = ""
@@ -90,10 +95,13 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     Raises
     ------
     ValueError
-        When there is no motion.
+        When there is no motion, or the quantity is not known.
     """
+    if quantity not in QUANTITIES_DRAWN:
+        raise ValueError(unknown("quantity", quantity, QUANTITIES_DRAWN))
     ax, lines = axes_or_new(ax), lines_of(motions)
-    title, drawn = heading(quantity, lines[0].plan.task.plant.joint), list[Array]()
+    plant, drawn = lines[0].plan.task.plant, list[Array]()
+    title = heading(quantity, plant.joint, plant.tip_unit)
     for line in lines:
         drawn += curves(line.plan, quantity)
         others = [style for style in (":", "-.", "--") if style != line.style]
@@ -122,19 +130,20 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
         columns = QUANTITIES[quantity].of(at.motion, list(at.tips.T), at.torque)
     else:
         columns = [at.joint[:, 0] if quantity == "angle" else at.power]
-    return [scale_of(quantity) * np.asarray(column) for column in columns]
+    scale = scale_of(quantity, motion.task.plant.tip_unit)
+    return [scale * np.asarray(column) for column in columns]
 
 
-def heading(quantity: str, joint: str = ROTARY) -> str:
+def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
     """A quantity with the unit that is shown: tip displacement [mm]."""
     label, unit = _LABELS[quantity]
-    unit = "mm" if unit == "m" else raised(joint_unit(unit, joint))
+    unit = tip_scale(tip_unit)[0] if unit == "m" else raised(joint_unit(unit, joint))
     return f"{joint_label(label, joint)} [{unit}]"
 
 
-def scale_of(quantity: str) -> float:
+def scale_of(quantity: str, tip_unit: str = "m") -> float:
     """From the quantity's unit to the one that is shown."""
-    return 1e3 if _LABELS[quantity][1] == "m" else 1.0
+    return tip_scale(tip_unit)[1] if _LABELS[quantity][1] == "m" else 1.0
 
 
 def motion_figure(
@@ -193,6 +202,7 @@ def motion_figure(
     return figure
 
 
+@takes(floor=Floor, plan=Plan)
 def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
     """The panels of a floor, over the plan where there is one."""
     lines = [Line(floor, f"floor, {floor.energy:.4g} J", BLUE)]
@@ -209,8 +219,12 @@ def lines_of(motions: Motions) -> list[Line]:
         motions = [Line(cycloid, "plain cycloid", GREY), Line(motions, "this plan", BLUE)]
     elif isinstance(motions, Floor):
         motions = [Line(motions, f"floor, {motions.energy:.4g} J", BLUE)]
+    if not isinstance(motions, Sequence) or isinstance(motions, str):
+        instance("motions", motions, Plan)  # which is what was meant
     if not motions:
         raise ValueError("no motion is given; give one or more")
+    for i, line in enumerate(motions, start=1):
+        instance(f"motion {i}", line, Line)
     looks = map(look, range(len(motions)))
     return [
         line if line.colour else replace(line, colour=own.colour, style=own.dash)
@@ -221,9 +235,10 @@ def lines_of(motions: Motions) -> list[Line]:
 def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list[float]:
     """The limits of a quantity that its values come near, in the unit that is shown."""
     limits = [line.plan.task.limit_of(quantity) for line in lines]
+    scale = scale_of(quantity, lines[0].plan.task.plant.tip_unit)
     bounds = {bound for one in limits if one is not None for bound in (one.lower, one.upper)}
     return [
-        level for level in sorted(scale_of(quantity) * bound for bound in bounds)
+        level for level in sorted(scale * bound for bound in bounds)
         if (values * np.sign(level)).max() >= _IN_SIGHT * abs(level)
     ]  # fmt: skip
 

@@ -18,6 +18,7 @@ from quietarm.studies.figures.axes import (
     side_by_side,
 )
 from quietarm.studies.figures.looks import look
+from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
     from quietarm.studies.compare.judged import Judged
@@ -61,7 +62,7 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     return ax
 
 
-def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
+def draw_motions(motions: Sequence[Judged], ax: Axes | None = None, tip_unit: str = "m") -> Axes:
     """Draw the energy of motions over their residual: open nominal, filled in the worst case.
 
     Parameters
@@ -70,6 +71,8 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
         Those that there are are drawn.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
+    tip_unit : str
+        Unit of the plant's tips, m or rad.
 
     Returns
     -------
@@ -82,24 +85,26 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
             continue
         how, energy = look(number), judged.motion.energy
         worst = judged.motion.residual if judged.worst is None else judged.worst.residual
-        ends = [1e3 * max(residual, REST) for residual in (judged.motion.residual, worst)]
+        scale = tip_scale(tip_unit)[1]
+        ends = [scale * max(residual, REST) for residual in (judged.motion.residual, worst)]
         line: dict[str, Any] = {"color": how.colour, "marker": how.mark, "markersize": 5}
         ax.plot(ends[0], energy, fillstyle="none", **line)
         ax.plot(ends, [energy] * 2, linestyle=how.dash, linewidth=1, label=judged.name,
                 markevery=[1], **line)  # fmt: skip
     logarithmic(ax, [REST, 1.0])
-    name_objectives(ax)
+    name_objectives(ax, tip_unit)
     return ax
 
 
-def motions_figure(motions: Sequence[Judged], title: str) -> Figure:
+def motions_figure(motions: Sequence[Judged], title: str, tip_unit: str = "m") -> Figure:
     """Draw motions over each other: `draw_motions`, and `draw_robustness` for each error."""
     curves = {one.name: one.robustness for one in motions if one.robustness is not None}
     names = list(next(iter(curves.values())).ranges) if curves else []
     figure, axes = side_by_side(1 + len(names), title, width=6.0)
-    draw_motions(motions, axes[0])
+    draw_motions(motions, axes[0], tip_unit)
     if any(judged.worst for judged in motions):
-        axes[0].set_xlabel("residual F1 [mm] (open: nominal plant, filled: worst case)")
+        shown = tip_scale(tip_unit)[0]
+        axes[0].set_xlabel(f"residual F1 [{shown}] (open: nominal plant, filled: worst case)")
     for name, ax in zip(names, axes[1:]):
         draw_robustness(curves, name, ax)
     figure.legend(*legend_of(axes), loc="outside lower center", ncols=4, fontsize=8)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
+from quietarm.ocp.checks import takes
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
@@ -28,6 +29,7 @@ _BAD = 0.9
 
 
 @one_at_a_time
+@takes(plant=Plant)
 def identify(
     recordings: Sequence[Recording],
     plant: Plant,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
+from quietarm.ocp.checks import takes
 from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import find_frequencies
 from quietarm.studies.identify.machine import Part, is_modal, values_of
@@ -50,6 +51,7 @@ class Prediction:
     frequency: float
 
 
+@takes(plant=Plant)
 def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
     """How much of each ring-down of recordings a plant predicts, with nothing of it fitted.
 

@@ -23,6 +23,7 @@ _CLAIMS = {
     **{f"{name}1": (0, 1.0) for name in ("f", "f:", "objectives:", "pareto_front:")},
     **{f"{name}2": (1, 1.0) for name in ("f", "f:", "objectives:", "pareto_front:")},
     "residual": (0, 1.0), "residual_m": (0, 1.0), "residual_mm": (0, 1e-3),
+    "residual_rad": (0, 1.0),
     "energy": (1, 1.0), "energy_j": (1, 1.0), "energy_mj": (1, 1e-3),
 }  # fmt: skip
 """Columns that state a figure: which of residual [m] and energy [J], and its unit in these."""

@@ -12,13 +12,8 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness import worst_of
 from quietarm.studies.report.moves import worst_in_words
-from quietarm.studies.report.words import (
-    counted,
-    energy_words,
-    millimetres,
-    residual_words,
-    spread_words,
-)
+from quietarm.studies.report.words import counted, energy_words, residual_words, spread_words
+from quietarm.studies.tips import tip_words
 
 _ROWS = 10
 """Points that the list of gains shows."""
@@ -27,13 +22,14 @@ _ROWS = 10
 def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> str:
     """A front by the gradient, of which so many points were asked for."""
     levels, record = {level: front.least_energy(level) for level in LEVELS}, front.record
+    tip_unit = front.task.plant.tip_unit
     return "\n".join([
         *energy_words(front.task),
         f"{record.method}: {counted(len(front.points), 'point')}, "
         f"{counted(record.iterations, 'iteration')} of the solver in {record.seconds:.1f} s",
         *_chosen_points(front),
         *(
-            f"  {f'within {millimetres(level)}':15}"
+            f"  {f'within {tip_words(level, tip_unit)}':15}"
             f"{f'{energy:.4g} J' if isfinite(energy) else 'none'}"
             for level, energy in levels.items()
         ),
@@ -45,8 +41,8 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
         *([] if check is None else [_check_line(check)]),
         *failure_lines(front, asked_for),
         *(
-            f"no weight reaches residuals from {residual_words(begin)} to {millimetres(end)}: the "
-            "front is not convex there"
+            f"no weight reaches residuals from {residual_words(begin, tip_unit)} to "
+            f"{tip_words(end, tip_unit)}: the front is not convex there"
             for begin, end in front.gaps
         ),
     ])  # fmt: skip
@@ -54,7 +50,7 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
 
 def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
     """Fronts of searches or tables, and the spread over several seeds."""
-    lines = energy_words(fronts[0].task)
+    lines, tip_unit = energy_words(fronts[0].task), fronts[0].task.plant.tip_unit
     for front in fronts:
         record = front.record
         seed = "" if record.seed is None else f", seed {record.seed}"
@@ -65,11 +61,11 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
             *_chosen_points(front),
         ]
     if len(fronts) > 1:
-        energies, level = energies_at(fronts), millimetres(SEARCH_RESIDUAL)
+        energies, level = energies_at(fronts), tip_words(SEARCH_RESIDUAL, tip_unit)
         corner = fronts[0].reference
         lines += [
             f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to "
-            f"{millimetres(corner[0])} and {corner[1]:.3g} J, median (quartiles)",
+            f"{tip_words(corner[0], tip_unit)} and {corner[1]:.3g} J, median (quartiles)",
             f"energy at {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles); "
             f"{energies.count} of {energies.seeds} seeds reach {level}",
         ]
@@ -79,6 +75,7 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
 def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
     """What the points of a front gained by the gradient."""
     shares = np.array([gain.share for gain in gains])
+    tip_unit = given.task.plant.tip_unit
     dominated = len(given.points) - len(polished.points)
     shown = np.linspace(0, len(gains) - 1, min(_ROWS, len(gains))).round().astype(int)
     return "\n".join([
@@ -87,9 +84,9 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
         f"{polished.record.seconds - given.record.seconds:.1f} s",
         f"{'residual':>12}{'before':>12}{'after':>12}{'saved':>9}",
         *(
-            f"{millimetres(one.residual):>12}{f'{one.before:.4g} J':>12}{f'{one.after:.4g} J':>12}"
-            f"{f'{one.share:.2%}':>9}"
-            for one in (gains[i] for i in shown)
+            f"{tip_words(gain.residual, tip_unit):>12}{f'{gain.before:.4g} J':>12}"
+            f"{f'{gain.after:.4g} J':>12}{f'{gain.share:.2%}':>9}"
+            for gain in (gains[i] for i in shown)
         ),
         f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}",
         *([f"{counted(dominated, 'point')} dropped, dominated by another now"] * (dominated > 0)),
@@ -101,9 +98,9 @@ def failure_lines(front: Front, asked_for: int) -> list[str]:
     """How many of the points asked for failed, and why; none where none did."""
     if not front.failures:
         return []
-    reasons: dict[str, list[str]] = {}
+    reasons, tip_unit = dict[str, list[str]](), front.task.plant.tip_unit
     for failure in front.failures:
-        reasons.setdefault(failure.reason, []).append(_asked(failure))
+        reasons.setdefault(failure.reason, []).append(_asked(failure, tip_unit))
     return [
         f"{len(front.failures)} of {asked_for} points could not be found:",
         *(f"  {', '.join(asked)}: {reason}" for reason, asked in reasons.items()),
@@ -123,9 +120,10 @@ def _chosen_points(front: Front) -> list[str]:
 
 def _point_in_words(front: Front, point: FrontPoint) -> str:
     """Energy and residual; of an uncertain plant also the worst case."""
-    words = f"{point.energy:.4g} J at {residual_words(point.residual)}"
+    tip_unit = front.task.plant.tip_unit
+    words = f"{point.energy:.4g} J at {residual_words(point.residual, tip_unit)}"
     worst = worst_of(front.task, front.profile, point.coefficients)
-    return words if worst is None else f"{words}; worst case {worst_in_words(worst)}"
+    return words if worst is None else f"{words}; worst case {worst_in_words(worst, tip_unit)}"
 
 
 def _check_line(check: CrossCheck) -> str:
@@ -142,7 +140,7 @@ def _check_line(check: CrossCheck) -> str:
     )
 
 
-def _asked(failure: FailedPoint) -> str:
+def _asked(failure: FailedPoint, tip_unit: str) -> str:
     if RESIDUAL_LIMIT in failure.asked:
-        return f"residual <= {millimetres(failure.asked[RESIDUAL_LIMIT])}"
+        return f"residual <= {tip_words(failure.asked[RESIDUAL_LIMIT], tip_unit)}"
     return ":".join(f"{weight:.3g}" for weight in failure.asked.values()) + " (residual:energy)"

@@ -10,35 +10,46 @@ import numpy as np
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import CycloidPolynomial, Floor, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.limits import QUANTITIES, quantities_of
+from quietarm.ocp.limits import QUANTITIES, Limit, quantities_of
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.planning.profiles import CHOSEN, OF_SIX
 from quietarm.ocp.record import AGREEMENT, REST
-from quietarm.studies.report.words import millimetres, move_of, moved, state_words
+from quietarm.studies.report.words import move_of, moved, state_words
+from quietarm.studies.tips import tip_words
 
 if TYPE_CHECKING:
     from quietarm.studies.reading.path import RecordedPath
 
 Row = tuple[str, str]
-HARD_REMEDY = "give what the drive can do, as --acceleration-limit or --torque-limit"
+HARD_REMEDIES: Mapping[str, str] = {
+    "acceleration": "give what the drive can do, as --acceleration-limit or --torque-limit",
+    "jerk": "give what the drive can do, as --jerk-limit",
+}
+"""What to do about a peak that a drive may not follow, by quantity."""
+_OF_ACCELERATION = {"acceleration": HARD_REMEDIES["acceleration"]}
+"""Of a floor, which nobody drives, and of a recorded path, whose smoothness has its own row."""
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
+_DRIVE_RISES, _OF_CYCLOID = 0.005, 0.1
+"""A warning of the jerk: at its peak the acceleration would change by its own peak within this [s],
+the rise time (0.35 over the bandwidth) of a position loop of 70 Hz, and five set points at 1 kHz;
+and within this share of the time that the plain cycloid takes."""
 _FAR = 0.1
 """A limit that a motion does not come to this share of does not act, and silences no warning."""
 _SEEN, _ROUNDING = 1e-6, 1e-12
 """A joint turns back where it does so by more [rad]; smaller angles are rounding errors."""
 
 
-def plan_rows(plan: Plan, remedy: str = HARD_REMEDY) -> list[Row]:
-    """A plan's coefficients, figures and verification; and a remedy where it is too hard."""
+def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[Row]:
+    """A plan's coefficients, figures and verification; and remedies where it is too hard."""
     back = plan.turns_back
     return [
         *_move_rows(plan.task, plan.motion, plan.residual_limit or 0.0),
         _choice(plan),
         *_terms_rows(plan),
-        *_figure_rows(plan.task, plan.motion, remedy),
+        *_figure_rows(plan.task, plan.motion, remedies),
         *([("turns back", f"by {_way(back, plan.task)} on the way")] if back > _SEEN else []),
         *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
         ("status", plan.status.text),
@@ -67,7 +78,7 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
     return [
         *_move_rows(floor.task, motion),
         ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
-        *_figure_rows(floor.task, motion),
+        *_figure_rows(floor.task, motion, _OF_ACCELERATION),
         ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%})"),
         ("intervals", ", ".join(f"{one.steps}: {one.energy:.6g} J" for one in floor.levels)),
         ("starts", ", ".join(starts)),
@@ -97,26 +108,31 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
         *_move_rows(task, candidate.motion),
         ("path", f"{free.steps + 1} points, {' to '.join(dict.fromkeys(ends))} ms apart"),
         ("smoothness", f"acceleration changes by up to {jump:.3g} {unit} from point to point"),
-        *_figure_rows(task, candidate.motion),
+        *_figure_rows(task, candidate.motion, _OF_ACCELERATION),
     ]
     for scenario in task.scenarios[1:]:
         errors = dict(zip(task.error_names, scenario))
         residual = candidate.perturbed(errors).residual
-        rows.append(("residual", f"{millimetres(residual)} with {_signed(errors)}"))
+        words = tip_words(residual, task.plant.tip_unit)
+        rows.append(("residual", f"{words} with {_signed(errors)}"))
     return [*rows, ("verified", "by CVODES alone, along the spline")]
 
 
 def sensitivity_rows(plan: Plan) -> list[Row]:
     """What a parameter that is 1 % larger adds to residual and energy."""
+    tip_unit = plan.task.plant.tip_unit
     return [
-        (one.parameter, f"{10 * one.residual:.3g} mm, {one.energy / plan.energy:+.3g} %")
-        for one in plan.sensitivities
+        (
+            change.parameter,
+            f"{tip_words(change.residual / 100, tip_unit)}, {change.energy / plan.energy:+.3g} %",
+        )
+        for change in plan.sensitivities
     ]
 
 
-def worst_in_words(worst: Worst) -> str:
+def worst_in_words(worst: Worst, tip_unit: str) -> str:
     """The residual of the worst case, and the parameter errors that it comes with."""
-    return f"{millimetres(worst.residual)} with {_signed(worst.errors)}"
+    return f"{tip_words(worst.residual, tip_unit)} with {_signed(worst.errors)}"
 
 
 def _signed(errors: Mapping[str, float]) -> str:
@@ -125,7 +141,7 @@ def _signed(errors: Mapping[str, float]) -> str:
 
 def _worst_of_plan(plan: Plan, worst: Worst) -> str:
     """The worst case of a robust plan, and how far it is from the residual limit."""
-    words = worst_in_words(worst)
+    words = worst_in_words(worst, plan.task.plant.tip_unit)
     if plan.excess is None:
         return words
     share = f"{100 * abs(plan.excess):.1f} %"
@@ -142,7 +158,8 @@ def _worst_of_plan(plan: Plan, worst: Worst) -> str:
 def _verified_row(plan: Plan) -> Row:
     """How far the two integrators agree; the word `verified` only where that is near enough."""
     check = plan.verification
-    differ = f"{check.energy_share:.0e} in energy and {millimetres(abs(check.residual_difference))}"
+    residual = tip_words(abs(check.residual_difference), plan.task.plant.tip_unit)
+    differ = f"{check.energy_share:.0e} in energy and {residual}"
     if check.agrees:
         return "verified", f"by CVODES, which differs by {differ}"
     remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
@@ -154,30 +171,31 @@ def _verified_row(plan: Plan) -> Row:
 
 def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and which of them the motion breaks."""
-    limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
+    tip_unit = task.plant.tip_unit
+    limits = [f"residual {tip_words(residual_limit, tip_unit)}"] * (residual_limit > 0)
     for limit in task.limits:
         peak = limit.peak_of(motion)
         broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
         limits.append(f"{limit}{broken}")
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
-        *([("at the start", state_words(task.initial))] if task.initial else []),
-        *([("on arrival", state_words(task.final))] if task.final else []),
+        *([("at the start", state_words(task.initial, tip_unit))] if task.initial else []),
+        *([("on arrival", state_words(task.final, tip_unit))] if task.final else []),
         *([("limits", ", ".join(limits))] if limits else []),
     ]
 
 
-def _figure_rows(task: PointToPoint, motion: Motion, remedy: str = HARD_REMEDY) -> list[Row]:
-    """A motion's energy, residual, peaks and overshoot."""
-    residual = millimetres(motion.residual)
+def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> list[Row]:
+    """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
+    residual = tip_words(motion.residual, task.plant.tip_unit)
     if motion.residual < REST:  # nobody sees a difference
         where = "as wanted" if task.final else "at rest"
-        residual = f"{where} (below {millimetres(REST)})"
+        residual = f"{where} (below {tip_words(REST, task.plant.tip_unit)})"
     known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         ("residual (F1)", f"{residual} at the {_tip(task)} within {task.residual_window:g} s"),
-        *((_peak_name(name, task), _peak(name, task, motion, remedy)) for name in known),
+        *((_peak_name(name, task), _peak(name, task, motion, remedies)) for name in known),
         ("overshoot", _way(motion.overshoot, task) if motion.overshoot > _ROUNDING else "none"),
     ]
 
@@ -192,24 +210,45 @@ def _way(size: float, task: PointToPoint) -> str:
     return f"{size:.3g} {joint_unit('rad', task.plant.joint)}"
 
 
-def _peak(name: str, task: PointToPoint, motion: Motion, remedy: str) -> str:
+def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
-    peak, unit = motion.peak(name), quantities_of(task.plant.joint)[name].unit
+    peak, tip_unit = motion.peak(name), task.plant.tip_unit
+    unit = quantities_of(task.plant.joint, tip_unit)[name].unit
     if name == "deflection":
-        small = task.plant.small_deflection
+        small, words = task.plant.small_deflection, tip_words(peak, tip_unit)
         if small is None or max(motion.peak_deflection, motion.residual) <= small:
-            return millimetres(peak)
+            return words
         return (
-            f"{millimetres(peak)}  (warning: beyond {millimetres(small)}, up to which the plant's "
+            f"{words}  (warning: beyond {tip_words(small, tip_unit)}, up to which the plant's "
             "deflections count as small; its equations are less exact there)"
         )
-    words = f"{peak:.4g} {unit}"
+    warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
+    too_hard = warnings[name](task, motion) if name in remedies else ""
+    warning = f"  (warning: {too_hard}; {remedies[name]})" if too_hard else ""
+    return f"{peak:.4g} {unit}{warning}"
+
+
+def _hard_acceleration(task: PointToPoint, motion: Motion) -> str:
+    """How far the acceleration is above the plain cycloid's, where no limit is near."""
     plain = CycloidPolynomial(0).path([], task.start, task.target, task.duration)
-    cycloid = abs(float(plain(task.duration / 4, order=2)))  # its peak
-    near = any(one.peak_of(motion) > _FAR * one.size for one in task.limits)
-    if name == "acceleration" and not near and peak > _HARD * cycloid:
-        words += f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {remedy})"
-    return words
+    times = motion.peak_acceleration / abs(float(plain(task.duration / 4, order=2)))  # its peak
+    limited = any(_is_near(limit, motion) for limit in task.limits)
+    return "" if limited or times <= _HARD else f"{times:.2g} times the plain cycloid's"
+
+
+def _hard_jerk(task: PointToPoint, motion: Motion) -> str:
+    """How fast the acceleration changes, where no limit of the jerk is near."""
+    limit = task.limit_of("jerk")
+    ramp = motion.peak_acceleration / motion.peak("jerk")
+    of_cycloid = task.duration / (2 * math.pi)
+    limited = limit is not None and _is_near(limit, motion)
+    if limited or ramp >= min(_DRIVE_RISES, _OF_CYCLOID * of_cycloid):
+        return ""
+    return f"at this rate the acceleration changes by its peak in {1e3 * ramp:.2g} ms"
+
+
+def _is_near(limit: Limit, motion: Motion) -> bool:
+    return limit.peak_of(motion) > _FAR * limit.size
 
 
 def _choice(plan: Plan) -> Row:

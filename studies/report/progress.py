@@ -10,7 +10,8 @@ from math import isnan
 
 from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Front
-from quietarm.studies.report.words import millimetres, print_lines
+from quietarm.studies.report.words import print_lines
+from quietarm.studies.tips import tip_scale, tip_words
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -133,7 +134,8 @@ def _figures(progress: SearchProgress) -> str:
     done, total = progress.generation, progress.generations
     left = progress.seconds * (total - done) / max(done, 1)
     share = progress.infeasible / max(progress.evaluations, 1)
-    best = f"residual {millimetres(progress.residual)}, energy {progress.energy:.4g} J"
+    residual = tip_words(progress.residual, progress.tip_unit)
+    best = f"residual {residual}, energy {progress.energy:.4g} J"
     best = "nothing found yet" if isnan(progress.residual) else best
     broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""
     return (
@@ -144,8 +146,9 @@ def _figures(progress: SearchProgress) -> str:
 
 def _brief(progress: SearchProgress) -> str:
     """The same for a bar, which has little room."""
+    shown, scale = tip_scale(progress.tip_unit)
     return (
-        f"{progress.generation}/{progress.generations} {progress.residual * 1e3:.2g} mm "
+        f"{progress.generation}/{progress.generations} {scale * progress.residual:.2g} {shown} "
         f"{progress.energy:.3g} J hv {progress.hypervolume:.3f} {_speed(progress):.0f}/s"
     )
 

@@ -8,6 +8,7 @@ from quietarm.ocp.record import REST
 from quietarm.studies.report.words import moved
 from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
+from quietarm.studies.tips import tip_scale, tip_words
 
 _MOST_LINES = 30
 """Cells along one axis that are listed."""
@@ -33,9 +34,10 @@ def sweep_rows(store: Store) -> list[tuple[str, str]]:
     if known.any():
         excess, jumps = store.read("cold_excess"), int((store.read(JUMP) > 0).sum())
         checked = np.isfinite(excess)
+        largest, tip_unit = store.read("residual")[known].max(), grid.task.plant.tip_unit
         rows += [
             ("energy", f"{energy[known].min():.4g} to {energy[known].max():.4g} J"),
-            ("residual", f"{1e3 * store.read('residual')[known].max():.3g} mm at most, by CVODES"),
+            ("residual", f"{tip_words(largest, tip_unit)} at most, by CVODES"),
             ("from cold starts", f"at most {max(excess[checked].max(), 0):.1g} of the energy less, "
              f"in {checked.sum()} cells"),
         ]  # fmt: skip
@@ -51,12 +53,13 @@ def cells_along(store: Store) -> str:
     if others or len(axis.values) > _MOST_LINES:
         return ""
     status, energy, residual = (store.read(name) for name in (STATUS, "energy", "residual"))
-    left = [f"{1e3 * one:.4g}" if one >= REST else "rest" for one in residual.tolist()]
+    shown, factor = tip_scale(store.definition.grid.task.plant.tip_unit)
+    left = [f"{factor * one:.4g}" if one >= REST else "rest" for one in residual.tolist()]
     known = np.isfinite(energy)
     cells = {
         f"{axis.name} [{axis.unit}]": [f"{value:.6g}" for value in axis.values],
         "energy [J]": np.where(known, [f"{one:.4g}" for one in energy.tolist()], "-"),
-        "residual [mm]": np.where(known, left, "-"),
+        f"residual [{shown}]": np.where(known, left, "-"),
         "status": [STATES[k] for k in status.tolist()],
     }
     return "\n" + pandas.DataFrame(cells).to_string(index=False)

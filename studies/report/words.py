@@ -11,6 +11,7 @@ from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.record import REST
+from quietarm.studies.tips import tip_scale, tip_words
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def spread_words(spread: Spread, form: str, unit: str = "") -> str:
 
 def millimetres(length: float) -> str:
     """A length [m] in millimetres."""
-    return f"{length * 1e3:.3g} mm"
+    return tip_words(length, "m")
 
 
 def span_words(begin: float, end: float) -> str:
@@ -57,9 +58,9 @@ def span_words(begin: float, end: float) -> str:
     return " to ".join(f"{round(time, 3):.12g}" for time in (begin, end)) + " s"
 
 
-def residual_words(residual: float) -> str:
-    """A residual [m] in millimetres; `rest` where it counts as that."""
-    return "rest" if residual < REST else millimetres(residual)
+def residual_words(residual: float, tip_unit: str) -> str:
+    """A residual in the unit that is shown; `rest` where it counts as that."""
+    return "rest" if residual < REST else tip_words(residual, tip_unit)
 
 
 def plant_words(plant: Plant) -> str:
@@ -92,10 +93,11 @@ def move_of(task: PointToPoint) -> str:
     return ", ".join([f"{ends} in {task.duration:g} s{ringing}{wanted}", *energy_words(task)])
 
 
-def state_words(state: ModalState) -> str:
-    """What rings, in millimetres: "W 5 mm, W' -300 mm/s"."""
-    W, dW = (" and ".join(f"{1e3 * one:.3g}" for one in of) for of in (state.W, state.dW))
-    return f"W {W} mm, W' {dW} mm/s"
+def state_words(state: ModalState, tip_unit: str) -> str:
+    """What rings, in millimetres, "W 5 mm, W' -300 mm/s", or in rad where the tip has that."""
+    shown, factor = tip_scale(tip_unit)
+    W, dW = (" and ".join(f"{factor * one:.3g}" for one in of) for of in (state.W, state.dW))
+    return f"W {W} {shown}, W' {dW} {shown}/s"
 
 
 def energy_words(task: PointToPoint) -> list[str]:

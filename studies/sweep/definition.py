@@ -105,12 +105,13 @@ class Definition:
     def variables(self) -> dict[str, Variable]:
         """The dataset's variables by name."""
         task, size = self.grid.task, {"coefficient": self.profile.size}
-        units = {"energy": "J", "residual": "m", f"price_{RESIDUAL}": "J/m", "iterations": "1",
+        tip = task.plant.tip_unit
+        units = {"energy": "J", "residual": tip, f"price_{RESIDUAL}": f"J/{tip}", "iterations": "1",
                  "cold_excess": "1"}  # fmt: skip
-        units |= {one.peak: one.unit for one in quantities_of(task.plant.joint).values()}
+        units |= {one.peak: one.unit for one in quantities_of(task.plant.joint, tip).values()}
         units |= {f"price_{one.name}": f"J/({one.quantity.unit or '1'})" for one in task.limits}
         for name in OF_MODES:
-            units |= {f"energy_by_{name}": "J", f"residual_by_{name}": "m"}
+            units |= {f"energy_by_{name}": "J", f"residual_by_{name}": tip}
         meanings = [state.replace(" ", "_") for state in STATES]
         states = {"flag_values": [*range(len(STATES))], "flag_meanings": " ".join(meanings)}
         nexts = [f"to_the_next_{name}" for name in self.grid.names]
@@ -124,7 +125,7 @@ class Definition:
         variables[JUMP] = Variable("1", {}, np.int32(0), jumps)
         if self.front:
             point = {"point": self.front}
-            variables["front_residual"] = Variable("m", point)
+            variables["front_residual"] = Variable(tip, point)
             variables["front_energy"] = Variable("J", point)
             variables["front_coefficients"] = Variable("1", point | size)
         return variables

@@ -17,6 +17,7 @@ from quietarm.studies.sweep.cells import by_plant, plan_cells
 from quietarm.studies.sweep.definition import COEFFICIENTS
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.store import Store
+from quietarm.studies.tips import tip_words
 
 Array = NDArray[np.float64]
 _SAMPLES = 100
@@ -40,6 +41,7 @@ class Between:
     excess: float
     of_limits: float
     samples: int
+    tip_unit: str = "m"
 
     @property
     def keeps_limits(self) -> bool:
@@ -51,7 +53,7 @@ class Between:
         """All of it in a line."""
         broken = f"limits broken by up to {self.of_limits - 1:.1%}"
         return ", ".join([
-            f"between the cells: residual {1e3 * self.residual:.3g} mm",
+            f"between the cells: residual {tip_words(self.residual, self.tip_unit)}",
             f"{self.excess:.2%} more energy than plans of their own",
             *(["limits kept" if self.keeps_limits else broken] if self.of_limits else []),
             f"each the largest of {self.samples} random moves",
@@ -175,6 +177,7 @@ class MoveLibrary:
             float(np.nanmax([plan.energy for plan in plans] / np.array(own) - 1)),
             max(of_limits, default=0.0),
             len(plans),
+            self.grid.task.plant.tip_unit,
         )
         self.store.keep("between the cells", asdict(found))
         return found

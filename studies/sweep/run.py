@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, SolveSettings
-from quietarm.ocp.checks import has_no
+from quietarm.ocp.checks import has_no, several, takes
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.sweep.cells import plan_chunk
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 _REMEDY = "what is done is kept; give the same line again to go on"
 
 
+@takes(task=PointToPoint, profile=JointProfile)
 def sweep(
     task: PointToPoint,
     axes: Mapping[str, Sequence[float]],
@@ -74,11 +75,14 @@ def sweep(
     """
     units = task.plant.units()
     units |= {name: joint_unit(unit, task.plant.joint) for name, unit in OF_MOVES.items()}
+    if not isinstance(axes, Mapping):
+        raise ValueError(f"axes are {axes!r}; give values by name, as {{'target': [0.3, 0.6]}}")
     for name in axes:
         if name not in units:
             raise ValueError(has_no(task.plant.name, "axis", name, units))
+    values = {name: several(f"axis {name}", axes[name], "values") for name in axes}
     order = sorted(axes, key=lambda name: name in OF_MOVES)  # chunks then have few plants
-    grid = Grid(task, tuple(Axis(name, tuple(axes[name]), units[name])
+    grid = Grid(task, tuple(Axis(name, tuple(values[name]), units[name])
                             for name in order))  # fmt: skip
     settings = SolveSettings(residual_limit, bound, starts)
     profile = CycloidPolynomial() if profile is None else profile

@@ -67,6 +67,7 @@ def test_the_short_example_plans_saves_and_draws(tmp_path, monkeypatch):
     plan = Plan.load("plan.json")
     assert printed == f"{plan.energy:.4f} J, 0.000 mm\n"
     assert plan.motion.peak_acceleration <= 40 * 1.001  # docs/accuracy.md
+    assert plan.motion.peak_jerk <= 2000 * 1.001
     assert Path("move.png").read_bytes().startswith(b"\x89PNG")
 
 

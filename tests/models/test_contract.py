@@ -99,3 +99,17 @@ def test_a_right_angle_between_the_samples_is_looked_at():
     qa.PointToPoint(_plant(torque=torque), 3.0, 0.8)
     with pytest.raises(ValueError, match=r"with the joint at 3\.142 rad"):
         qa.PointToPoint(_plant(torque=torque), 3.21, 0.8)
+
+
+@pytest.mark.parametrize("name", ["validate", "parameters", "units", "tips"])
+def test_what_the_checks_rely_on_is_not_overridden(name):
+    with pytest.raises(TypeError, match=f"Unchecked has its own {name}, .*override the three"):
+        type("Unchecked", (Sound,), {name: lambda self: {}})
+
+
+@pytest.mark.parametrize(
+    ("entry", "kinds"), [("joint", "'rotary' or 'linear'"), ("tip_unit", "'m' or 'rad'")]
+)
+def test_kinds_of_joints_and_units_of_tips_are_known(entry, kinds):
+    with pytest.raises(ValueError, match=f"{entry} of Odd is 'deg'; give {kinds}"):
+        type("Odd", (Sound,), {entry: "deg"})

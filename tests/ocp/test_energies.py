@@ -136,3 +136,25 @@ def test_a_smooth_step_is_integrated_exactly_up_to_degree_five():
     nodes = [[of(x) for x in GAUSS_NODES] for of in (torque, speed)]
     found = spent(qa.CopperLoss(0.5), *[[ca.DM(x) for x in of] for of in nodes], ca.DM(1.0))
     assert float(found) == pytest.approx((torque**2).integ()(1.0) / 0.25, rel=1e-12)
+
+
+WRONG = {
+    "less than none": ({"absolute": -1.0}, "absolute of energy 'wrong' is -1; give 0 or more"),
+    "no number": ({"absolute": "1"}, "absolute of energy 'wrong' is '1'; give a number"),
+    "math": ({"smooth": lambda e, t, v: math.exp(t)}, r"smooth fails .* with casadi\.exp"),
+    "two": ({"smooth": lambda e, t, v: (t, v)}, r"smooth fails .*returns one expression"),
+    "other arguments": (
+        {"smooth": lambda e, t: t},
+        r"smooth fails .*write \(self, torque, speed\)",
+    ),
+    # a sum over the candidates, which was planned
+    "mixed": ({"smooth": lambda e, t, v: ca.sum1(t * t)}, "among other candidates and .* alone"),
+    "not finite": ({"smooth": lambda e, t, v: ca.log(t)}, "write operations with finite values"),
+}
+
+
+@pytest.mark.parametrize(("members", "told"), WRONG.values(), ids=WRONG)
+def test_an_energy_that_is_wrong_is_refused_when_it_is_asked_for(members, told):
+    energy = dataclass(frozen=True)(type("Wrong", (qa.Energy,), {"name": "wrong", **members}))()
+    with pytest.raises(ValueError, match=told):
+        qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8, energy=energy)

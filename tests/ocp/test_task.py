@@ -35,7 +35,7 @@ def test_a_number_out_of_range_is_named_with_its_value(name, value):
 @pytest.mark.parametrize("angle", [30, -90.0, 22.5])
 def test_degrees_are_warned_of_and_several_turns_are_not(angle):
     link = qa.SingleLinkManipulator()
-    with pytest.warns(UserWarning, match="more than a turn; .* give numpy.radians") as told:
+    with pytest.warns(UserWarning, match="more than a turn; .* give quietarm.deg") as told:
         qa.PointToPoint(link, target=angle, duration=0.8)
     assert told[0].filename == __file__
     qa.PointToPoint(link, target=math.radians(720), duration=3.0)

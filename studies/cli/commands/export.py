@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.ocp.files import check_writable
+from quietarm.ocp import Plan
+from quietarm.ocp.files import check_writable, write_whole
 from quietarm.studies.cli.files import finish
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import command, counting, option
-from quietarm.studies.cli.types import INPUT, SHARE, Parsed
+from quietarm.studies.cli.types import INPUT, SHARE, Named, Parsed
 from quietarm.studies.export.formats import (
     COLUMNS,
     FORMATS,
@@ -18,18 +19,33 @@ from quietarm.studies.export.formats import (
     JOINT,
     RATE,
     WIDTHS,
+    content_of,
     export_moves,
     export_plan,
     format_of,
 )
+from quietarm.studies.export.interpolation import OF_POINTS, interpolation_note
+from quietarm.studies.export.tables import columns_of
 from quietarm.studies.figures.motion import Line
 from quietarm.studies.reading.saved import load_plans
+from quietarm.studies.report.saving import STDOUT, File
+
+_TO_STDOUT = [name for name, form in FORMATS.items() if form.to_stdout]
+
+
+def _output(text: str) -> Path:
+    """A file that can be written, or standard output."""
+    path = Path(text)
+    return path if path == STDOUT else check_writable(path)
 
 
 @command(
     click.Argument(["plans"], nargs=-1, type=INPUT, metavar="PLAN ..."),
-    option("--output", type=Parsed("file", check_writable), required=True,
-           help="The file, whose ending is the format; move.c has move.h beside it."),
+    option("--output", type=Parsed("file", _output), required=True,
+           help="The file, whose ending is the format; move.c has move.h beside it. - is standard "
+           "output."),
+    option("--format", "form", type=Named("format", FORMATS),
+           help=f"Of standard output: {' or '.join(_TO_STDOUT)}. [default: {_TO_STDOUT[0]}]"),
     option("--columns", default=COLUMNS, help="Of csv and mat, with units: time:ms,angle:deg,"
            "speed,acceleration,jerk,tip:mm,torque,power."),
     option("--rate", type=float, help="Rows, points or frames in a second [Hz]. [default: "
@@ -56,10 +72,11 @@ def export(given: Given) -> None:
       quietarm export plan.json --output move.c
       quietarm export plan.json --output move.csv --columns time:ms,angle:deg,torque --rate 500
       quietarm export plan.json --output move.yaml --joint shoulder_pan_joint --rate 100
+      quietarm export plan.json --output - --columns time,angle:deg
       quietarm export moves.zarr --output moves.c
       quietarm export plan.json zvd.json --output move.gif --speed 25%
     """  # noqa: D301  # \b is click's: do not rewrap
-    plans, output, name = given.plans, given.output, format_of(given.output)
+    plans, output, name = given.plans, given.output, _format(given)
     known = FORMATS[name]
     for setting in dict.fromkeys(one for form in FORMATS.values() for one in form.takes):
         takers = [one for one, form in FORMATS.items() if setting in form.takes]
@@ -68,7 +85,7 @@ def export(given: Given) -> None:
     settings = {one: value for one, value in given.pick(*known.takes).items() if value is not None}
     if not known.is_film and len(plans) > 1:
         raise ValueError(f"{name} is of one plan, and {len(plans)} are given; give one")
-    written, notes = [output], list[str]()
+    written, notes, files = [output], list[str](), list[File]()
     if len(plans) == 1 and plans[0].is_dir():
         if name != "c":
             raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
@@ -77,8 +94,37 @@ def export(given: Given) -> None:
         notes = [_write_film(plans, output, settings)]
     else:
         (plan,) = load_plans(plans).values()
-        written = export_plan(plan, output, **settings)
-    finish([], *notes, *(f"wrote {path}" for path in written))
+        notes = _notes(plan, name, settings)
+        if output == STDOUT:
+            content = content_of(plan, name, **settings)
+            files, written = [(STDOUT, lambda path: write_whole(path, content))], []
+        else:
+            written = export_plan(plan, output, **settings)
+    finish(files, *notes, *(f"wrote {path}" for path in written))
+
+
+def _format(given: Given) -> str:
+    """The format by the file's ending; of standard output by --format."""
+    if given.output != STDOUT:
+        given.refuse(["form"], "is for --output - alone: a file's ending says its format")
+        return format_of(given.output)
+    name = given.form or _TO_STDOUT[0]
+    if name not in _TO_STDOUT:
+        raise ValueError(
+            f"{name} cannot go to standard output, only {' and '.join(_TO_STDOUT)}; give a name, "
+            f"as move{FORMATS[name].endings[0]}"
+        )
+    return name
+
+
+def _notes(plan: Plan, name: str, settings: dict[str, Any]) -> list[str]:
+    """What a controller leaves that interpolates between the rows, where that matters."""
+    if "rate" not in FORMATS[name].takes:
+        return []
+    columns = OF_POINTS
+    if "columns" in settings:
+        columns = tuple(columns_of(settings["columns"], plan.task.plant))
+    return [interpolation_note(plan, settings.get("rate", RATE), columns)]
 
 
 def _write_film(plans: tuple[Path, ...], output: Path, settings: dict[str, Any]) -> str:

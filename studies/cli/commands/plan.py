@@ -79,7 +79,8 @@ def plan(given: Given) -> None:
             return _plan_freely(given)
     task, notes = given.read_task(**{"duration": _BEGIN} if fastest else {}), list[str]()
     motions = None if chooses_terms(given.profile, given.terms) else given.read_profile(task)
-    asked = given.pick("bound", "residual_limit", "seed", "solver")
+    asked = given.pick("bound", "seed", "solver")
+    asked |= {"residual_limit": given.read_residual_limit(task.plant)}
     if fastest:
         given.refuse(["starts"], "is not for --duration fastest")
         with busy("looking for the shortest duration"):
@@ -124,7 +125,7 @@ def _look_up(given: Given) -> None:
     with busy("interpolating between the cells"):
         plant = Store(given.dataset).definition.grid.task.plant
         typed = [name for name in OF_MOVES if given.typed(name)]
-        at = {name: given.read_of_joint(name, plant.joint) for name in typed}
+        at = {name: given.read_of_plant(name, plant) for name in typed}
         at |= read_parameters(plant, given.parameters)
         found, between, trouble = plan_from(given.dataset, **single_values(at))
     finish_plan(given, found, between.words, trouble=trouble)

@@ -84,7 +84,8 @@ def sweep(given: Given) -> None:
         )
     chooses = chooses_terms(given.profile, given.terms)
     motions = choose_profile(grid.task) if chooses else given.read_profile(grid.task)
-    solve = SolveSettings(given.residual_limit or 0.0, given.bound, starts=1)
+    residual_limit = given.read_residual_limit(grid.task.plant) or 0.0
+    solve = SolveSettings(residual_limit, given.bound, starts=1)
     store = Store.of(datasets[0], Definition(grid, motions, solve, given.front or 0, given.margin))
     missing, trouble = len(store.missing(given.part)), None
     try:

@@ -104,8 +104,8 @@ void {{ name }}_at({{ given }}double time,
     double *res[] = { joint };
 
     fraction = time / move[2];
-    if (fraction <= 0.0 || fraction >= 1.0) {
-        *angle = fraction <= 0.0 ? move[0] : move[1];
+    if (!(fraction > 0.0 && fraction < 1.0)) { /* also where it is no number */
+        *angle = fraction >= 1.0 ? move[1] : move[0];
         *speed = 0.0;
         *acceleration = 0.0;
         return;

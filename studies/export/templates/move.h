@@ -16,14 +16,16 @@
 int {{ name }}_plan({{ places }}, double coefficients[{{ size }}]);
 
 /* The joint's {{ "angle" if unit == "rad" else "position" }} [{{ unit }}], speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2] on such a move, a time [s]
-   after its start. */
+   after its start. The joint rests at the start before the move, and where a time or the duration is no
+   number; at the target after it. */
 {% else %}
 /* How long the move takes [s], and where the joint rests before and after it [{{ unit }}]. */
 #define {{ upper }}_DURATION {{ move.duration }}
 #define {{ upper }}_START {{ move.start }}
 #define {{ upper }}_TARGET {{ move.target }}
 
-/* The joint's {{ "angle" if unit == "rad" else "position" }} [{{ unit }}], speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2], a time [s] after the start. */
+/* The joint's {{ "angle" if unit == "rad" else "position" }} [{{ unit }}], speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2], a time [s] after the start.
+   The joint rests at {{ upper }}_START before the move, and at a time that is no number; at {{ upper }}_TARGET after it. */
 {% endif %}
 void {{ name }}_at({{ given }}double time,
     double *angle, double *speed, double *acceleration);

@@ -135,3 +135,54 @@ def test_a_profile_that_still_moves_on_arrival_is_refused(tasks):
 
     with pytest.raises(ValueError, match=r"its speed is .* where rest at both ends is 0"):
         qa.plan_move(tasks["arm"], Ramp())
+
+
+def test_what_is_planned_is_what_was_checked():
+    """A `motion` of its own escaped the check: an acceleration times 0.6 was planned at 0.0186 J,
+    below that of any real motion."""
+
+    def slower(self, coefficients, fraction, *move, jerk=False):
+        joint = qa.JointProfile.motion(self, coefficients, fraction, *move, jerk=jerk)
+        return joint._replace(acceleration=0.6 * joint.acceleration)
+
+    for base in (qa.JointProfile, qa.CycloidPolynomial):
+        with pytest.raises(TypeError, match=r"Lighter has its own motion.*; override derivatives"):
+            type("Lighter", (base,), {"motion": slower})
+    mixed_in = type("Mixin", (), {"motion": slower})
+    with pytest.raises(TypeError, match="its own motion"):
+        type("Lighter", (mixed_in, qa.CycloidPolynomial), {})
+    with pytest.raises(TypeError, match="its own path"):
+        type("Elsewhere", (qa.CycloidPolynomial,), {"path": lambda self, *arguments: None})
+
+
+def test_a_profile_is_a_value(tasks):
+    @dataclass
+    class Changing(qa.JointProfile):
+        name: ClassVar[str] = "changing-waves-of-a-test"
+        size: ClassVar[int] = 4
+        derivatives = _Waves.derivatives
+
+    with pytest.raises(TypeError, match="Changing has no hash; make its class a frozen dataclass"):
+        qa.plan_move(tasks["arm"], Changing())
+
+
+@dataclass(frozen=True)
+class _LighterBeyond(_Waves):
+    """Right up to coefficients of 0.5, where the check at random looks; lighter beyond."""
+
+    name: ClassVar[str] = "lighter-beyond-of-a-test"
+
+    def derivatives(self, coefficients, fraction, start, target, duration):
+        *angle_and_speed, acceleration = super().derivatives(
+            coefficients, fraction, start, target, duration
+        )
+        return *angle_and_speed, acceleration * ca.if_else(coefficients[0] > 0.5, 0.6, 1.0)
+
+
+def test_a_motion_is_checked_at_its_own_coefficients(tasks):
+    link, told = tasks["single link"], "its acceleration is .* where the derivative of the speed is"
+    assert qa.evaluate_coefficients(link, [0.4], profile=_LighterBeyond(1)).energy > 0
+    with pytest.raises(ValueError, match=told):
+        qa.evaluate_coefficients(link, [0.6], profile=_LighterBeyond(1))
+    with pytest.raises(ValueError, match=told):
+        qa.Candidate.of_profile(link, _LighterBeyond(1), [0.6])

@@ -1,6 +1,7 @@
 """Plans of one move beside shapers and ruckig, on the nominal plant and under errors."""
 
 import re
+import sys
 from dataclasses import replace
 from math import pi
 
@@ -92,8 +93,40 @@ def test_ruckig_is_followed_exactly_and_keeps_its_limits():
     assert speed[-1] == pytest.approx(0, abs=1e-9)
     assert np.abs(speed).max() <= 2.5 * (1 + 1e-9)
     assert np.abs(free.jerk).max() <= 4000 * (1 + 1e-9)
-    with pytest.raises(ValueError, match="ruckig needs an acceleration limit"):
-        ruckig_motion(replace(task, acceleration_limit=None))
+
+
+NO_RUCKIG = {
+    "no limit": (
+        replace(MOVE, acceleration_limit=None),
+        "ruckig moves within an acceleration limit, and the move has none; plan it with one",
+    ),
+    "no time": (
+        replace(MOVE, acceleration_limit=5.0),
+        # 60 degrees by full acceleration and braking: twice the root of pi/3 over 5, 0.915 s
+        "within the limits it takes 0.9153 s, more than the 0.7 s that it has; give a longer",
+    ),
+}
+
+
+@pytest.mark.parametrize(("task", "why"), NO_RUCKIG.values(), ids=NO_RUCKIG)
+def test_a_baseline_without_a_row_of_figures_says_why_and_what_to_do(task, why):
+    judged = compare_plans({}, ["all"], task=task)
+    report = plans_report(task, judged)
+    table = report.tables["motions"].set_index("motion")
+    for motion in judged:
+        assert (motion.motion is None) == bool(motion.why)
+        if motion.why:
+            assert table.loc[motion.name, "why there is none"] == motion.why
+            assert "; give" in motion.why or "; plan" in motion.why
+            assert motion.why in report.markdown()
+    (ruckig,) = [motion for motion in judged if motion.name == "ruckig"]
+    assert ruckig.why.startswith(why)
+
+
+def test_ruckig_that_is_not_installed_says_how_to_install_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "ruckig", None)
+    (found,) = compare_plans({}, ["ruckig"], task=MOVE)
+    assert found.why.startswith("ruckig is not installed; install it: pip install")
 
 
 def test_a_shaped_motion_is_the_sum_of_its_delayed_shares():

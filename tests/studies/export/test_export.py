@@ -1,10 +1,11 @@
 """Plans in the forms that controllers read."""
 
 import csv
+import re
 from ctypes import c_double
 from dataclasses import replace
 from functools import partial
-from math import pi
+from math import inf, nan, pi
 
 import numpy as np
 import pytest
@@ -19,9 +20,12 @@ from quietarm.ocp import (
     PointToPoint,
     Uncertainty,
     evaluate_coefficients,
+    plan_move,
     shaped_cycloid,
 )
 from quietarm.studies.export.formats import export_plan
+from quietarm.studies.export.interpolation import interpolation_note, residual_between
+from scipy.interpolate import BPoly
 from scipy.io import loadmat
 
 LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8, start=-0.2)
@@ -57,6 +61,8 @@ def test_c_gives_the_joints_motion_at_any_time(profile, tmp_path):
     assert found == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.abs(expected).max())
     assert joint(c_double(-1.0)) == [-0.2, 0.0, 0.0]
     assert joint(c_double(5.0)) == [pi / 6, 0.0, 0.0]
+    assert joint(c_double(inf)) == [pi / 6, 0.0, 0.0]
+    assert joint(c_double(nan)) == [-0.2, 0.0, 0.0]  # no number, and no motion
 
 
 def test_csv_has_the_columns_units_and_rate_that_are_asked_for(plan, tmp_path):
@@ -108,6 +114,60 @@ def test_the_command_writes_source_and_header(call, plan, tmp_path, monkeypatch)
     assert "void move_at(double time" in (tmp_path / "move.h").read_text()
     code, _, err = call("export plan.json --output move.csv --columns tme")
     assert (code, "did you mean 'time'" in err) == (2, True)
+
+
+def test_a_rate_that_is_too_coarse_says_what_a_controller_leaves():
+    task = replace(LINK, start=0.0, acceleration_limit=40.0, jerk_limit=2000.0)
+    plan = plan_move(task, CycloidPolynomial(12), starts=1)
+    # by hand, a third way: quintics between the points, and their motion by fixed small steps
+    times = np.arange(9) / 10
+    quintics = BPoly.from_derivatives(times, plan.sampled(times).joint)
+    left = residual_by_small_steps(task, quintics.derivative(2), quintics.derivative(1))
+    assert residual_between(plan, 10, 3) == pytest.approx(left, rel=1e-3)
+    note = interpolation_note(plan, 10)
+    assert note.startswith("10 Hz is coarse: a controller that interpolates by quintics of angle, ")
+    assert f"leaves {1e3 * left:.2g}"[:10] in note
+    finer = float(re.search(r"; --rate (\S+) leaves", note)[1])
+    assert residual_between(plan, finer, 3) < plan.residual + 1e-3 * plan.motion.peak_deflection
+    assert interpolation_note(plan, finer) == interpolation_note(plan, 1000) == ""
+    assert "by cubics of angle and speed" in interpolation_note(plan, 10, ("angle", "speed"))
+    assert "by a cubic spline of the angle" in interpolation_note(plan, 10, ("time", "angle"))
+    assert interpolation_note(plan, 10, ("time", "torque")) == ""
+
+
+def residual_by_small_steps(task, acceleration, speed):
+    """Largest tip displacement in the second after arrival, by eq (9) and the midpoint rule."""
+    link, steps = task.plant, 20_000
+    h, W, rate = task.duration / steps, 0.0, 0.0
+    middles = (np.arange(steps) + 0.5) * h
+    forces, speeds = -link.beta1 * acceleration(middles), speed(middles)
+    stiffness = link.omega**2 + link.beta2 * speeds**2
+    damping = 2 * link.zeta * link.omega
+    for force, k in zip(forces.tolist(), stiffness.tolist(), strict=True):
+        half_rate = rate + h / 2 * (force - k * W - damping * rate)
+        half = W + h / 2 * rate
+        W, rate = W + h * half_rate, rate + h * (force - k * half - damping * half_rate)
+    # then the free vibration of a damped oscillator
+    t, decay = np.linspace(0, 1, 20_001), link.zeta * link.omega
+    damped = link.omega * np.sqrt(1 - link.zeta**2)
+    swing = W * np.cos(damped * t) + (rate + decay * W) / damped * np.sin(damped * t)
+    return link.phi * np.abs(swing * np.exp(-decay * t)).max()
+
+
+@pytest.mark.parametrize(
+    ("typed", "begins"),
+    [
+        ("", "time_s,angle_rad,speed_rad_s,acceleration_rad_s2\n0,"),
+        ("--columns time:ms,angle:deg", "time_ms,angle_deg\n0,"),
+        ("--format ros", "joint_names:\n- 'joint'\n"),
+    ],
+)
+def test_a_table_goes_to_standard_output_and_words_to_standard_error(call, folder, typed, begins):
+    plan_along(shaped_cycloid(LINK, "zvd")).save("plan.json")
+    code, out, err = call(f"export plan.json --output - --rate 4 {typed}")
+    assert (code, out[: len(begins)]) == (0, begins)
+    assert err.startswith("4 Hz is coarse: a controller that interpolates by ")
+    assert [path.name for path in folder.iterdir()] == ["plan.json"]
 
 
 def test_the_tips_of_a_robust_plan_are_named_by_their_scenarios(tmp_path):

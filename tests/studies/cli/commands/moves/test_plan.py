@@ -5,6 +5,7 @@ import math
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from lines import MOVE, run
 from quietarm.ocp import CopperLoss, Floor, Plan, PositivePower, plan_move
@@ -97,6 +98,40 @@ def test_states_and_limits_of_a_drive_are_typed_with_units_by_direction_and_by_s
     line = f"evaluate {MOVE} --coefficients=0 --acceleration-limit 90deg/s^2 --output e.json"
     assert call(line)[0] == 0
     assert Plan.load("e.json").task.acceleration_limit == pytest.approx(math.pi / 2, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "typed", ["100N@0,40N@0.5mps", "100@0,40@500mm/s", "0.1kN@0,40N@0.5m/s", "100@0,40@0.5"]
+)
+def test_the_force_of_a_linear_drive_falls_with_speed(done, typed):
+    out = done(
+        "evaluate linear-axis --target 300mm --duration 1.0 --coefficients 0 --quiet "
+        f"--output e.json --torque-speed {typed}"
+    )
+    assert "torque_speed 100N@0,40N@0.5" in out
+    plan = Plan.load("e.json")
+    assert plan.task.torque_speed == ((100.0, 0.0), (40.0, 0.5))
+    # force + 120 N s/m |speed| within 100 N: the line's force, less its fall, by hand
+    at = plan.sampled(np.linspace(0.0, 1.0, 1001))
+    shares = (np.abs(at.torque) + 120 * np.abs(at.joint[:, 1])) / 100
+    (limit,) = plan.task.limits
+    assert limit.peak_of(plan.motion) == pytest.approx(shares.max(), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("limits", "warned"),
+    [
+        # measured: the acceleration changes by its peak in 1.5 and in 20 ms
+        ("--acceleration-limit 40", "in 1.5 ms; give what the drive can do, as --jerk-limit"),
+        ("--acceleration-limit 40 --jerk-limit 2000", ""),
+        ("--terms 3", ""),  # in 30 ms
+    ],
+)
+def test_a_jerk_that_would_surprise_a_drive_is_told(done, limits, warned):
+    out = " ".join(done(f"plan {MOVE} --starts 1 {limits} --quiet").split())
+    (jerk,) = re.findall("peak jerk .* peak deflection", out)
+    assert ("warning" in jerk) is bool(warned)
+    assert warned in jerk
 
 
 @pytest.mark.parametrize(("limit", "warned"), [("", True), ("57", True), ("1.5", False)])

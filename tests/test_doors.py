@@ -1,0 +1,193 @@
+"""Every public function that takes a task, profile, plant, front or the like says what to give."""
+
+import inspect
+import re
+
+import pytest
+
+import quietarm as qa
+
+# Of these classes; `Motions` is what the pictures of motions take.
+KINDS = (
+    "PointToPoint", "JointProfile", "Plant", "Energy", "Front", "Plan", "Floor", "Motions",
+)  # fmt: skip
+WRONG = {
+    "PointToPoint": ("link", "'link'; give a task, as PointToPoint(SingleLinkManipulator(), "),
+    "JointProfile": ("spline", "'spline'; give an object, as CycloidSpline()"),
+    "Plant": ("single_link", "'single_link'; give an object, as SingleLinkManipulator()"),
+    "Energy": ("copper", "'copper'; give an object, as CopperLoss(motor_constant)"),
+    "Front": ("front.json", "'front.json'; give Front.load('front.json')"),
+    "Plan": ("plan.json", "'plan.json'; give Plan.load('plan.json')"),
+    "Floor": ("floor.json", "'floor.json'; give Floor.load('floor.json')"),
+    "Motions": (["plan.json"], "'plan.json'; give a line, as Line(plan, 'plan')"),
+}
+
+
+def _kind_of(annotation):
+    """The class of `KINDS` that an annotation names, and whether it is of many."""
+    for kind in KINDS:
+        if re.fullmatch(
+            rf"(?:(?:Sequence|Mapping)\[(?:str, )?)?{kind}\]?(?: \| None| \| list\[.*)?", annotation
+        ):
+            return kind, "[" in annotation
+    return None, False
+
+
+def _doors():
+    """Public functions, classes that are no answers, and class methods, with such an argument."""
+    for name in dir(qa):
+        public = getattr(qa, name)
+        if not callable(public):
+            continue
+        made_by_hand = not hasattr(public, "__dataclass_fields__") or public is qa.PointToPoint
+        callables = {name: public} if made_by_hand else {}
+        if inspect.isclass(public):
+            for method, value in vars(public).items():
+                if isinstance(value, classmethod) and not method.startswith("_"):
+                    callables[f"{name}.{method}"] = getattr(public, method)
+        for label, function in callables.items():
+            try:
+                parameters = inspect.signature(function).parameters.values()
+            except ValueError:
+                continue
+            for parameter in parameters:
+                kind, many = _kind_of(str(parameter.annotation))
+                if kind is not None and label not in ANSWERS:
+                    yield pytest.param(function, parameter.name, kind, many,
+                                       id=f"{label}-{parameter.name}")  # fmt: skip
+
+
+# Made by quietarm alone.
+ANSWERS = {"Trajectory.from_outputs", "LostJobsError", "Results.of_jobs"}
+DOORS = list(_doors())
+
+
+@pytest.fixture(scope="module")
+def right():
+    """Arguments that are right, by name; those of no class are never looked at."""
+    link = qa.SingleLinkManipulator()
+    task = qa.PointToPoint(link, 0.5236, 0.8)
+    return {
+        "task": task, "one": task, "other": task, "tasks": [task], "plant": link,
+        "profile": qa.CycloidPolynomial(1), "coefficients": [0.0], "target": 0.5, "duration": 0.8,
+        "plans": {}, "fronts": [], "quantity": "speed", "floor": object.__new__(qa.Floor),
+    }  # fmt: skip
+
+
+def test_the_doors_are_found():
+    names = {door.id for door in DOORS}
+    assert {
+        "plan_move-task", "plan_move-profile", "plan_moves-tasks", "fastest_move-profile",
+        "epsilon_front-task", "weighted_front-profile", "search-start", "sweep-profile",
+        "evaluate_coefficients-task", "energy_floor-task", "cross_check-front",
+        "polish_front-front", "shaped_cycloid-task", "evaluate_robustness-profile",
+        "Candidate.of_profile-profile", "PointToPoint-plant", "PointToPoint-energy",
+        "motion_figure-motions",
+    } <= names  # fmt: skip
+
+
+@pytest.mark.parametrize(("function", "name", "kind", "many"), DOORS)
+def test_something_else_is_told_what_to_give(right, function, name, kind, many):
+    wrong, told = WRONG[kind]
+    given = {
+        parameter.name: right.get(parameter.name)
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.default is parameter.empty or parameter.name == name
+    }
+    values = {"a": wrong} if name == "plans" else [wrong]
+    given[name] = values if many and kind != "Motions" else wrong
+    with pytest.raises(TypeError) as error:
+        function(**given)
+    assert told in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("profile", "told"),
+    [
+        (6, "profile is 6; give a profile, as CycloidPolynomial(6) or CycloidSpline(12)"),
+        (qa.CycloidSpline, "profile is CycloidSpline; give an object, as CycloidSpline()"),
+        (qa.ShapedCycloid, "give an object, as ShapedCycloid(shaper, frequencies, damping_ratios)"),
+        ("cycloid-spline", "give an object, as CycloidSpline()"),
+        ([0.1, 0.2], "profile is [0.1, 0.2]; give a profile, as"),
+    ],
+)
+def test_a_profile_is_an_object(right, profile, told):
+    with pytest.raises(TypeError) as error:
+        qa.plan_move(right["task"], profile)
+    assert told in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "told"),
+    [
+        ("initial", (0.01, 0), "initial is (0.01, 0); give a state, as ModalState(W=[0.01], dW=[0"),
+        ("final", [0.01, 0], "final is [0.01, 0]; give a state, as ModalState(W=[0.01], dW=[0.0])"),
+        ("energy", None, "energy is None; give an energy, as AbsolutePower() or CopperLoss(0.12)"),
+        ("energy", qa.PositivePower, "give an object, as PositivePower()"),
+        ("uncertainty", {"frequency": 0.1}, "give ranges, as Uncertainty({'frequency': 0.1})"),
+        ("uncertainty", 0.1, "uncertainty is 0.1; give ranges, as Uncertainty("),
+    ],
+)
+def test_a_field_of_a_task_is_of_its_class(field, value, told):
+    with pytest.raises(TypeError) as error:
+        qa.PointToPoint(qa.SingleLinkManipulator(), 0.5236, 0.8, **{field: value})
+    assert told in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: qa.ModalState(0.01, 0), r"W is 0.01; give a list of numbers, one for each mode"),
+        (lambda: qa.Uncertainty(0.1), r"errors are 0.1; give them by name, as {'frequency': 0.1}"),
+        (lambda: qa.Uncertainty("frequency"), "errors are 'frequency'; give them by name"),
+        (
+            lambda: qa.PointToPoint(qa.SingleLinkManipulator(), 0.5, 0.8, torque_speed=1.5),
+            r"torque-speed line is 1.5; give .* as \[\(1.5, 0\), \(0.8, 20\)\]",
+        ),
+        (
+            lambda: qa.PointToPoint(qa.SingleLinkManipulator(), 0.5, 0.8, torque_speed=[1.5, 20]),
+            r"torque-speed line is .*; give .* as \[\(1.5, 0\), \(0.8, 20\)\]",
+        ),
+    ],
+)  # fmt: skip
+def test_numbers_stand_in_lists_and_by_names(make, told):
+    with pytest.raises(ValueError, match=told):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda task: qa.search(task, qa.CycloidPolynomial(6), bound=0.2), "profile=..."),
+        (lambda task: qa.motion_figure("plan.json"), "give Plan.load('plan.json')"),
+        (lambda task: qa.motion_figure(6), "give a plan, as Plan.load('plan.json')"),
+        (lambda task: qa.draw_quantity([], "sped"), "did you mean 'speed'?"),
+        (lambda task: qa.plan_move(task, guess="a"), "coefficients are 'a'; give 6 numbers"),
+        (lambda task: qa.epsilon_front(task, at=0.1), "at is 0.1; give a list of residuals"),
+        (lambda task: qa.weighted_front(task, weights=0.3), "give pairs of residual and energy"),
+        (lambda task: qa.perturb_plant(task.plant, 0.1), "by name, as {'frequency': 0.1}"),
+        (lambda task: qa.sweep(task, {"target": 0.1}, "x.zarr"), "give a list of values"),
+        (lambda task: qa.compare_plans([task]), "give them by name, as {'mine': plan}"),
+        (lambda task: qa.compare_plans({}, "zv", task=task), "give a list of names"),
+        (lambda task: qa.ShapedCycloid("zv", 10.0, [0.1]), "frequencies is 10.0; give a list"),
+    ],
+)
+def test_other_arguments_say_so_as_well(right, call, told):
+    with pytest.raises((TypeError, ValueError), match=re.escape(told)):
+        call(right["task"])
+
+
+def test_one_move_is_no_list_of_moves(right):
+    with pytest.raises(TypeError, match="give a list of objects of PointToPoint"):
+        qa.plan_moves(right["task"])
+
+
+def test_an_energy_adds_to_energies_alone():
+    with pytest.raises(TypeError, match="part of a mix is 3; give an energy, as"):
+        qa.Mix(((1.0, qa.AbsolutePower()), (1.0, 3)))
+
+
+def test_an_argument_that_is_not_known_is_pythons_own_error(right):
+    with pytest.raises(TypeError, match=r"plan_move.* got an unexpected keyword argument 'terms'"):
+        qa.plan_move(right["task"], terms=6)
