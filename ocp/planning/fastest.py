@@ -1,4 +1,8 @@
-"""`fastest_move`: the shortest duration in which a move within its limits still arrives."""
+"""`fastest_move`: the shortest duration in which a move within its limits still arrives.
+
+By default on a spline of the joint, which `least_time` fits to the task; along a profile that is
+given by bisection, each duration from the coefficients of the last feasible one.
+"""
 
 from __future__ import annotations
 
@@ -7,31 +11,30 @@ import time
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
 from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.limits import QUANTITIES, TorqueSpeedLine
-from quietarm.ocp.planning.best_of_starts import best_of_starts, explain, least_peaks_of
+from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.planning.least_time import LeastTime, least_time, rigid_duration
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.plan_move import plan_move
-from quietarm.ocp.planning.profiles import CHOSEN, SIX
-from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.planning.plan_move import limit_of, plan_move
+from quietarm.ocp.planning.rigid_motion import assumed_bounds, largest_deflection, rigid_motion
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.simulation.free_vibration import FreeVibration
-from quietarm.ocp.solvers.problem import Problem, Transcription
-from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 TOLERANCE = 1e-3
-DURATION_OF_SIX = "duration_of_six_terms"
-_TERMS = 12
-"""With which the shortest duration is looked for: 18 shorten it by another 1 %, and take minutes
-where nothing is found."""
 _SHORTER = (0.97, 0.9, 0.8)
 """Shares of the duration that failed which are tried as well: what is feasible may have gaps."""
-_GROWTH, _LONGEST = 1.5, 20
-"""By which a duration that fails grows; so many swings of the slowest mode are tried at most."""
+_GROWTH = 1.5
+"""By which a duration along a given profile grows where it fails."""
+_LONGEST, _SWINGS = 3, 20
+"""So many times what a rigid joint takes, and so many swings of the slowest mode, are tried."""
+_RIGID = "within its limits of speed, acceleration and jerk a joint takes longer"
+_LONGER = (0.0, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2)
+"""Shares by which the least time grows until there is a plan: by the limits between the solver's
+nodes, and by errors between the scenarios of an uncertain plant."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,7 @@ class Fastest:
 
 @one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile)
+@one_at_a_time
 def fastest_move(
     task: PointToPoint,
     profile: JointProfile | None = None,
@@ -69,16 +73,19 @@ def fastest_move(
 ) -> Fastest:
     """Find the shortest duration in which a move keeps its limits and arrives at rest.
 
-    Durations are found by bisection, each from the coefficients of the last feasible one.
-
     Parameters
     ----------
     task : PointToPoint
-        The move with its limits, of which there is one at least; its duration is where the search
-        begins. A plant may be uncertain.
-    profile, residual_limit, bound, **settings
-        As for `plan_move`. Without a profile the duration is that of 12 terms, and the plan has its
-        default number of terms; its record has the duration of six.
+        The move with its limits, of which there is one at least. A plant may be uncertain.
+    profile : JointProfile, optional
+        How the joint moves; by default a `JointSpline`, whose knots stand where the acceleration
+        of the fastest motion changes: it can cruise, and comes within 1 % of the least time. Along
+        another profile the task's duration is where the search begins.
+    residual_limit : float, optional
+        Largest F1 [m]; 0, the default, requires rest on arrival. For an uncertain task the default
+        is `fastest_residual_limit`, whatever the duration.
+    bound, **settings
+        As for `plan_move`.
     tolerance : float
         Share of the duration to which it is found.
 
@@ -94,46 +101,90 @@ def fastest_move(
     InfeasibleTaskError
         When no duration is feasible.
     """
-    asked, profile = profile, SIX if profile is None else profile
     positive("tolerance", tolerance)
-    profile.refuse_no_choice()
     if not task.limits:
         names = ", ".join(QUANTITIES)
         raise ValueError(f"nothing limits how fast the move may be; give a limit of {names}")
+    if task.uncertainty is not None and residual_limit is None:
+        residual_limit = fastest_residual_limit(task)
     begin = time.perf_counter()
-    search = _Search(task, profile, {
-        "residual_limit": residual_limit, "bound": bound, **{"starts": 1, **settings},
-    })  # fmt: skip
-    _narrow(search, tolerance)
-    best, chosen = search.best, {}
-    assert best is not None  # the bracket found one
-    if asked is None:
-        chosen = {DURATION_OF_SIX: best.task.duration}
-        search, best = _with_more_terms(search, tolerance)
-        chosen |= {CHOSEN: best.profile.size}
-    settings, seconds = {**best.record.settings, **chosen}, time.perf_counter() - begin
-    plan = best.restated(settings=settings, seconds=seconds)
-    failed = sorted(search.failed.items(), reverse=True)
-    shorter = tuple(one for one in failed if one[0] < plan.task.duration)
-    return Fastest(plan, shorter)
+    settings = {"residual_limit": residual_limit, "bound": bound, **{"starts": 1, **settings}}
+    if profile is None:
+        fastest = _fastest_on_spline(task, tolerance, settings)
+    else:
+        profile.refuse_no_choice()
+        fastest = _fastest_along(task, profile, tolerance, settings)
+    plan = fastest.plan.restated(seconds=time.perf_counter() - begin)
+    return Fastest(plan, fastest.failed)
 
 
-def _with_more_terms(six: _Search, tolerance: float) -> tuple[_Search, Plan]:
-    """The search that goes on from that of six terms, and the plan of the shortest duration."""
-    assert six.best is not None
-    search = _Search(six.best.task, CycloidPolynomial(_TERMS), six.settings, quick=True)
-    search.best = six.best
-    _narrow(search, tolerance)
+def fastest_residual_limit(task: PointToPoint) -> float:
+    """Residual limit [m] of an uncertain task's fastest move where none is given.
+
+    A twentieth of the static deflection at the peak acceleration of a plain cycloid that takes the
+    rigid joint's least time within the task's limits: it does not grow as the move gets shorter.
+    ValueError where the plant does not bend.
+    """
+    least = rigid_motion(abs(task.span), assumed_bounds(task)).duration
+    peak_acceleration = 2 * math.pi * abs(task.span) / least**2
+    limit = TOLERATED * peak_acceleration * largest_deflection(task)
+    if limit == 0:
+        raise ValueError(
+            "no acceleration bends this plant, so that a share of its deflection is no limit; give "
+            "a residual limit above 0"
+        )
+    return limit
+
+
+def _fastest_on_spline(task: PointToPoint, tolerance: float, settings: dict[str, Any]) -> Fastest:
+    """The plan of least energy in the least time on a spline, or in hardly more."""
+    limit = limit_of(task, settings["residual_limit"])
     try:
-        settings: dict[str, Any] = {**search.settings, "guess": None}
-        return search, plan_move(search.best.task, **settings)
-    except SolverFailedError:
-        return search, search.best
+        least = least_time(task, limit, settings["bound"], tolerance / 2)
+    except ValueError as error:
+        raise InfeasibleTaskError(f"no duration was found: {error}") from None
+    failed = {least.too_short: _why_too_short(task, least)}
+    for longer in _LONGER:
+        longer_task = replace(task, duration=(1 + longer) * least.duration)
+        try:
+            plan = plan_move(longer_task, least.profile, guess=least.coefficients, **settings)
+        except SolverFailedError as error:
+            failed[longer_task.duration] = str(error)
+        else:
+            break
+    else:
+        raise InfeasibleTaskError(
+            f"no duration up to {longer_task.duration:.3g} s will do: "
+            f"{failed[longer_task.duration]}"
+        )
+    stated = {**plan.record.settings}
+    stated.pop("guess", None)
+    return Fastest(plan.restated(settings=stated), tuple(sorted(failed.items(), reverse=True)))
+
+
+def _why_too_short(task: PointToPoint, least: LeastTime) -> str:
+    """What is said of the longest duration that failed."""
+    if least.too_short <= rigid_duration(task):
+        return _RIGID
+    return f"every motion found exceeds a limit by {max(least.excess, 1e-6):.1g} of it or more"
+
+
+def _fastest_along(
+    task: PointToPoint, profile: JointProfile, tolerance: float, settings: dict[str, Any]
+) -> Fastest:
+    """The plan in the shortest duration along a profile."""
+    search = _Search(task, profile, settings)
+    _narrow(search, tolerance)
+    assert search.best is not None  # the bracket found one
+    shorter = [
+        failure for failure in search.failed.items() if failure[0] < search.best.task.duration
+    ]
+    return Fastest(search.best, tuple(sorted(shorter, reverse=True)))
 
 
 def _narrow(search: _Search, tolerance: float) -> None:
     """Bisect, and again below what failed as long as something there succeeds."""
-    least = _least_duration(search.task)
+    least = rigid_duration(search.task)
     low, high = search.bracket(least)
     while True:
         while high / low > 1 + tolerance:
@@ -150,28 +201,24 @@ def _narrow(search: _Search, tolerance: float) -> None:
 
 
 class _Search:
-    """Durations that were tried; a quick search gives one up where the solver's starts do."""
+    """Durations that were tried along a profile."""
 
     def __init__(
         self,
         task: PointToPoint,
         profile: JointProfile,
         settings: dict[str, Any],
-        quick: bool = False,
     ) -> None:
-        self.task, self.profile, self.settings, self.quick = task, profile, settings, quick
+        self.task = task
+        self.profile = profile
+        self.settings = settings
         self.best: Plan | None = None
         self.failed: dict[float, str] = {}
 
     def succeeds(self, duration: float) -> bool:
         """Whether there is a plan for a duration."""
-        task, guess = replace(self.task, duration=duration), None
-        if self.best is not None:
-            more = self.profile.size - len(self.best.coefficients)
-            guess = (*self.best.coefficients, *[0.0] * more)
-        if self.quick and (why := self._refusal(task, guess)):
-            self.failed[duration] = why
-            return False
+        task = replace(self.task, duration=duration)
+        guess = None if self.best is None else self.best.coefficients
         try:
             plan = plan_move(task, self.profile, guess=guess, **self.settings)
         except SolverFailedError as error:
@@ -180,28 +227,15 @@ class _Search:
         self.best = plan
         return True
 
-    def _refusal(self, task: PointToPoint, guess: tuple[float, ...] | None) -> str:
-        """Why the solver finds no motion of the nominal plant from the last one and the cycloid.
-
-        The default residual limit of an uncertain task is not known yet; other limits count.
-        """
-        residual = 1.0 if task.uncertainty else self.settings["residual_limit"] or 0.0
-        steps = Transcription.of(task.certain, self.profile)
-        problem = Problem.of(steps, residual, self.settings["bound"])
-        starts = [self.profile.plain, *([] if guess is None else [np.array(guess)])]
-        (found,) = best_of_starts([problem], [starts], Sqp())
-        if found.status.solved:
-            return ""
-        return str(explain(problem, [found], least_peaks_of(problem, starts)))
-
     def bracket(self, least: float) -> tuple[float, float]:
         """Two durations, of which the longer one succeeds and the shorter one does not."""
         if least > 0:
-            self.failed[least] = "within its limits of speed and acceleration a joint takes longer"
+            self.failed[least] = _RIGID
         low, high = max(least, LEAST_DURATION), max(self.task.duration, 1.01 * least)
         modes = FreeVibration(self.task.plant, self.task.target).modes
         slowest = 2 * math.pi / modes[0][0] if modes else 1.0
-        longest = max(self.task.duration, _LONGEST * slowest)
+        rigid = rigid_motion(abs(self.task.span), assumed_bounds(self.task))
+        longest = max(self.task.duration, _LONGEST * rigid.duration + _SWINGS * slowest)
         while not self.succeeds(high):
             low, high = high, _GROWTH * high
             if high > longest:
@@ -211,17 +245,3 @@ class _Search:
         while low < high / _GROWTH and self.succeeds(high / _GROWTH):
             high /= _GROWTH
         return max(low, high / _GROWTH), high
-
-
-def _least_duration(task: PointToPoint) -> float:
-    """What the limits of speed and acceleration allow a rigid joint [s]."""
-    span, speeds, least = abs(task.span), list[float](), 0.0
-    forward = task.span > 0
-    for limit in task.limits:
-        if limit.name == "speed":
-            speeds.append(limit.upper if forward else -limit.lower)
-        if limit.name == "acceleration":  # the one, then the other
-            least = math.sqrt(2 * span * (1 / limit.upper - 1 / limit.lower))
-        if isinstance(limit.quantity.of, TorqueSpeedLine):
-            speeds.append(limit.quantity.of.largest_speed)
-    return max([least, *(span / speed for speed in speeds)])

@@ -172,6 +172,11 @@ def assumed_bounds(task: PointToPoint) -> RigidBounds:
     )
 
 
+def largest_deflection(task: PointToPoint) -> float:
+    """The largest static displacement of a tip [m] by 1 rad/s^2 along the way."""
+    return _Needed.along(task).deflection
+
+
 def _torque_limits(limits: Iterable[Limit]) -> Iterable[float]:
     for limit in limits:
         if limit.name == "torque":

@@ -8,11 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from quietarm.models.joint_motion import ROTARY, joint_unit
-from quietarm.ocp import CycloidPolynomial, Floor, Motion, Plan, PointToPoint, ShapedCycloid, Worst
+from quietarm.ocp import (
+    CycloidPolynomial,
+    Floor,
+    JointSpline,
+    Motion,
+    Plan,
+    PointToPoint,
+    ShapedCycloid,
+    Worst,
+)
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.limits import QUANTITIES, Limit, quantities_of
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.fastest import DURATION_OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.planning.profiles import CHOSEN, OF_SIX
 from quietarm.ocp.record import AGREEMENT, REST
@@ -47,6 +55,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
     back = plan.turns_back
     return [
         *_move_rows(plan.task, plan.motion, plan.residual_limit or 0.0),
+        *_arrival_rows(plan),
         _choice(plan),
         *_terms_rows(plan),
         *_figure_rows(plan.task, plan.motion, remedies),
@@ -56,6 +65,14 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
         _verified_row(plan),
         ("time", f"{plan.record.seconds:.2f} s"),
     ]
+
+
+def _arrival_rows(plan: Plan) -> list[Row]:
+    """What a robust plan may leave, said first: it does not arrive at rest."""
+    if plan.worst is None or plan.worst.residual < REST:
+        return []
+    left = tip_words(plan.worst.residual, plan.task.plant.tip_unit)
+    return [("arrives", f"not at rest: with such errors up to {left} of vibration are left")]
 
 
 def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
@@ -258,6 +275,8 @@ def _choice(plan: Plan) -> Row:
         shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
         return "profile", f"{plan.profile.label}: {shaper}"
     coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    if isinstance(plan.profile, JointSpline):
+        return "profile", f"quintic spline, {plan.profile.amount} where the acceleration changes"
     if not isinstance(plan.profile, CycloidPolynomial):
         return "profile", f"{plan.profile.label}: {coefficients}"
     return "coefficients", coefficients or "none: the plain cycloid"
@@ -271,13 +290,13 @@ def _tip(task: PointToPoint) -> str:
 
 def _terms_rows(plan: Plan) -> list[Row]:
     """How many terms the plan chose, and what six would cost; none where they were given."""
-    found = plan.record.settings
-    if CHOSEN not in found:
+    settings = plan.record.settings
+    if CHOSEN not in settings:
         return []
-    energy, duration = (float(found.get(name) or 0) for name in (OF_SIX, DURATION_OF_SIX))
-    six = "" if energy or plan.worst is not None else "six terms find no motion"
-    if energy:
-        six = f"six would take {energy:.4g} J ({energy / plan.energy - 1:+.0%})"
-    if duration:
-        six = f"six would take {duration:.4g} s"
-    return [("terms", ", ".join(filter(None, [f"{found[CHOSEN]}, chosen for the limits", six])))]
+    words = f"{settings[CHOSEN]}, chosen for the limits"
+    energy_of_six = float(settings.get(OF_SIX) or 0.0)
+    if energy_of_six:
+        words += f", six would take {energy_of_six:.4g} J ({energy_of_six / plan.energy - 1:+.0%})"
+    elif plan.worst is None:
+        words += ", six terms find no motion"
+    return [("terms", words)]
