@@ -31,7 +31,7 @@ from quietarm.ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from quietarm.ocp.planning.profiles import OF_SIX
+from quietarm.ocp.planning.choose_profile import OF_SIX
 from quietarm.studies.compare.baselines import BASELINES, baseline
 
 AS_STILL, REST, KEPT = 1e-3, 1e-6, 2e-3

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, Preset, preset_of
-from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
+from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import takes, whole
+from quietarm.ocp.planning.choose_profile import choose_profile
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -139,7 +140,7 @@ def search(
     else:
         evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
         generations, limits = -(-evaluations // size), {"evaluations": evaluations}
-    profile = CycloidPolynomial() if profile is None else profile
+    profile = choose_profile(task) if profile is None else profile
     bound = profile.default_bound if bound is None else bound
     if bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())

@@ -32,7 +32,7 @@ from .planning.many import plan_moves as plan_moves
 from .planning.plan import Plan as Plan
 from .planning.plan import evaluate_coefficients as evaluate_coefficients
 from .planning.plan_move import plan_move as plan_move
-from .planning.profiles import shaped_cycloid as shaped_cycloid
+from .planning.shaper import shaped_cycloid as shaped_cycloid
 from .profiles.cycloid import MAX_TERMS as MAX_TERMS
 from .profiles.cycloid import CycloidPolynomial as CycloidPolynomial
 from .profiles.cycloid import CycloidSpline as CycloidSpline

@@ -14,7 +14,22 @@ class SolverFailedError(QuietarmError):
 
 
 class InfeasibleTaskError(SolverFailedError):
-    """No motion of the given profile is feasible; the text says what would be."""
+    """No motion of the given profile is feasible; the text says what would be.
+
+    Parameters
+    ----------
+    what : str
+        What was not found, and limits with which it would be.
+    remedy : str, optional
+        What else will do, or may.
+    """
+
+    def __init__(self, what: str, remedy: str = "") -> None:
+        super().__init__("; ".join(filter(None, [what, remedy])))
+        self.what = what
+
+    def __reduce__(self) -> tuple[type[InfeasibleTaskError], tuple[str]]:
+        return type(self), (str(self),)
 
 
 class FileFormatError(QuietarmError, ValueError):

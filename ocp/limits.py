@@ -272,6 +272,11 @@ class Limit:
         """The limit divided by a ratio."""
         return Limit(self.quantity, self.lower / ratio, self.upper / ratio)
 
+    def widened_to(self, size: float) -> Limit:
+        """The limit with another size; the same in both directions where it has none."""
+        below, above = self.sides if self.size > 0 else (-1.0, 1.0)
+        return Limit(self.quantity, below * size, above * size)
+
     def describe(self, peak: float) -> str:
         """A peak in words: in its unit, or where no single number tells, in times of the limit."""
         if self.is_peak:

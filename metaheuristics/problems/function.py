@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.objective.population import PopulationObjective, replace_failures
-from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
+from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.checks import takes, unknown
 from quietarm.ocp.limits import QUANTITIES, quantities_of
+from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.record import coefficient_bound
 
 Array = NDArray[np.float64]
@@ -63,7 +64,7 @@ class MoveFunction:
         steps: int | None = None,
         threads: int = 1,
     ) -> None:
-        profile = CycloidPolynomial() if profile is None else profile
+        profile = choose_profile(task) if profile is None else profile
         bound = profile.default_bound if bound is None else bound
         if bound is None:
             raise ValueError("give a bound on the coefficients: the box that is searched")

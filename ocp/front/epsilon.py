@@ -15,7 +15,7 @@ from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import SolverName, best_of_starts, better
-from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings, digits, number_of_points
 from quietarm.ocp.solvers.problem import STILL, Solution
@@ -85,7 +85,7 @@ def epsilon_front(
     InfeasibleTaskError, SolverFailedError
         When no motion of this profile keeps the limits, or an end is not found for another reason.
     """
-    profile = CycloidPolynomial() if profile is None else profile
+    profile = choose_profile(task) if profile is None else profile
     points = number_of_points(points)
     at = [positive("residual", one, "m") for one in several("at", at, "residuals")]
     settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)

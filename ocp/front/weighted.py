@@ -15,7 +15,7 @@ from quietarm.ocp.front.front import Front
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import SolverName, best_of_starts, objective_of
-from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings, digits, number_of_points
 from quietarm.ocp.solvers.problem import ENERGY, Solution
@@ -72,7 +72,7 @@ def weighted_front(
     ValueError
         When a weight is negative, or both of a pair are zero; else as `epsilon_front`.
     """
-    profile = CycloidPolynomial() if profile is None else profile
+    profile = choose_profile(task) if profile is None else profile
     points = number_of_points(points)
     chosen = None if weights is None else _pairs(weights)
     settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)

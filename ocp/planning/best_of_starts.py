@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.limits import Limit, Ranged
-from quietarm.ocp.planning.certify import judge
+from quietarm.ocp.planning.certify import certify_one, judge
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.ipopt import Ipopt
@@ -175,14 +175,37 @@ def explain(
 ) -> SolverFailedError:
     """The error for a problem that no start solved; other arguments as for `unmet`."""
     transcription, asked = problem
+    peaks = true_peaks(asked.limits, least, lambda one: judge(transcription, one.coefficients))
+    confirmed = {
+        limit.name: peaks[limit.name]
+        for limit in asked.limits
+        if limit.name in peaks
+        and _has_a_plan(problem, limit, peaks[limit.name], least[limit.name].coefficients)
+    }
     return unmet(
         f"motion of {transcription.profile.amount}",
         asked.limits,
         tried,
-        true_peaks(asked.limits, least, lambda one: judge(transcription, one.coefficients)),
+        confirmed,
         f"more {transcription.profile.term}s or a longer duration",
         "" if asked.bound is None else f", coefficients within +-{asked.bound:g}",
     )
+
+
+def _has_a_plan(problem: Problem, limit: Limit, peak: float, start: Array) -> bool:
+    """Whether a plan exists with a limit that is as wide as would be offered."""
+    transcription, asked = problem
+    offered = limit.widened_to(peak * _ROOM)
+    limits = tuple(offered if other is limit else other for other in asked.limits)
+    relaxed = Problem(transcription, asked._replace(limits=limits))
+    (solution,) = Sqp().solve([relaxed], [start])
+    if not solution.status.solved:
+        return False
+    try:
+        certify_one(relaxed, solution, Sqp())
+    except SolverFailedError:
+        return False
+    return True
 
 
 def unmet(
@@ -217,5 +240,5 @@ def unmet(
         else "removing any single one of these limits does not help, so widen several"
     )
     return InfeasibleTaskError(
-        f"found no {motion} with {asked}{box}; {feasible}; {remedy} may also do"
+        f"found no {motion} with {asked}{box}; {feasible}", f"{remedy} may also do"
     )

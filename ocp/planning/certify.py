@@ -180,7 +180,8 @@ class _Row:
     def is_rough(self) -> bool:
         """Whether the solver's steps are too few for the energy."""
         energy = self.figures.energy
-        return abs(self.best.energy - energy) > self.tolerances.energy * energy
+        share = max(self.tolerances.energy, self.transcription.profile.energy_agreement)
+        return abs(self.best.energy - energy) > share * energy
 
     @property
     def differs(self) -> bool:

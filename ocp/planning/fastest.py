@@ -32,9 +32,11 @@ _GROWTH = 1.5
 _LONGEST, _SWINGS = 3, 20
 """So many times what a rigid joint takes, and so many swings of the slowest mode, are tried."""
 _RIGID = "within its limits of speed, acceleration and jerk a joint takes longer"
-_LONGER = (0.0, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2)
-"""Shares by which the least time grows until there is a plan: by the limits between the solver's
-nodes, and by errors between the scenarios of an uncertain plant."""
+_LONGER = (5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2)
+"""Shares by which the least time grows until there is a plan: in the least time itself limits could
+not be narrowed by what passes them between the solver's nodes."""
+_LONGER_IF_UNCERTAIN = 5e-3
+"""The least of them for an uncertain plant, whose worst case may lie between the scenarios."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +146,8 @@ def _fastest_on_spline(task: PointToPoint, tolerance: float, settings: dict[str,
     except ValueError as error:
         raise InfeasibleTaskError(f"no duration was found: {error}") from None
     failed = {least.too_short: _why_too_short(task, least)}
-    for longer in _LONGER:
+    shortest = _LONGER[0] if task.uncertainty is None else _LONGER_IF_UNCERTAIN
+    for longer in (share for share in _LONGER if share >= shortest):
         longer_task = replace(task, duration=(1 + longer) * least.duration)
         try:
             plan = plan_move(longer_task, least.profile, guess=least.coefficients, **settings)

@@ -19,8 +19,7 @@ from quietarm.ocp.planning.best_of_starts import (
     start_coefficients,
 )
 from quietarm.ocp.planning.certify import certify, finer_peaks
-from quietarm.ocp.planning.profiles import choose_profile
-from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.planning.choose_profile import SIX, choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
@@ -105,7 +104,7 @@ def plan_moves(
         When there is no task, plants, energies or limits differ, or an argument is out of range.
     """
     if profile is None:
-        profile = choose_profile(tasks[0]) if tasks else CycloidPolynomial()
+        profile = choose_profile(tasks[0]) if tasks else SIX
     settings = SolveSettings(residual_limit, bound, starts, seed, solver=solver)
     _check(tasks, profile)
     problems = [

@@ -25,8 +25,8 @@ from quietarm.ocp.planning.best_of_starts import (
     start_coefficients,
 )
 from quietarm.ocp.planning.certify import OVERRUN, certify_one
+from quietarm.ocp.planning.choose_profile import plan_on_chosen_profile
 from quietarm.ocp.planning.plan import Plan, only_motion
-from quietarm.ocp.planning.profiles import plan_with_chosen_terms
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, SolveSettings, Verification
@@ -93,8 +93,8 @@ def plan_move(
     profile : JointProfile, optional
         How the joint moves; by default the cycloid of a polynomial, of six terms without limits,
         and of 18 or 24 with limits (`choose_profile`); the plan's record then has the energy of
-        six. The only motion of a profile without coefficients, such as `shaped_cycloid`, is
-        evaluated, not optimised.
+        six. Where these find no motion, more terms are tried, and a `JointSpline`. The only motion
+        of a profile without coefficients, such as `shaped_cycloid`, is evaluated, not optimised.
     residual_limit : float, optional
         Largest F1 [m]; 0, the default, requires rest on arrival, or the task's `final` state. For
         an uncertain task, where rest in all scenarios is infeasible, the default is 5 % of the
@@ -113,7 +113,8 @@ def plan_move(
         Steps of the solver's discretisation, chosen from the task by default; they are doubled
         while the verification disagrees.
     guess : array_like, shape (profile.size,), optional
-        Coefficients of the first start, such as a metaheuristic's; six without a profile.
+        Coefficients of the first start, such as a metaheuristic's; without a profile the polynomial
+        has as many terms.
     solver : {"sqp", "ipopt"}
         Sequential quadratic programming, all starts at once, or IPOPT, one after another. If the
         first solves no start, IPOPT is tried.
@@ -135,19 +136,21 @@ def plan_move(
         When no motion of this profile is feasible, with what would be; when no start ended at an
         optimum for another reason.
     """
-    chosen = profile is None and guess is None
-    profile = CycloidPolynomial() if profile is None else profile
-    if guess is not None:
-        guess = profile.checked(guess)
     least = 0.0 if residual_limit is None else residual_limit
-    settings = SolveSettings(least, bound, starts, seed, steps, guess, solver, log)
-    if profile.size == 0:
-        return only_motion(task, profile, residual_limit)
+    settings = SolveSettings(least, bound, starts, seed, steps, None, solver, log)
 
-    def plan(profile: JointProfile, settings: SolveSettings) -> Plan:
+    def plan(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Plan:
         return _plan_within(task, profile, settings, residual_limit)
 
-    return plan_with_chosen_terms(task, settings, plan) if chosen else plan(profile, settings)
+    if profile is None and guess is None:
+        return plan_on_chosen_profile(task, settings, limit_of(task, residual_limit), plan)
+    if profile is None:
+        profile = CycloidPolynomial.of_size(np.size(guess))
+    if profile.size == 0:
+        return only_motion(task, profile, residual_limit)
+    if guess is not None:
+        settings = replace(settings, guess=profile.checked(guess))
+    return plan(task, profile, settings)
 
 
 def _plan_within(
@@ -217,35 +220,45 @@ def _hold(
 
     Where its residual exceeds the limit between them by more than `EXCESS`, those peaks become
     scenarios, and the motions that were found are the next starts. The remaining excess is
-    then subtracted from the limit.
+    then subtracted from the limit; where that does not settle it, they become scenarios as well.
     """
     plan, others = plan_from_starts(task, profile, settings, starts)
     if task.uncertainty is None:
         return plan
-    limit = used = settings.residual_limit
+    limit = settings.residual_limit
+    tightened = limit
     rounds = tightenings = 0
+    peaks = peaks_between(plan.task, profile, plan.coefficients, _ADDED)
     while True:
-        peaks = peaks_between(plan.task, profile, plan.coefficients, _ADDED)
-        plan, excess = replace(plan, worst=peaks[0]), peaks[0].residual / limit - 1
-        adding = excess > EXCESS and rounds < _ROUNDS and not tightenings
-        more = _new_scenarios(task, [one for one in peaks if one.residual > limit])
-        asked, starts = settings, [np.array(plan.coefficients)]
-        if adding and more:
+        plan = replace(plan, worst=peaks[0])
+        excess = peaks[0].residual / limit - 1
+        more = _new_scenarios(task, [peak for peak in peaks if peak.residual > limit])
+        can_add = bool(more) and rounds < _ROUNDS
+        can_tighten = excess > 0 and tightenings < _TIGHTENINGS
+        next_settings, starts = settings, [np.array(plan.coefficients)]
+        if can_add and (
+            (excess > EXCESS and not tightenings) or (excess > OVERRUN and not can_tighten)
+        ):
             rounds += 1
+            tightenings = 0
+            tightened = limit
             task = task.with_samples([*task.scenarios[1:], *more])
             starts += others[:_KEPT]
-        elif excess > 0 and tightenings < _TIGHTENINGS:
+        elif can_tighten:
             tightenings += 1
-            used /= (1 + excess) * (1 + OVERRUN)
-            asked = replace(settings, residual_limit=used, steps=plan.verification.steps)
+            tightened /= (1 + excess) * (1 + OVERRUN)
+            steps = plan.verification.steps
+            next_settings = replace(settings, residual_limit=tightened, steps=steps)
         else:
             break
         try:
-            plan, others = plan_from_starts(task, profile, asked, starts)
+            plan, others = plan_from_starts(task, profile, next_settings, starts)
         except SolverFailedError:
             if not tightenings:
                 raise
-            break
+            tightenings = _TIGHTENINGS  # a tighter limit leads nowhere: more scenarios may
+        else:
+            peaks = peaks_between(plan.task, profile, plan.coefficients, _ADDED)
     return replace(plan, residual_limit=settings.residual_limit)
 
 

@@ -57,6 +57,9 @@ class JointProfile(ABC):
     """Whether a motion may turn within a hundredth of the move without a break."""
     steps_of_a_piece: ClassVar[int] = 6
     """Steps that resolve the motion between two of its `breaks`."""
+    energy_agreement: ClassVar[float] = 0.0
+    """Share by which the energy of a plan's steps may differ from CVODES' before these are doubled,
+    where that is more than any plan's."""
     random_starts: ClassVar[int] = 1
     """The gradient's random starts for each that is asked for, several where minima are many."""
 

@@ -49,6 +49,7 @@ class JointSpline(JointProfile):
     term: ClassVar[str] = "knot"
     default_bound: ClassVar[float | None] = 0.5
     steps_of_a_piece: ClassVar[int] = 2
+    energy_agreement: ClassVar[float] = 1e-4
 
     knots: tuple[float, ...]
 

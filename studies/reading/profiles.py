@@ -7,6 +7,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from quietarm.ocp import JointProfile, PointToPoint, profiles, shaped_cycloid
+from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.profiles.cycloid import Cycloid
 
 POLYNOMIAL = "polynomial"
@@ -37,7 +38,9 @@ OTHERS: Mapping[str, Cycloid] = {
 
 
 def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> JointProfile:
-    """A profile by its name."""
+    """A profile by its name; a polynomial without a number of terms is the task's."""
+    if chooses_terms(name, terms):
+        return choose_profile(task)
     if name not in FAMILIES:
         return shaped_cycloid(task, name)
     family = FAMILIES[name]
@@ -45,5 +48,5 @@ def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> Joint
 
 
 def chooses_terms(name: str, terms: int | None) -> bool:
-    """Whether a plan chooses its number of terms: a polynomial's, where none is given."""
+    """Whether the task settles the number of terms: of a polynomial, where none is given."""
     return name == POLYNOMIAL and terms is None

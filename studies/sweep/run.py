@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.models.joint_motion import joint_unit
-from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, SolveSettings
+from quietarm.ocp import PointToPoint, QuietarmError, SolveSettings
 from quietarm.ocp.checks import has_no, several, takes
 from quietarm.ocp.interrupts import note_interrupts
+from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.sweep.cells import plan_chunk
 from quietarm.studies.sweep.definition import Definition
@@ -85,7 +86,7 @@ def sweep(
     grid = Grid(task, tuple(Axis(name, tuple(values[name]), units[name])
                             for name in order))  # fmt: skip
     settings = SolveSettings(residual_limit, bound, starts)
-    profile = CycloidPolynomial() if profile is None else profile
+    profile = choose_profile(task) if profile is None else profile
     store = Store.of(Path(path), Definition(grid, profile, settings, front, margin))
     run_sweep(store, workers=workers, scheduler=scheduler)
     return store.dataset

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import click
 from quietarm.ocp import QuietarmError, SolveSettings
-from quietarm.ocp.planning.profiles import choose_profile
 from quietarm.studies.cli.files import (
     DATASET,
     PICTURE,
@@ -29,7 +28,6 @@ from quietarm.studies.cli.options import (
     profile_options,
 )
 from quietarm.studies.cli.types import SHARE
-from quietarm.studies.reading.profiles import chooses_terms
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -82,8 +80,7 @@ def sweep(given: Given) -> None:
             f"the grid has {grid.cells} cells, some {hours:.0f} hours on a core; give wider steps, "
             "or --yes"
         )
-    chooses = chooses_terms(given.profile, given.terms)
-    motions = choose_profile(grid.task) if chooses else given.read_profile(grid.task)
+    motions = given.read_profile(grid.task)
     residual_limit = given.read_residual_limit(grid.task.plant) or 0.0
     solve = SolveSettings(residual_limit, given.bound, starts=1)
     store = Store.of(datasets[0], Definition(grid, motions, solve, given.front or 0, given.margin))

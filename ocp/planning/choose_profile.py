@@ -1,0 +1,181 @@
+"""Which profile a task takes where nobody names one: the one rule for plans, fronts and searches.
+
+Without limits six terms are the paper's, and more only make the starts harder. Within the limits of
+a drive they cost up to twice the least energy, or find no motion. Two terms more often save
+nothing where four save a quarter, so the number is not looked for step by step: it follows from
+the number of modes. `benchmarks/terms.py` measures how far from the floor that ends.
+
+A plan that finds no motion of so many terms tries more, and then a spline that can cruise, before
+it refuses the task.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
+from quietarm.ocp.planning.best_of_starts import best_of_starts, solver_of, start_coefficients
+from quietarm.ocp.planning.least_time import fitting_spline, least_time
+from quietarm.ocp.planning.plan import Plan
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.record import Setting, SolveSettings
+from quietarm.ocp.solvers.problem import Problem, Solution, Transcription
+from quietarm.ocp.task import PointToPoint
+
+SIX = CycloidPolynomial()
+_OF_ONE_MODE, _OF_SEVERAL_MODES = 18, 24
+"""Terms within limits. Where one mode swings for more than seven periods 24 come 2 % nearer to the
+floor, but the solver may take minutes."""
+CHOSEN, OF_SIX = "chosen_terms", "energy_of_six_terms"
+"""What a plan's record says of them."""
+_LONGER = (0.01, 0.05)
+"""Shares by which a duration that is offered is longer than the least time."""
+_LEAST_TIME_TO = 2e-3
+
+PlanOf = Callable[[PointToPoint, JointProfile, SolveSettings], Plan]
+
+
+def choose_profile(task: PointToPoint) -> CycloidPolynomial:
+    """The cycloid of a polynomial of six terms without limits; within them of 18, or 24.
+
+    18 where the plant has one mode, 24 where it has several.
+    """
+    return more_terms(task) if task.limits else SIX
+
+
+def more_terms(task: PointToPoint) -> CycloidPolynomial:
+    """The number of terms that a plant takes within limits."""
+    return CycloidPolynomial(_OF_ONE_MODE if task.plant.modes == 1 else _OF_SEVERAL_MODES)
+
+
+def plan_on_chosen_profile(
+    task: PointToPoint, settings: SolveSettings, residual_limit: float, plan: PlanOf
+) -> Plan:
+    """The plan along the profile that a task takes, or along a richer one where it finds none.
+
+    The residual limit is that of the worst case. InfeasibleTaskError, where no profile does, has
+    the duration that would do.
+    """
+    try:
+        return _plan_on_polynomial(task, settings, plan)
+    except SolverFailedError as error:
+        refusal = error
+    if settings.bound is None:
+        fitted = fitting_spline(task, residual_limit, None) if task.limits else None
+        if fitted is not None:
+            spline, coefficients = fitted
+            try:
+                return plan(
+                    task, spline, replace(settings, starts=1, guess=tuple(coefficients.tolist()))
+                )
+            except SolverFailedError:
+                pass
+    if not isinstance(refusal, InfeasibleTaskError):
+        raise refusal
+    duration = _feasible_duration(task, settings, residual_limit, plan)
+    raise InfeasibleTaskError(
+        refusal.what, f"a duration of {duration:g} s will also do" if duration else ""
+    ) from None
+
+
+def _plan_on_polynomial(task: PointToPoint, settings: SolveSettings, plan: PlanOf) -> Plan:
+    """Six terms without limits, and more where these find no motion; within limits more."""
+    if not task.limits:
+        try:
+            return plan(task, SIX, settings)
+        except SolverFailedError:
+            return _stating_terms(plan(task, more_terms(task), settings))
+    return _plan_with_more_terms(task, settings, plan)
+
+
+def _plan_with_more_terms(task: PointToPoint, settings: SolveSettings, plan: PlanOf) -> Plan:
+    """The plan of the number of terms for limits; its record states what six would cost.
+
+    One start does, the plain cycloid; another is what six terms give, where it leads nowhere.
+    """
+    began = time.perf_counter()
+    profile = more_terms(task)
+    six = _solve_with_six(task, settings)
+    from_cycloid = replace(settings, starts=1)
+    padded = np.pad(six.coefficients, (0, profile.size - SIX.size)).tolist()
+    from_six = replace(from_cycloid, guess=tuple(padded))
+    try:
+        best = plan(task, profile, from_cycloid)
+    except SolverFailedError:
+        if not six.status.solved:
+            raise
+        best = plan(task, profile, from_six)
+    else:
+        if six.status.solved and task.uncertainty is None and six.energy < best.energy:
+            best = _cheaper(best, task, profile, from_six, plan)
+    stated: dict[str, Setting] = {"starts": settings.starts}
+    if six.status.solved and task.uncertainty is None:
+        stated[OF_SIX] = six.energy
+    return _stating_terms(
+        best, stated, six.iterations + best.record.iterations, time.perf_counter() - began
+    )
+
+
+def _cheaper(
+    best: Plan, task: PointToPoint, profile: JointProfile, settings: SolveSettings, plan: PlanOf
+) -> Plan:
+    """The plan from other settings where that is cheaper."""
+    try:
+        other = plan(task, profile, settings)
+    except SolverFailedError:
+        return best
+    return other if other.energy < best.energy else best
+
+
+def _stating_terms(
+    plan: Plan,
+    stated: dict[str, Setting] | None = None,
+    iterations: int | None = None,
+    seconds: float | None = None,
+) -> Plan:
+    """The plan whose record says how many terms were chosen."""
+    settings = {**plan.record.settings, CHOSEN: plan.profile.size, **(stated or {})}
+    settings.pop("guess", None)
+    return plan.restated(
+        settings=settings,
+        iterations=plan.record.iterations if iterations is None else iterations,
+        seconds=plan.record.seconds if seconds is None else seconds,
+    )
+
+
+def _solve_with_six(task: PointToPoint, settings: SolveSettings) -> Solution:
+    """What six terms give for the nominal plant, by the solver's own steps."""
+    steps = Transcription.of(task.certain, SIX, settings.steps)
+    problem = Problem.of(steps, settings.residual_limit, settings.bound)
+    starts = start_coefficients(SIX, settings)
+    (six,) = best_of_starts([problem], [starts], solver_of(settings))
+    return six
+
+
+def _feasible_duration(
+    task: PointToPoint, settings: SolveSettings, residual_limit: float, plan: PlanOf
+) -> float | None:
+    """A duration [s] for which there is a plan, hardly longer than the least one; None if none."""
+    if not task.limits or settings.bound is not None:
+        return None
+    try:
+        least = least_time(task, residual_limit, None, _LEAST_TIME_TO)
+    except ValueError:
+        return None
+    guess = tuple(least.coefficients.tolist())
+    for longer in _LONGER:
+        duration = float(f"{(1 + longer) * least.duration:.3g}")
+        try:
+            plan(
+                replace(task, duration=duration),
+                least.profile,
+                replace(settings, starts=1, guess=guess),
+            )
+        except SolverFailedError:
+            continue
+        return duration
+    return None
