@@ -35,7 +35,7 @@ _RIGID = "within its limits of speed, acceleration and jerk a joint takes longer
 _LONGER = (5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2)
 """Shares by which the least time grows until there is a plan: in the least time itself limits could
 not be narrowed by what passes them between the solver's nodes."""
-_LONGER_IF_UNCERTAIN = 5e-3
+_LONGER_IF_UNCERTAIN = 2e-3
 """The least of them for an uncertain plant, whose worst case may lie between the scenarios."""
 
 
