@@ -167,7 +167,7 @@ def shortened(words):
         fewer = ["--rate", "4", "--width", "240"]
     if "free" in words:
         fewer = ["--starts", "1"]
-    if "--terms" not in words and (words[0] == "sweep" or "fastest" in words):
+    if "--terms" not in words and words[0] == "sweep":
         fewer = [*fewer, "--terms", "6"]  # what 18 terms give: tests/ocp/planning/test_terms.py
     return [*words, "--quiet", *fewer, *(["--runs", "2"] if "--workers" in words else [])]
 
