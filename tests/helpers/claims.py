@@ -14,8 +14,9 @@ NO_CLAIM = re.compile(
     r"|`[^`]*`"
     r"|\$\$.*?\$\$|\$[^$]*\$"  # equations
     r"|\]\([^)]*\)"  # addresses
-    r"|^#.*$|^\*\*\d\. |^\|.*$"  # headings, the numbers of exercises, tables
+    r"|^#[^\n]*|^(?:\*\*)?\d\. |^\|[^\n]*"  # headings, the numbers of lists, tables
     r"|[Nn]otebooks? \d\w*(?:(?:, | and | to )\d\d\w?)*"
+    r"|\b\d\d[ab]\b"
     r"|\b(?:[Ee]xercises?|Tables?|refs?\.|eqs?) [\d(][\d(), ]*(?:(?: and | to )[\d(]\d*\)?)*"
     r"|\(\d+\)|\[\d+(?:, \d+)*\]"  # equations and references
     r"|quietarm\.\w+|<[^>]*>",
@@ -26,6 +27,7 @@ NUMBER = re.compile(r"(?<![\w.,])[-\u2212]?\d[\d,]*(?:\.\d+)?(?![\w.]*\d)")
 IN_PRINT = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 BESIDE = 3
 """Outputs before a text that it speaks of."""
+SHARE_OF_PI = re.compile(r"\bpi / (\d+)")
 SCALES = (1.0, 1e2, 1e3, 1e6)
 """From the SI units of programs to per cent, centimetres, millimetres and micrometres."""
 
@@ -44,7 +46,7 @@ def unsupported(notebook, stated=()):
     outputs, missing = list[set[float]](), list[str]()
     for cell, following in zip(notebook.cells, [*notebook.cells[1:], None]):
         for program in _programs(cell, following):
-            given |= _values(program)
+            given |= _values(program) | {180 / int(n) for n in SHARE_OF_PI.findall(program)}
         if cell.cell_type == "code":
             outputs += filter(None, [_values(printed(cell))])
             continue

@@ -96,12 +96,14 @@ def test_numbers_of_its_text_are_those_of_its_outputs(path):
         ("It takes 23.53 mJ, 23.6 mJ, or 25 mJ.", ["23.53", "23.6", "25"]),
         ("The other takes 91.15 mJ, the first saves 74 %.", ["74"]),
         ("A move of 0.8 s within 5 mm.", []),  # of the program, in its units
+        ("## 7 headings\n\nIt takes 23.53 mJ, by 60 degrees.", ["23.53"]),
+        ("1. A move, as in 05a.", []),
         ("As in notebooks 01 and 12, by (11) and Table 2, $N = 7$, `plan(9)`.", []),
     ],
 )
 def test_a_number_that_no_output_shows_is_found(text, wrong):
     shown = new_output("stream", name="stdout", text="F2 = 23.678 mJ\n91.15 mJ without\n")
-    program = new_code_cell("move(0.8, residual_limit=5e-3)", outputs=[shown])
+    program = new_code_cell("move(pi / 3, 0.8, residual_limit=5e-3)", outputs=[shown])
     notebook = new_notebook(cells=[program, new_markdown_cell(text)])
     assert unsupported(notebook) == (wrong, [])
     assert unsupported(notebook, [*wrong, "1.5"]) == ([], ["1.5"])
