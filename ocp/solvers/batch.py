@@ -51,6 +51,10 @@ class Values:
     arrival: Array
     limited: Array
 
+    def take(self, rows: slice) -> Self:
+        """Some rows."""
+        return type(self)(**{name: part[rows] for name, part in vars(self).items()})
+
 
 @dataclass(frozen=True)
 class Multipliers:
@@ -80,10 +84,6 @@ class Derivatives(Values):
     arrival_jacobian: Array
     limited_jacobian: Array
     hessian: Array
-
-    def take(self, rows: slice) -> Self:
-        """Some rows."""
-        return type(self)(**{name: part[rows] for name, part in vars(self).items()})
 
     def by_scenario(self, scenarios: int) -> Self:
         """Arrays of shape (candidates, scenarios, ...) from rows that are pairs of these."""

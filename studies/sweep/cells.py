@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import groupby
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.robustness import sensitivities_of_moves
 from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
+from quietarm.studies.sweep.grid import by_plant
 
 Cells = Iterator[dict[str, Any]]
 _CHECKED, _COLD_STARTS = 10, 4
@@ -40,11 +40,6 @@ def plan_chunk(definition: Definition, number: int) -> tuple[int, pd.DataFrame]:
         fronts = [_front_of(definition, task) if solved else {} for task, solved in planned]
         cells = cells.join(pd.DataFrame(fronts, index=cells.index))
     return number, cells
-
-
-def by_plant(tasks: Iterable[PointToPoint]) -> Iterator[list[PointToPoint]]:
-    """Moves of one plant after another, together."""
-    return (list(group) for _, group in groupby(tasks, key=lambda task: task.plant))
 
 
 def plan_cells(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> pd.DataFrame:

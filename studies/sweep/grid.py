@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import groupby, product
 from typing import Any
 
 import numpy as np
@@ -99,3 +99,8 @@ class Grid:
         plant: Any = self.task.plant
         given = {name: value for name, value in at.items() if name not in move}
         return replace(self.task, plant=replace(plant, **given), **move)
+
+
+def by_plant(tasks: Iterable[PointToPoint]) -> Iterator[list[PointToPoint]]:
+    """Moves of one plant after another, together."""
+    return (list(group) for _, group in groupby(tasks, key=lambda task: task.plant))

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.interpolate import BarycentricInterpolator
 
 Array = NDArray[np.float64]
 ORDERS = (6, 4, 2)
@@ -91,19 +90,31 @@ class Interpolation:
 
         A place has a value for each axis. NaN where it has no polynomial, unless it is a cell.
         """
-        return np.array([self._at(place) for place in places])
+        return self.of(self.cells, places)
 
-    def _at(self, place: Array) -> Array:
+    def of(self, cells: Array, places: Array) -> Array:
+        """The same of other values that the cells have, such as energies."""
+        return np.array([self._at(place, cells) for place in places])
+
+    def _at(self, place: Array, cells: Array) -> Array:
         each = [*zip(self.axes, place)]
         near = tuple(int(np.abs(axis - at).argmin()) for axis, at in each)
         values = [axis[k] for axis, k in zip(self.axes, near)]
         if np.allclose(values, place, rtol=_SAME, atol=_SAME):
-            return self.cells[near]
+            return cells[near]
         box = tuple(min(np.searchsorted(axis, at, "right"), len(axis) - 1) - 1 for axis, at in each)
         if not (order := int(self.orders[box])):
-            return np.full(self.cells.shape[-1], np.nan)
+            return np.full(cells.shape[-1], np.nan)
         window = tuple(slice(first, first + order) for first in self._first(box, order))
-        values = self.cells[window]
+        values = cells[window]
         for (axis, at), cut in zip(each, window):
-            values = BarycentricInterpolator(axis[cut], values)(at)
+            values = np.tensordot(_lagrange_weights(axis[cut], at), values, axes=1)
         return values
+
+
+def _lagrange_weights(nodes: Array, at: float) -> Array:
+    """What each node's value counts in the polynomial through all of them, at a place."""
+    others = ~np.eye(len(nodes), dtype=bool)
+    distances = np.subtract.outer(nodes, nodes)
+    ratios = np.divide(at - nodes, distances, out=np.ones_like(distances), where=others)
+    return ratios.prod(axis=1)

@@ -3,67 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import cached_property
-from itertools import islice
-from math import ceil
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import InfeasibleTaskError, Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.studies.sweep.cells import by_plant, plan_cells
+from quietarm.studies.sweep.between import Between, assess
 from quietarm.studies.sweep.definition import COEFFICIENTS
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.store import Store
-from quietarm.studies.tips import tip_words
 
 Array = NDArray[np.float64]
-_SAMPLES = 100
-"""Random moves between the cells, by which a library says how good it is."""
-_STARTS, _TRIES = 2, 20
-"""Starts of a plan of such a move; places that are tried for each."""
-_SPARE = 1.5
-"""A margin is advised that is this much larger than the worst excess of these."""
+_BETWEEN = "moves between the cells"
+"""The note of the dataset that keeps what `between` says."""
 _ALONE = "plan this move by itself: leave --from out"
-
-
-@dataclass(frozen=True)
-class Between:
-    """What moves between the cells leave [m] and cost: the worst of some random ones, by CVODES.
-
-    `excess` is the share of the energy above that of a plan of the same move; `of_limits` is peak
-    over limit, of the limit that is kept worst, 0 without limits.
-    """
-
-    residual: float
-    excess: float
-    of_limits: float
-    samples: int
-    tip_unit: str = "m"
-
-    @property
-    def keeps_limits(self) -> bool:
-        """Whether all of them keep their limits."""
-        return self.of_limits <= 1 + OVERRUN
-
-    @property
-    def words(self) -> str:
-        """All of it in a line."""
-        broken = f"limits broken by up to {self.of_limits - 1:.1%}"
-        return ", ".join([
-            f"between the cells: residual {tip_words(self.residual, self.tip_unit)}",
-            f"{self.excess:.2%} more energy than plans of their own",
-            *(["limits kept" if self.keeps_limits else broken] if self.of_limits else []),
-            f"each the largest of {self.samples} random moves",
-        ])  # fmt: skip
-
-    @property
-    def remedy(self) -> str:
-        """How moves between the cells come to keep their limits."""
-        share = ceil(100 * _SPARE * (self.of_limits - 1))
-        return f"sweep again with --limit-margin {share}% or on a finer grid"
 
 
 class MoveLibrary:
@@ -95,6 +51,15 @@ class MoveLibrary:
         axes = [np.array(axis.values) for axis in self.grid.axes]
         return Interpolation(axes, self.store.read(COEFFICIENTS))
 
+    def has(self, place: Array) -> bool:
+        """Whether there are coefficients at a place, a value for each axis."""
+        return bool(np.isfinite(self.interpolation(place[None])).all())
+
+    def energies(self, places: Array) -> Array:
+        """Energies of the cells, interpolated as their coefficients are [J], at each place."""
+        cells = self.store.read("energy")[..., None]
+        return self.interpolation.of(cells, places)[:, 0]
+
     def coefficients(self, **at: ArrayLike) -> Array:
         """Coefficients of moves.
 
@@ -124,13 +89,13 @@ class MoveLibrary:
                     f"{high:g}; sweep a wider one, or {_ALONE}"
                 )
         places = np.stack(columns, axis=-1)
-        found = self.interpolation(places.reshape(-1, places.shape[-1]))
-        if not np.isfinite(found).all():
+        coefficients = self.interpolation(places.reshape(-1, places.shape[-1]))
+        if not np.isfinite(coefficients).all():
             raise ValueError(
                 "the move is next to a cell without a plan, or where the least energy jumps from "
                 f"one motion to another; sweep a finer grid, or {_ALONE}"
             )
-        return found.reshape(*places.shape[:-1], -1)
+        return coefficients.reshape(*places.shape[:-1], -1)
 
     def _check_names(self, at: Mapping[str, object]) -> None:
         names = self.grid.names
@@ -152,35 +117,13 @@ class MoveLibrary:
             task, coefficients, profile=self.profile, method="interpolated"
         )
 
-    def between(self, samples: int = _SAMPLES) -> Between:
+    def between(self) -> Between:
         """Residual and energy of random moves between the cells; kept in the dataset."""
-        known = self.store.note("between the cells")
-        if known.get("samples") == samples:
+        if known := self.store.note(_BETWEEN):
             return Between(**known)
-        low, high = np.array([(axis.values[0], axis.values[-1]) for axis in self.grid.axes]).T
-        random = np.random.default_rng(0).uniform(low, high, (_TRIES * samples, len(low)))
-        places = list(islice(
-            (one for one in random if np.isfinite(self.interpolation(one[None])).all()), samples
-        ))  # fmt: skip
-        if not places:
-            raise ValueError(
-                f"{self.store.path} has no move between its cells that has coefficients"
-            )
-        names, definition = self.grid.names, self.store.definition
-        plans = [self.plan(**dict(zip(names, one.tolist()))) for one in places]
-        own = [energy for group in by_plant([plan.task for plan in plans])
-               for energy in plan_cells(definition, group, _STARTS)["energy"]]  # fmt: skip
-        of_limits = [share for plan in plans
-                     for share in plan.motion.exceeded(plan.task.limits, -1).values()]  # fmt: skip
-        found = Between(
-            max(plan.residual for plan in plans),
-            float(np.nanmax([plan.energy for plan in plans] / np.array(own) - 1)),
-            max(of_limits, default=0.0),
-            len(plans),
-            self.grid.task.plant.tip_unit,
-        )
-        self.store.keep("between the cells", asdict(found))
-        return found
+        assessed = assess(self)
+        self.store.keep(_BETWEEN, asdict(assessed))
+        return assessed
 
 
 def plan_from(path: str | Path, **at: float) -> tuple[Plan, Between, InfeasibleTaskError | None]:

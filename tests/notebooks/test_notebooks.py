@@ -2,6 +2,8 @@
 
 import nbformat
 import pytest
+from claims import numbers_of, stated_in, unsupported
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from notebook_files import (
     NOTEBOOKS,
     PATHS,
@@ -77,3 +79,41 @@ def test_the_picture_of_the_documentation_is_one_of_the_first_notebook():
 )
 def test_numbers_are_compared_within_their_last_digit(then, now, same):
     assert (differences(then, now) == []) is same
+
+
+@each_notebook
+def test_numbers_of_its_text_are_those_of_its_outputs(path):
+    without_source, stated_needlessly = unsupported(read(path), stated_in(path))
+    assert without_source == [], "correct the text, or say in stated.toml where the number is from"
+    assert stated_needlessly == []
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("It takes 23.68 mJ.", []),
+        ("It takes 23.7 mJ, some 24 mJ.", []),  # rounded
+        ("It takes 23.53 mJ, 23.6 mJ, or 25 mJ.", ["23.53", "23.6", "25"]),
+        ("The other takes 91.15 mJ, the first saves 74 %.", ["74"]),
+        ("A move of 0.8 s within 5 mm.", []),  # of the program, in its units
+        ("## 7 headings\n\nIt takes 23.53 mJ, by 60 degrees.", ["23.53"]),
+        ("1. A move, as in 05a.", []),
+        ("As in notebooks 01 and 12, by (11) and Table 2, $N = 7$, `plan(9)`.", []),
+    ],
+)
+def test_a_number_that_no_output_shows_is_found(text, wrong):
+    shown = new_output("stream", name="stdout", text="F2 = 23.678 mJ\n91.15 mJ without\n")
+    program = new_code_cell("move(pi / 3, 0.8, residual_limit=5e-3)", outputs=[shown])
+    notebook = new_notebook(cells=[program, new_markdown_cell(text)])
+    assert unsupported(notebook) == (wrong, [])
+    assert unsupported(notebook, [*wrong, "1.5"]) == ([], ["1.5"])
+
+
+def test_an_output_far_above_a_text_does_not_count():
+    cells = [
+        new_code_cell("", outputs=[new_output("stream", name="stdout", text=f"{number}\n")])
+        for number in (1.25, 2.25, 3.25, 4.25)
+    ]
+    notebook = new_notebook(cells=[*cells, new_markdown_cell("1.25, then 2.25 and 4.25.")])
+    assert unsupported(notebook) == (["1.25"], [])
+    assert numbers_of("1,681 cells and \u22120.1") == ["1,681", "\u22120.1"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 import click
@@ -102,5 +101,5 @@ def _evaluate_table(given: Given, task: PointToPoint) -> None:
     asked = given.pick("terms", "bound", "evaluations")
     with busy("evaluating"):
         front, notes = import_front(given.coefficients, task, FAMILIES[given.profile], **asked)
-    files = answer_files(given.output, partial(figures.front_figure, [front]), front)
+    files = answer_files(given.output, lambda: figures.front_figure([front]), front)
     finish(files, search_lines([front], notes))

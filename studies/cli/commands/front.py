@@ -87,7 +87,7 @@ def front(given: Given) -> None:
     if given.check:
         with counting(_CHECKED, "checked points") as report:
             checked = cross_check(found, _CHECKED, report)
-    files = answer_files(given.output, partial(figures.front_figure, [found]), found)
+    files = answer_files(given.output, lambda: figures.front_figure([found]), found)
     return finish(files, gradient_lines(found, asked_for, checked))
 
 
@@ -100,6 +100,8 @@ def _polish(given: Given) -> None:
         before = load_front(given.polish)
     with counting(len(before.points), "points") as report:
         polished = polish_front(before, report=report)
-    draw = partial(figures.polish_figure, before, polished)
     lines = polish_lines(before, polished.front, polished.gains)
-    finish(answer_files(given.output, draw, polished.front), lines)
+    files = answer_files(
+        given.output, lambda: figures.polish_figure(before, polished), polished.front
+    )
+    finish(files, lines)

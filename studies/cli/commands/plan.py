@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from functools import partial
 
 from quietarm.ocp import Plan, SolverFailedError, energy_floor, fastest_move, plan_move
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
@@ -97,7 +96,7 @@ def finish_plan(given: Given, found: Plan, *notes: str, trouble: Exception | Non
     """Save a plan; show its figures, and how they change with the parameters of the plant."""
     title = "\nwhat a parameter that is 1 % larger adds to residual and energy:"
     more = [title, sensitivity_rows(found)] if given.sensitivities else []
-    files = answer_files(given.output, partial(figures.motion_figure, found), found)
+    files = answer_files(given.output, lambda: figures.motion_figure(found), found)
     finish(files, plan_rows(found), *more, *notes, trouble=trouble)
 
 
@@ -110,8 +109,8 @@ def _plan_freely(given: Given) -> None:
         found = energy_floor(task, smooth=FREE[given.profile], **given.pick("starts", "seed"))
         with suppress(SolverFailedError):
             beside = plan_move(task)
-    draw = partial(figures.floor_figure, found, beside)
-    finish(answer_files(given.output, draw, found), floor_rows(found, beside))
+    files = answer_files(given.output, lambda: figures.floor_figure(found, beside), found)
+    finish(files, floor_rows(found, beside))
 
 
 def _look_up(given: Given) -> None:

@@ -9,10 +9,19 @@ import pytest
 import xarray as xr
 from c_library import compiled, joint_by, needs_compiler
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import FileFormatError, PointToPoint, plan_move
+from quietarm.ocp import (
+    CycloidPolynomial,
+    FileFormatError,
+    PointToPoint,
+    Uncertainty,
+    plan_move,
+)
+from quietarm.ocp.solvers.ipopt import Ipopt
+from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.studies.cli import main
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.library import MoveLibrary, plan_from
+from quietarm.studies.sweep.run import sweep
 
 LINE = (
     "sweep single-link --target 20deg:60deg:5deg --duration 800ms:1.1s:50ms --quiet "
@@ -48,6 +57,43 @@ def test_a_cell_is_what_it_was_and_between_it_is_as_still_as_stated():
     # what is not at rest may be a little cheaper
     assert own.energy * (1 - 1e-2) < found.energy <= own.energy * (1 + max(stated.excess, 1e-4))
     assert MoveLibrary("moves.zarr").between() == stated  # kept
+
+
+@pytest.mark.parametrize(
+    ("axis", "values"),
+    [
+        pytest.param("target", (math.radians(30), math.radians(40))),
+        pytest.param("omega", (9.8, 10.2), marks=pytest.mark.slow),
+    ],
+)
+def test_a_move_of_an_uncertain_plant_is_there_without_solving(
+    done, tmp_path, monkeypatch, axis, values
+):
+    cells = tmp_path / "robust.zarr"
+    task = PointToPoint(
+        SingleLinkManipulator(), math.pi / 6, 0.8, uncertainty=Uncertainty({"frequency": 0.08})
+    )
+    axes = {axis: values, "duration": (0.8, 0.85, 0.9)}
+    dataset = sweep(task, axes, cells, profile=CycloidPolynomial(3)).load()
+    typed = "--set omega={:.17g}" if axis == "omega" else "--target {:.17g}"
+    monkeypatch.setattr(Sqp, "solve", None)
+    monkeypatch.setattr(Ipopt, "solve", None)
+    for value, duration in ((values[0], 0.85), (sum(values) / 2, 0.83)):  # on a cell, and between
+        out = done(f"plan --from {cells} {typed.format(value)} --duration {duration}")
+        assert "between the cells: residual" in out
+        assert "worst case" in out
+    done(f"export {cells} --output {tmp_path / 'moves.c'}")
+    library = MoveLibrary(cells)
+    plan = library.plan(**{axis: values[0], "duration": 0.85})
+    assert plan.energy == pytest.approx(float(dataset.energy[0, 1]), rel=1e-9)
+    stated = library.between()
+    random = np.random.default_rng(1).uniform((values[0], 0.8), (values[1], 0.9), (10, 2))
+    for value, duration in random.tolist():
+        plan = library.plan(**{axis: value, "duration": duration})
+        assert plan.residual <= plan.worst.residual <= 1.05 * stated.residual
+        energy = library.energies(np.array([[value, duration]]))[0]
+        # docs/sweeps.md: another move may be a little worse
+        assert plan.energy <= (1 + stated.excess + 1e-3) * energy
 
 
 def test_between_cells_it_is_the_polynomial_through_the_nearest_six():

@@ -1,0 +1,174 @@
+"""How good moves between the cells of a sweep are, without solving anything.
+
+Fixed steps rank random moves, many in one call; CVODES judges those that they rank worst.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.ocp import Plan, PointToPoint
+from quietarm.ocp.limits import RESIDUAL
+from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.simulation.free_vibration import after_arrival
+from quietarm.ocp.solvers.problem import Transcription, first_steps
+from quietarm.studies.sweep.grid import OF_MOVES, by_plant
+from quietarm.studies.tips import tip_words
+
+if TYPE_CHECKING:
+    from quietarm.studies.sweep.library import MoveLibrary
+
+Array = NDArray[np.float64]
+_SAMPLES = 100
+"""Random moves between the cells, by which a library says how good it is."""
+_PLANTS = 10
+"""Plants of these moves, where parameters are axes: equations are compiled for each."""
+_TRIES = 20
+"""Places that are tried for each move: some have no coefficients."""
+_JUDGED = 3
+"""Moves with the largest value by fixed steps that CVODES judges: steps take the corners of the
+errors, the judge all errors within their ranges."""
+_FINER = 3
+"""So many times the solver's steps, because a limit may be broken between its nodes."""
+_SPARE = 1.5
+"""A margin is advised that is this much larger than the worst excess of these."""
+
+
+@dataclass(frozen=True)
+class Between:
+    """What moves between the cells leave and cost: the worst of some random ones, by CVODES.
+
+    Attributes
+    ----------
+    residual : float
+        Largest residual; of uncertain plants with any errors within their ranges.
+    excess : float
+        Largest share by which a move takes more energy than the cells around it, whose energies are
+        interpolated as the coefficients are; 0 where none does.
+    of_limits : float
+        Peak over limit, of the limit that is kept worst; 0 without limits.
+    samples : int
+        How many random moves there were.
+    tip_unit : str
+        Unit of the residual.
+    """
+
+    residual: float
+    excess: float
+    of_limits: float
+    samples: int
+    tip_unit: str = "m"
+
+    @property
+    def keeps_limits(self) -> bool:
+        """Whether all of them keep their limits."""
+        return self.of_limits <= 1 + OVERRUN
+
+    @property
+    def words(self) -> str:
+        """All of it in a line."""
+        broken = f"limits broken by up to {self.of_limits - 1:.1%}"
+        more = f"{self.excess:.2%} more" if self.excess else "no more"
+        return ", ".join([
+            f"between the cells: residual {tip_words(self.residual, self.tip_unit)}",
+            f"{more} energy than the cells around the move",
+            *(["limits kept" if self.keeps_limits else broken] if self.of_limits else []),
+            f"each the largest of {self.samples} random moves",
+        ])  # fmt: skip
+
+    @property
+    def remedy(self) -> str:
+        """How moves between the cells come to keep their limits."""
+        share = ceil(100 * _SPARE * (self.of_limits - 1))
+        return f"sweep again with --limit-margin {share}% or on a finer grid"
+
+
+def assess(library: MoveLibrary) -> Between:
+    """The worst of random moves between a library's cells.
+
+    ValueError where none of the moves has coefficients.
+    """
+    places = _random_places(library)
+    energies = library.energies(places)
+    tasks = [library.task(**_named(library, place)) for place in places]
+    ranks = _ranks(tasks, library.profile, library.interpolation(places), energies)
+    chosen = {k for rank in ranks.values() for k in np.argsort(rank)[-_JUDGED:]}
+    judged = {k: library.plan(**_named(library, places[k])) for k in sorted(chosen)}
+    shares = [share for plan in judged.values()
+              for share in plan.motion.exceeded(plan.task.limits, -1).values()]  # fmt: skip
+    return Between(
+        residual=max(worst_residual(plan) for plan in judged.values()),
+        excess=max(0.0, *(float(plan.energy / energies[k] - 1) for k, plan in judged.items())),
+        of_limits=max(shares, default=0.0),
+        samples=len(places),
+        tip_unit=library.grid.task.plant.tip_unit,
+    )
+
+
+def worst_residual(plan: Plan) -> float:
+    """The residual of a plan [m], with any errors within the ranges of its task."""
+    return plan.residual if plan.worst is None else max(plan.residual, plan.worst.residual)
+
+
+def _named(library: MoveLibrary, place: Array) -> dict[str, float]:
+    return dict(zip(library.grid.names, place.tolist()))
+
+
+def _random_places(library: MoveLibrary) -> Array:
+    """Random places that have coefficients, those of one plant one after another."""
+    axes = library.grid.axes
+    low, high = np.array([(axis.values[0], axis.values[-1]) for axis in axes]).T
+    random = np.random.default_rng(0).uniform(low, high, (_TRIES * _SAMPLES, len(low)))
+    of_plant = np.array([axis.name not in OF_MOVES for axis in axes])
+    repeated = random[np.arange(len(random)) % _PLANTS]
+    random[:, of_plant] = repeated[:, of_plant]
+    usable = (place for place in random if library.has(place))
+    places = np.array([*islice(usable, _SAMPLES)])
+    if not len(places):
+        raise ValueError(
+            f"{library.store.path} has no move between its cells that has coefficients"
+        )
+    if of_plant.any():
+        places = places[np.lexsort(places[:, of_plant].T)]
+    return places
+
+
+def _ranks(
+    tasks: Sequence[PointToPoint], profile: JointProfile, coefficients: Array, energies: Array
+) -> Mapping[str, Array]:
+    """Residual, energy over that of the cells, and every limited peak, of each move."""
+    rows = list[dict[str, float]]()
+    for group in by_plant(tasks):
+        first = len(rows)
+        rows += _figures(group, profile, coefficients[first : first + len(group)])
+    ranks = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    return ranks | {"energy": ranks["energy"] / energies}
+
+
+def _figures(
+    tasks: Sequence[PointToPoint], profile: JointProfile, coefficients: Array
+) -> list[dict[str, float]]:
+    """The same by fixed steps for moves of one plant; the energy in joules."""
+    steps = _FINER * first_steps(max(tasks, key=lambda task: task.duration), profile)
+    transcriptions = [Transcription(task, profile, steps) for task in tasks]
+    scenarios = tasks[0].scenarios
+    values = transcriptions[0].batch.values(
+        np.repeat(coefficients, len(scenarios), axis=0),
+        np.repeat([task.row for task in tasks], len(scenarios), axis=0),
+        np.tile(scenarios, (len(tasks), 1)),
+    )
+    figures = list[dict[str, float]]()
+    for k, transcription in enumerate(transcriptions):
+        moved = values.take(slice(k * len(scenarios), (k + 1) * len(scenarios)))
+        missed = zip(after_arrival(tasks[k]), tasks[k].missed(moved.arrival))
+        residual = max(float(vibration.peak(state)) for vibration, state in missed)
+        peaks = {name: transcription.peak(moved, name) for name in transcription.batch.places}
+        figures.append({"energy": float(moved.energy[0]), RESIDUAL: residual, **peaks})
+    return figures
