@@ -15,6 +15,7 @@ from quietarm.studies.identify.combine import combine
 from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
 from quietarm.studies.identify.machine import Identified, Part, in_torque_alone, is_modal
+from quietarm.studies.identify.mending import without_glitches
 from quietarm.studies.identify.parts import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.ring_downs import moves
@@ -65,6 +66,7 @@ def identify(
     """
     kinds = _check(recordings, plant)
     names = _sought(plant, free, kinds)
+    recordings, doubts = without_glitches(recordings)
     frequencies = find_frequencies(recordings)
     each = [
         PartFitter(plant, names, one, frequency) for one, frequency in zip(recordings, frequencies)
@@ -84,7 +86,7 @@ def identify(
         each = [one for one in each if one.frequency]
         unknown = _not_identifiable(each)
         fitted = _wholes(each, [name for name in names if name not in unknown])
-    doubts = doubt_units(recordings, frequencies, plant.joint)
+    doubts += doubt_units(recordings, frequencies, plant.joint)
     estimates, wide = combine([name for name in names if name not in unknown], fitted)
     unknown |= wide
     return Identified(
@@ -96,7 +98,8 @@ def identify(
 
 def curve_of(found: Identified, part: Part, recordings: Sequence[Recording]) -> tuple[Model, Array]:
     """What was fitted in a part, and the signals that it was met by (rows, signals)."""
-    recording = next(one for one in recordings if one.name == part.recording)
+    named = [one for one in recordings if one.name == part.recording]
+    (recording, *_), _ = without_glitches(named)
     fitter = PartFitter(found.plant, list(part.values), recording, 1.0)
     fitter.frequency = fitter.frequency_of(part.vector)
     model = fitter.model(part)
