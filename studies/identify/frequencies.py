@@ -31,11 +31,11 @@ where it has this share of the loudest."""
 def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
     """The frequency of every recording's swing [Hz]: that of all, where it is a candidate.
 
-    0 where nothing swings; ValueError where nothing does in any, or as no arm does.
+    0 where nothing swings; ValueError where one swings as no arm does.
     """
     tables = [np.array([*_candidates_of(one).items()]).reshape(-1, 2).T for one in recordings]
     if not any(loud.any() for _, loud in tables):
-        raise ValueError(say("refused.silent", name=recordings[0].name))
+        return [0.0] * len(recordings)
     shares = [(f, loud / (loud.sum() or 1.0)) for f, loud in tables]
 
     def near(f: Array, frequency: float) -> NDArray[np.bool_]:

@@ -1,4 +1,4 @@
-"""What recorders do to samples: rows that stand twice, rounded stamps, samples far from all others."""
+"""Samples that recorders and sensors make up: far from all beside them, and left out."""
 
 from __future__ import annotations
 

@@ -140,10 +140,10 @@ def noise_of(values: Array) -> Array:
     differences = np.diff(values, _ORDER, axis=0)
     robust = 1.4826 * np.median(np.abs(differences), axis=0)
     deviation = np.where(robust > 0, robust, differences.std(axis=0)) / 70**0.5
-    return np.maximum(deviation, [_resolution(column) / 12**0.5 for column in values.T])
+    return np.maximum(deviation, [resolution_of(column) / 12**0.5 for column in values.T])
 
 
-def _resolution(column: Array) -> float:
+def resolution_of(column: Array) -> float:
     """The least step of a column, where it has many values twice; else 0."""
     levels = np.unique(column)
     return float(np.diff(levels).min()) if 1 < len(levels) < len(column) / 4 else 0.0

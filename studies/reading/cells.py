@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-_GROUPED = re.compile(r"(?<=\d)[ '’_\u00a0\u202f](?=\d{3}(?!\d))")
+_GROUPED = re.compile(r"(?<=\d)[ '\u2019_\u00a0\u202f](?=\d{3}(?!\d))")
 """A mark between three digits that is no decimal mark of any country."""
 _NUMBER = re.compile(
     r"[+-]?(?:\d{1,3}(?:,\d{3})+(?:\.\d*)?|\d{1,3}(?:\.\d{3})+(?:,\d*)?|\d+[.,]?\d*|[.,]\d+)"

@@ -117,8 +117,8 @@ class Table:
     ) -> Array:
         """A column in SI units: by a scale, a unit, that of its name, or as it is.
 
-        A unit that is given holds whatever the name says. FileFormatError where its name ends in what may be a unit or not; it names the options of a
-        command that has some for it.
+        A unit that is given holds whatever the name says. FileFormatError where its name ends in
+        what may be a unit or not; it names the options of a command that has some for it.
         """
         column, known = self.find(name), UNITS[quantity]
         if scale is not None:
