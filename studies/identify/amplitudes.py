@@ -25,6 +25,8 @@ def spread_of(pieces: Sequence[Part], name: str) -> tuple[float, float] | None:
     """
     from scipy.stats import chi2  # not at the top: it takes long to load
 
+    if len(pieces) < 2:
+        return None
     values = np.array([piece.values[name] for piece in pieces])
     deviations = np.array([piece.deviations[name] for piece in pieces])
     deviations = np.maximum(deviations, 1e-12 * np.abs(values) + 1e-300)
@@ -32,7 +34,7 @@ def spread_of(pieces: Sequence[Part], name: str) -> tuple[float, float] | None:
     mean = float((weights * values).sum() / weights.sum())
     squares = float((weights * (values - mean) ** 2).sum())
     limit = chi2.ppf(1 - _CHANCE, len(values) - 1)
-    if len(values) < 2 or squares <= limit:
+    if squares <= limit:
         return None
     # pieces that are less certain than the change tell nothing of it
     between = max(squares - (len(values) - 1), 0.0) / weights.sum()

@@ -216,12 +216,15 @@ class PartFitter:
         near = self.frequency + np.linspace(-0.6, 0.6, 9) / float(np.ptp(model.time))
         starts = self._starts(np.maximum(near, 0.3 * self.frequency))
         part, best = self._met(part, min(starts, key=model.cost))
-        for _ in range(0 if by_hand or part.unexplained > _POOR else 2):
+        whole = rows, part, best
+        for _ in range(0 if by_hand else 2):
             grown = self._grown(rows, best, earliest)
             if grown == rows:
                 break
             rows = grown
             part, best = self._met(self._part(rows), best.p)
+        if part.unexplained > _POOR:  # no end of it belongs to one swing
+            rows, part, best = whole
         piece = self._piece(part)
         flat = saturated(piece.values)
         if flat.any() and np.count_nonzero(~flat) > max(LEAST_ROWS, 0.1 * len(flat)):
@@ -269,7 +272,7 @@ class PartFitter:
             found = self._where_it_fits(part, pieces)
         if found.cause in ("", "amplitude", "misfit") and found.unexplained < _MUCH:
             changes = {"first": self._words(pieces[0]), "last": self._words(pieces[-1])}
-            found = replace(found, **doubt("changes", **changes))
+            found = replace(found, **doubt("changes", misfit=part.misfit, **changes))
         return replace(found, spread=spread)
 
     def _pieces(self, part: Part) -> list[Part]:

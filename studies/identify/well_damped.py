@@ -37,6 +37,8 @@ def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
     # from one side to the other, without what is near the rest
     sides = np.where(np.abs(away) > least, np.sign(away), 0.0)
     there = np.flatnonzero(sides)
+    if not len(there):
+        return []
     turns = np.flatnonzero(np.diff(sides[there])) + 1
     stretches = np.split(there, turns)
     peaks = [int(run[np.abs(away[run]).argmax()]) for run in stretches]

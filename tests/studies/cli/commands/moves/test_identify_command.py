@@ -134,6 +134,6 @@ def test_one_column_for_two_signals_and_degrees_called_radians_are_told(push, ca
     line = "identify turned.csv flexible-beam --tip tip_mm --angle theta_rad --quiet"
     _, said, _ = call(line)
     assert "turns by 60 rad, more than two turns; is it in degrees?" in said
-    assert "rename the column" in refused(f"{line} --units angle:deg")
+    assert "is it in degrees?" not in call(f"{line} --units angle:deg")[1]
     (push / "turned.csv").write_text(f"time_s,theta_deg,tip_mm\n{columns}")
     assert "is it in degrees?" not in call(line.replace("theta_rad", "theta_deg"))[1]
