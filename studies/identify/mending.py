@@ -115,9 +115,10 @@ def _usual(residual: Array) -> Array:
     from scipy.ndimage import maximum_filter1d  # not at the top: it takes long to load
 
     count = max(len(residual) // _BLOCK, 1)
-    blocks = np.array_split(np.abs(residual), count)
-    usual = 1.4826 * np.array([np.median(block) for block in blocks])
-    return np.repeat(maximum_filter1d(usual, 3), [len(block) for block in blocks])
+    sizes, size = np.abs(residual), len(residual) // count
+    usual = 1.4826 * np.median(sizes[: count * size].reshape(count, size), axis=1)
+    blocks = np.minimum(np.arange(len(residual)) // size, count - 1)
+    return maximum_filter1d(usual, 3)[blocks]
 
 
 def _largest_nearby(sizes: Array, reach: int) -> Array:

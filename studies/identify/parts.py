@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise, product
 from math import tau
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from quietarm.studies.identify.diagnosis import doubt, doubt_of, exceeds, satura
 from quietarm.studies.identify.fitting import Fit, Model, fit
 from quietarm.studies.identify.machine import Part, bounds_of, is_frequency, is_modal, values_of
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
-from quietarm.studies.identify.response import Driven, FreeDecay, Response, smooth
+from quietarm.studies.identify.response import Driven, Forced, FreeDecay, response_of, smooth
 from quietarm.studies.identify.ring_downs import LEAST_PERIODS, find_ring_downs, moves
 from quietarm.studies.identify.well_damped import find_well_damped
 from quietarm.studies.identify.words import say
@@ -24,6 +25,8 @@ from quietarm.studies.identify.words import say
 Array = NDArray[np.float64]
 _PER_PERIOD = 64
 """Samples a period of the fastest mode; more are averaged."""
+_ROUGHLY = 16
+"""The same where starts are compared."""
 _HELPS = 0.9
 """The hub is part of the model where what is left falls below this share by it."""
 _MET = 0.05
@@ -85,8 +88,9 @@ class PartFitter:
         self.plant, self.names, self.recording = plant, list(names), recording
         self.frequency = frequency
         kinds = [kind for kind, values in recording.signals.items() for _ in values.T]
-        self._response = Response(plant, names, kinds)
+        self._response = response_of(plant, tuple(names), tuple(kinds))
         self._given = values_of(plant, names)
+        self._splines = dict[tuple[float, float, int], Any]()
         self._rates = np.array([is_frequency(plant, name) for name in names])
         modal = np.array([is_modal(plant, name) for name in names])
         self._dampings = modal & ~self._rates
@@ -97,16 +101,21 @@ class PartFitter:
         """The fits of the same recording with other parameters sought."""
         return PartFitter(self.plant, names, self.recording, self.frequency)
 
-    def model(self, part: Part, thin: bool = True) -> Model:
-        """The model of a part: without saturated samples, with drift or hub, as the part says."""
+    def model(self, part: Part, thin: bool = True, per_period: float = _PER_PERIOD) -> Model:
+        """The model of a part: without saturated samples, with drift or hub, as the part says.
+
+        Where it is thinned it has so many samples a period of the fastest mode.
+        """
         piece = self._piece(part)
         fastest = self.frequency * float(self._modes[-1] / self._modes[0])
-        spline = smooth(piece) if part.hub else None
         if thin and not part.saturated:
-            piece = piece.averaged(1 / max(_PER_PERIOD * fastest * piece.step, 1e-9))
+            piece = piece.averaged(1 / max(per_period * fastest * piece.step, 1e-9))
         columns = FreeDecay(self._response, piece)
-        if spline:
-            columns = Driven(self._response, piece.time, spline, tau * fastest, self._scaled)
+        if part.hub:
+            spline, speed = self._spline(part, piece), tau * fastest
+            columns = Driven(self._response, piece.time, spline, speed, self._scaled)
+            if self._scaled and self._response.is_linear:
+                columns = Forced(self._response, piece.time, spline, speed)
         cosines = int(2 * _SLOW * self.frequency * np.ptp(piece.time)) if part.drifts else 0
         model = Model(piece, columns, cosines, self._scaled)
         if part.saturated:
@@ -114,6 +123,13 @@ class PartFitter:
             if part.values:  # by the fit: near the limit the noise is cut as well
                 model.kept = ~saturated(piece.values, model.fitted(part.vector))
         return model
+
+    def _spline(self, part: Part, piece: Recording) -> Any:
+        """The joint's motion in a part, smooth; told once from the samples of `piece`."""
+        ends = (part.begin, part.end, len(piece.time))
+        if ends not in self._splines:
+            self._splines[ends] = smooth(piece)
+        return self._splines[ends]
 
     def ring_downs(self, by_hand: Sequence[tuple[float, float]] = ()) -> tuple[list[Part], str]:
         """The ring-downs of the recording, or why there are none."""
@@ -172,7 +188,7 @@ class PartFitter:
         """All of the recording, or some rows, by how the plant answers its joint's motion."""
         part = self._part(rows, hub="moves")
         starts = [self._given, *self._starts(self.frequency * _FACTORS)]
-        best = sorted(starts, key=self.model(part).cost)[:_STARTS]
+        best = sorted(starts, key=self.model(part, per_period=_ROUGHLY).cost)[:_STARTS]
         return min((self._met(part, start)[0] for start in best), key=lambda one: one.misfit)
 
     def sensitivities(self) -> Array:
