@@ -214,7 +214,7 @@ def _search(
         gradient, curvature = _slopes(model, x, weights)
         while damping < 1e8:
             scaled = curvature + damping * np.diag(np.diag(curvature) + 1e-300)
-            new = np.clip(p + least_squares_step(scaled, gradient), *bounds)
+            new = np.clip(p + _step_within(p, scaled, gradient, bounds), *bounds)
             tried, tried_cost = _projected(model, new, weights)
             if tried_cost < cost or np.array_equal(new, p):
                 break
@@ -225,7 +225,7 @@ def _search(
         if tried_cost >= cost:
             break
         x, damping = tried, damping / 8
-        settled = (step <= 1e-12 * (np.abs(new) + 1e-6)).all() or gain <= 1e-10 * cost
+        settled = (step <= 1e-12 * (np.abs(new) + 1e-6)).all() or gain <= 1e-9 * cost
         cost = tried_cost
         if settled:
             break
@@ -270,11 +270,24 @@ def least_squares(columns: Array, target: Array) -> Array:
     return found
 
 
-def least_squares_step(curvature: Array, gradient: Array) -> Array:
-    """A step by a damped curvature, that may be singular where a parameter shows nowhere."""
+def _step_within(
+    p: Array, curvature: Array, gradient: Array, bounds: tuple[Array, Array]
+) -> Array:
+    """A step by a curvature, along the bounds at which it would leave them.
+
+    The curvature may be singular, where a parameter shows nowhere.
+    """
     size = np.sqrt(np.maximum(np.diag(curvature), 1e-300))
-    step, *_ = np.linalg.lstsq(curvature / np.outer(size, size), gradient / size, rcond=None)
-    return step / size
+    matrix, target = curvature / np.outer(size, size), gradient / size
+    inside = np.ones(len(p), bool)
+    while True:
+        step = np.zeros(len(p))
+        among = np.ix_(inside, inside)
+        step[inside], *_ = np.linalg.lstsq(matrix[among], target[inside], rcond=None)
+        leaves = inside & (((p <= bounds[0]) & (step < 0)) | ((p >= bounds[1]) & (step > 0)))
+        if not leaves.any():
+            return step / size
+        inside &= ~leaves
 
 
 def _variances(J: Array) -> Array:

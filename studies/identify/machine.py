@@ -17,7 +17,9 @@ from quietarm.studies.identify.words import say
 Array = NDArray[np.float64]
 _DAMPING = "zeta"
 """How the name of a damping ratio begins."""
-_MOST_DAMPING = 0.9
+_MOST_DAMPING, _LEAST_DAMPING = 0.9, 0.3
+_GROWTH = 100.0
+"""Logarithm of how much a swing may grow in a fit."""
 _LEAST_ERROR = 1e-6
 """Of a parameter known without error, as of a simulation: a range of none is no range."""
 
@@ -235,12 +237,20 @@ def values_of(plant: Plant, names: Sequence[str]) -> Array:
     return np.array([getattr(plant, name) for name in names])
 
 
-def bounds_of(plant: Plant, names: Sequence[str], start: Array) -> tuple[Array, Array]:
-    """How far parameters may go from a start: dampings a little below 0, as an estimate may."""
+def bounds_of(
+    plant: Plant, names: Sequence[str], start: Array, seconds: float
+) -> tuple[Array, Array]:
+    """How far parameters may go from a start: dampings a little below 0, as an estimate may.
+
+    No swing of so many seconds grows beyond what numbers can hold.
+    """
     lower, upper = np.full(len(names), -np.inf), np.full(len(names), np.inf)
     for k, name in enumerate(names):
         if is_frequency(plant, name):
             lower[k], upper[k] = 0.3 * start[k], 3 * start[k]
-        elif is_modal(plant, name):
-            lower[k], upper[k] = -0.3, _MOST_DAMPING
+    fastest = float(upper[np.isfinite(upper)].max(initial=0.0)) or 1.0
+    for k, name in enumerate(names):
+        if is_damping(plant, name):
+            lower[k] = -min(_LEAST_DAMPING, _GROWTH / (fastest * seconds))
+            upper[k] = _MOST_DAMPING
     return lower, upper

@@ -386,7 +386,7 @@ class PartFitter:
 
     def _met(self, part: Part, start: Array) -> tuple[Part, Fit]:
         """A fit of a part as it says, and the part with what that says."""
-        low, high = bounds_of(self.plant, self.names, start)
+        low, high = bounds_of(self.plant, self.names, start, part.end - part.begin)
         best = fit(self.model(part), start, low, high, self.frequency)
         piece, model = self._piece(part), best.model
         time = model.time[model.kept]

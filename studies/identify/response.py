@@ -184,9 +184,10 @@ class Forced:
     def __init__(self, response: Response, time: Array, spline: Any, fastest: float) -> None:
         self._response, self.count = response, len(response.names)
         self._time = time - time[0]
-        step = float(np.median(np.diff(time)))
+        usual = float(np.median(np.diff(time)))
+        step = self._time[-1] / max(round(self._time[-1] / usual), 1)  # that ends with the rows
         step /= max(np.ceil(fastest * step / _FILTER_STEP), 1)
-        self._step, steps = step, int(np.floor(self._time[-1] / step * (1 + 1e-12)))
+        self._step, steps = step, round(self._time[-1] / step)
         self._rows = np.minimum(np.floor(self._time / step + 1e-6).astype(int), steps)
         self._rest = np.maximum(self._time - self._rows * step, 0.0)
         self._rest[self._rest < 1e-6 * step] = 0.0
