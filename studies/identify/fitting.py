@@ -20,7 +20,7 @@ _SETTLED = 0.02
 """A change of these weights that changes nothing more."""
 _STEPS, _STEPS_OF_ROUND = 40, 10
 """Of a search, and of one that begins where another ended."""
-_MANY, _TOLD_APART = 100, 1e8
+_MANY, _TOLD_APART = 100, 1e11
 """Rows, and the condition of their columns' products, for normal equations."""
 _LATE = 0.25
 """An angle is called late where that explains this share of the power that is left."""
@@ -270,9 +270,7 @@ def least_squares(columns: Array, target: Array) -> Array:
     return found
 
 
-def _step_within(
-    p: Array, curvature: Array, gradient: Array, bounds: tuple[Array, Array]
-) -> Array:
+def _step_within(p: Array, curvature: Array, gradient: Array, bounds: tuple[Array, Array]) -> Array:
     """A step by a curvature, along the bounds at which it would leave them.
 
     The curvature may be singular, where a parameter shows nowhere.

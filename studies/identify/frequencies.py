@@ -100,7 +100,7 @@ def _candidates(recording: Recording) -> dict[float, float]:
     found = dict[float, float]()
     for length in (total // share for share in _STRETCHES if total // share >= 32):
         at, _, power = spectrogram(
-            y, rate, "hann", length, length // 2, 4 * length, detrend="linear", axis=0
+            y, rate, "hann", length, length // 2, 4 * length, detrend=_without_line, axis=0
         )
         known = slice(int(np.searchsorted(at, 1.5 * rate / length)), None)
         levels = np.log(power.sum(axis=1).max(axis=-1)[known] + 1e-300)
@@ -112,6 +112,13 @@ def _candidates(recording: Recording) -> dict[float, float]:
                 if all(abs(one / other - 1) > _APART for other in found):
                     found[one] = _prominence(recording, one)
     return found
+
+
+def _without_line(values: Array) -> Array:
+    """Values less the line through them, along the last axis."""
+    at = np.linspace(-1.0, 1.0, values.shape[-1])
+    slope = (values @ at) / (at @ at)
+    return values - values.mean(axis=-1, keepdims=True) - slope[..., None] * at
 
 
 def _prominence(recording: Recording, frequency: float) -> float:

@@ -188,8 +188,11 @@ class PartFitter:
         """All of the recording, or some rows, by how the plant answers its joint's motion."""
         part = self._part(rows, hub="moves")
         starts = [self._given, *self._starts(self.frequency * _FACTORS)]
-        best = sorted(starts, key=self.model(part, per_period=_ROUGHLY).cost)[:_STARTS]
-        return min((self._met(part, start)[0] for start in best), key=lambda one: one.misfit)
+        roughly = self.model(part, per_period=_ROUGHLY)
+        tried = [
+            self._fit(roughly, part, start) for start in sorted(starts, key=roughly.cost)[:_STARTS]
+        ]
+        return self._met(part, min(tried, key=lambda fitted: fitted.misfit).p)[0]
 
     def sensitivities(self) -> Array:
         """How the whole recording would change by the given values, a column each.
@@ -384,10 +387,14 @@ class PartFitter:
         noise = float(noise_of(piece.angle)[0])
         return float(np.hypot(*share[:2])) > max(8 * noise / len(piece.time) ** 0.5, noise / 2)
 
+    def _fit(self, model: Model, part: Part, start: Array) -> Fit:
+        ends = bounds_of(self.plant, self.names, start, part.end - part.begin)
+        return fit(model, start, *ends, self.frequency)
+
     def _met(self, part: Part, start: Array) -> tuple[Part, Fit]:
         """A fit of a part as it says, and the part with what that says."""
         low, high = bounds_of(self.plant, self.names, start, part.end - part.begin)
-        best = fit(self.model(part), start, low, high, self.frequency)
+        best = self._fit(self.model(part), part, start)
         piece, model = self._piece(part), best.model
         time = model.time[model.kept]
         size = np.maximum(np.sqrt((best.swinging**2).mean(axis=0)), 1e-300)

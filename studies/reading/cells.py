@@ -42,11 +42,11 @@ def numbers_of(cells: Any) -> Any:
     import pandas as pd  # not at the top: it takes half a second to load
 
     numbers = cells.apply(pd.to_numeric, errors="coerce")
-    odd = cells.where(cells.notna() & numbers.isna()).stack()
+    odd = cells.where(cells.notna() & numbers.isna()).stack().dropna()
     if odd.empty:
         return numbers
     odd = odd.astype(str).str.replace(_GROUPED, "", regex=True)
-    every = cells.stack().astype(str).str.replace(_GROUPED, "", regex=True)
+    every = cells.stack().dropna().astype(str).str.replace(_GROUPED, "", regex=True)
     thousands = _thousands_mark(every)
     if thousands:
         plain = every.where(every.str.fullmatch(_NUMBER), "").str.replace(thousands, "")

@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from itertools import groupby
 from typing import Any
 
@@ -159,10 +160,15 @@ def _numbers(
                 f"line {k + 1} has {count + 1} columns, the first {width}; give as many in every "
                 "line"
             )
-    cells = pd.read_csv(
-        io.StringIO("\n".join(line for _, line in rows)), sep=separator or r"\s+", header=None,
-        names=range(width), index_col=False, dtype=str, skipinitialspace=True,
+    text = "\n".join(line for _, line in rows)
+    read = partial(
+        pd.read_csv, sep=separator or r"\s+", header=None, names=range(width), index_col=False,
+        skipinitialspace=True,
     )  # fmt: skip
+    with suppress(ValueError):  # plain numbers: that is fast
+        plain = read(io.StringIO(text), dtype=float)
+        return {k: ("", plain[k].to_numpy(float)) for k in plain}
+    cells = read(io.StringIO(text), dtype=str)
     filled = cells.notna()
     clocks = [k for k in cells if filled[k].any() and is_clock(cells[k][filled[k].idxmax()])]
     numbers: Any = numbers_of(cells.drop(columns=clocks))

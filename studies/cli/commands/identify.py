@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from itertools import chain
 
 import click
@@ -92,7 +91,7 @@ def identify(given: Given) -> None:
         return finish([], prediction_rows(known, identification.predict(known, read)), note)
     with busy("fitting"):
         found = identification.identify(read, known, given.free, given.parts)
-    files = answer_files(given.output, partial(figures.identification_figure, found, read), found)
+    files = answer_files(given.output, lambda: figures.identification_figure(found, read), found)
     return finish(files, machine_rows(found), *machine_notes(found, not columns["angle"]))
 
 
