@@ -263,6 +263,8 @@ class PartFitter:
     def _joined(self, first: Part, second: Part) -> Part | None:
         """Two parts as one ring-down, where one swing meets both: samples between them lack."""
         rows = slice(self._rows(first).start, self._rows(second).stop)
+        if moves(self.recording.part(rows)):
+            return None
         model = self.model(self._part(rows))
         start = min((first.vector, second.vector), key=model.cost)
         whole, best = self._met(self._part(rows), start)
