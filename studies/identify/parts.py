@@ -152,7 +152,7 @@ class PartFitter:
         found = [rows for rows in found if rows.stop - rows.start >= LEAST_ROWS]
         parts, end, why = list[Part](), 0, _no_ring_down(recording, frequency)
         for rows in found if by_hand else find_ring_downs(recording, frequency):
-            part = self._by_amplitude(self._ring_down(rows, end, bool(by_hand)))
+            part = self._by_amplitude(self._ring_down(rows, end, bool(by_hand)), rows)
             end = rows.stop
             last = parts[-1] if parts and not by_hand else None
             if last and part.amplitude < last.amplitude and (whole := self._joined(last, part)):
@@ -277,14 +277,18 @@ class PartFitter:
                 return None
         return whole
 
-    def _by_amplitude(self, part: Part) -> Part:
+    def _by_amplitude(self, part: Part, rows: slice) -> Part:
         """A ring-down with what its parameters are along it, fitted where one value meets it.
 
-        Pieces of it are fitted alone where all of it leaves more than noise.
+        Pieces of it are fitted alone where all of it leaves more than noise; from the begin of the
+        rows in which it was found, if a swing is there.
         """
         if part.misfit <= 1.5 * part.noise + _ALONG or part.hub or part.saturated:
             return part
-        pieces = self._pieces(part)
+        last = self._rows(part).stop
+        pieces = self._pieces(slice(rows.start, last))
+        if not pieces or pieces[0].begin > part.begin or pieces[0].unexplained > _MUCH:
+            pieces = self._pieces(self._rows(part))
         spread = {name: ends for name in self.names if (ends := spread_of(pieces, name))}
         if not spread:
             return part
@@ -296,10 +300,10 @@ class PartFitter:
             found = replace(found, **doubt("changes", misfit=part.misfit, **changes))
         return replace(found, spread=spread)
 
-    def _pieces(self, part: Part) -> list[Part]:
-        """Pieces of a ring-down in order of time, each fitted alone, that stand out of noise."""
-        rows, pieces = self._rows(part), list[Part]()
-        periods = (part.end - part.begin) * self.frequency
+    def _pieces(self, rows: slice) -> list[Part]:
+        """Pieces of some rows in order of time, each fitted alone, that stand out of noise."""
+        pieces = list[Part]()
+        periods = float(np.ptp(self.recording.time[rows])) * self.frequency
         count = min(int(periods / _PIECE), _PIECES)
         if count < 2:
             return []

@@ -18,8 +18,10 @@ _ABOVE = 5.0
 """Times the noise, from which on a displacement counts."""
 _RELEASED = 0.85
 """Of its largest displacement, below which a swing is free."""
-_LASTS = 4.0
-"""Periods that are read of a swing, at most."""
+_LEAST_PERIODS, _LASTS = 0.75, 4.0
+"""Periods that are read of a swing."""
+_FALLS = 0.85
+"""How much of a displacement is left half a period later, at most."""
 _SMOOTH = 9
 
 
@@ -46,7 +48,9 @@ def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
     found = list[tuple[slice, float]]()
     for k in range(len(peaks) - 1):
         begins = k == 0 or heights[k] > heights[k - 1]
-        if not begins or heights[k] < max(_LARGE * heights.max(), heights[k + 1]):
+        if not begins or heights[k] < _LARGE * heights.max():
+            continue
+        if heights[k + 1] > _FALLS * heights[k]:
             continue
         later = [j for j in range(k + 1, len(peaks)) if heights[j] > heights[j - 1]]
         end = stretches[later[0]][0] if later else len(time)
@@ -59,7 +63,8 @@ def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
         frequency = 0.5 / max(half, recording.step)
         last = int(np.searchsorted(time, time[first] + _LASTS / frequency))
         rows = slice(first, min(int(end), last))
-        if rows.stop - rows.start >= LEAST_ROWS:
+        lasts = float(time[rows.stop - 1] - time[first]) * frequency
+        if rows.stop - rows.start >= LEAST_ROWS and lasts >= _LEAST_PERIODS:
             found.append((rows, frequency))
     return found
 
