@@ -172,7 +172,10 @@ class PartFitter:
             piece = self.recording.part(span)
             if moves(piece):
                 continue
-            for rows, self.frequency in find_well_damped(piece):
+            swings = find_well_damped(piece)
+            if by_hand and len(swings) > 1:  # a part by hand is one ring-down
+                continue
+            for rows, self.frequency in swings:
                 ends = piece.time[[rows.start, rows.stop - 1]]
                 part = self._part(self.recording.rows(*ends))
                 starts = self._starts(self.frequency * _FACTORS)

@@ -42,7 +42,8 @@ def mended(arrays: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, dic
 
 def _even(time: Array, steps: Array) -> tuple[Array, float] | None:
     """The times of an even rate and what they were rounded to; None where they were not."""
-    tick = float(steps[steps > 0].min())
+    tick = _tick(steps[steps > 0])
+    tick = float(np.ptp(time)) / round(float(np.ptp(time)) / tick)
     ties = np.count_nonzero(steps == 0)
     whole = np.abs(time / tick - np.round(time / tick)).max() < 1e-3
     if not whole or not (ties == 0 or ties > _SOME * len(time)):
@@ -60,3 +61,10 @@ def _even(time: Array, steps: Array) -> tuple[Array, float] | None:
     step = float(np.median(np.diff(even)))
     rounded = np.abs(even - time).max() <= 1.05 * tick and tick > _COARSE * step
     return (even, tick) if rounded and (np.diff(even) > 0).all() else None
+
+
+def _tick(steps: Array) -> float:
+    """The least difference of steps, or the least step: what stamps are rounded to, if they are."""
+    least = float(steps.min())
+    lengths = np.unique(np.round(steps / least, 6)) * least
+    return float(np.diff(lengths, prepend=0.0).min())
