@@ -59,7 +59,7 @@ class Given:
         """Refuse options that were typed where they have no meaning."""
         for one in self._context.command.params:
             if one.name in names and self.typed(one.name):
-                name = one.opts[-1] if isinstance(one, click.Option) else one.name.upper()
+                name = one.opts[0] if isinstance(one, click.Option) else one.name.upper()
                 raise ValueError(f"{name} {why}; leave it out")
 
     def refuse_others(self, than: Collection[str], why: str) -> None:

@@ -41,7 +41,8 @@ def numbers_of(cells: Any) -> Any:
     """
     import pandas as pd  # not at the top: it takes half a second to load
 
-    numbers = cells.apply(pd.to_numeric, errors="coerce")
+    to_numeric: Any = pd.to_numeric
+    numbers = cells.apply(to_numeric, errors="coerce")
     odd = cells.where(cells.notna() & numbers.isna()).stack().dropna()
     if odd.empty:
         return numbers
@@ -51,8 +52,8 @@ def numbers_of(cells: Any) -> Any:
     if thousands:
         plain = every.where(every.str.fullmatch(_NUMBER), "").str.replace(thousands, "")
         plain = plain.str.replace(",", ".")
-        return pd.to_numeric(plain, errors="coerce").unstack().reindex_like(numbers)
-    plain = pd.to_numeric(odd.str.replace(",", "."), errors="coerce").unstack()
+        return to_numeric(plain, errors="coerce").unstack().reindex_like(numbers)
+    plain = to_numeric(odd.str.replace(",", "."), errors="coerce").unstack()
     return numbers.combine_first(plain.reindex_like(numbers))
 
 
@@ -89,9 +90,10 @@ def seconds_of(cells: Any) -> Any:
     """Seconds since the first of a column's times (of pandas); midnight is passed, not a date."""
     import pandas as pd  # not at the top: it takes half a second to load
 
+    to_numeric: Any = pd.to_numeric
     parts = cells.str.strip().str.extract(f"^{_CLOCK.pattern}$")
-    numbers = parts[["hours", "minutes"]].apply(pd.to_numeric)
-    seconds = pd.to_numeric(parts["seconds"].str.replace(r"[,:]", ".", regex=True))
+    numbers = parts[["hours", "minutes"]].apply(to_numeric)
+    seconds = to_numeric(parts["seconds"].str.replace(r"[,:]", ".", regex=True))
     late = parts["half"].str.lower().str.startswith("p").fillna(False).astype(bool)
     hours = numbers["hours"].fillna(0).where(parts["half"].isna(), numbers["hours"] % 12)
     time = 3600 * (hours + 12 * late) + 60 * numbers["minutes"] + seconds

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from quietarm.ocp import FileFormatError
@@ -54,7 +55,8 @@ def read_recording(
             f"{path}: its columns have {' and '.join(map(str, sorted(rows)))} rows"
         )
     flat = {one: signals[one][:, 0] for one in ("time", "angle", "torque") if one in signals}
+    arrays: dict[str, Any] = {**signals, **flat}
     try:
-        return Recording(**{**signals, **flat}, name=name)
+        return Recording(**arrays, name=name)
     except ValueError as error:
         raise FileFormatError(str(error)) from None

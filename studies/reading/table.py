@@ -62,10 +62,13 @@ class Table:
 
         Of a structure the last field serves, where no other column ends in it.
         """
-        for same in (
-            str, lambda text: text.strip().lower(), lambda text: split_name(text)[0], _last_field
+        for of_column, of_name in (
+            (str, str), (_plain, _plain), (_without_unit, _plain), (_without_unit, _without_unit),
+            (_last_field, _last_field),
         ):  # fmt: skip
-            found = [k for k, one in enumerate(self.columns) if same(one.name) == same(name)]
+            found = [
+                k for k, one in enumerate(self.columns) if of_column(one.name) == of_name(name)
+            ]
             if len(found) > 1:
                 raise FileFormatError(
                     f"{self.path}: {len(found)} columns are called {name!r}; give one's number, "
@@ -88,8 +91,8 @@ class Table:
         FileFormatError with the remedy where none is.
         """
         for one in self.columns:
-            names = (one.name, split_name(one.name)[0], _last_field(one.name))
-            if {name.strip().lower() for name in names} & _CALLED[quantity]:
+            names = {_plain(one.name), _without_unit(one.name), _last_field(one.name)}
+            if names & _CALLED[quantity]:
                 return one.name
         if quantity == "time" and self.columns and self._first_is_time():
             return self.columns[0].name
@@ -149,9 +152,17 @@ def rises_evenly(values: Array) -> bool:
     return bool(near.mean() >= _EVEN)
 
 
+def _plain(name: str) -> str:
+    return name.strip().lower()
+
+
+def _without_unit(name: str) -> str:
+    return _plain(split_name(name)[0])
+
+
 def _last_field(name: str) -> str:
     """Of a structure's column the name of the field, without its unit."""
-    return split_name(name.rpartition(".")[2])[0].strip().lower()
+    return _without_unit(name.rpartition(".")[2])
 
 
 @contextmanager

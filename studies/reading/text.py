@@ -54,7 +54,7 @@ def read_text(content: bytes, strict: bool) -> list[tuple[str, str, Array]]:
     first_row = _cells(lines[data[0]], separator)
     width = len(first_row)
     before = [lines[k].lstrip(_MARKS) for k in filled if k < data[0]]
-    heading = _heading(before, separator, first_row)
+    heading = _heading(before, separator, first_row, strict)
     if strict and above and not heading:
         raise FileFormatError(
             f"line {data[0] + 1} has {width} columns, the first "
@@ -107,14 +107,15 @@ def _is_value(cell: str) -> bool:
 
 
 def _heading(
-    before: list[str], separator: str | None, first_row: list[str]
+    before: list[str], separator: str | None, first_row: list[str], strict: bool
 ) -> tuple[list[str], list[str]] | None:
     """Names and units of the columns, of the last rows above them that have as many cells.
 
-    The row just above the numbers may name one more, whose cells are empty: a comment.
+    The row just above the numbers may name one more, whose cells are empty: a comment. Not so in a
+    `strict` table.
     """
     rows = [row for line in before if (row := _named(line, separator, first_row))]
-    if before and separator is not None:
+    if before and separator is not None and not strict:
         nearest_row = _cells(before[-1], separator)
         if len(nearest_row) == len(first_row) + 1 and all(nearest_row) and _has_words(nearest_row):
             return nearest_row, [""] * len(nearest_row)
@@ -161,14 +162,14 @@ def _numbers(
                 "line"
             )
     text = "\n".join(line for _, line in rows)
-    read = partial(
+    read: Any = partial(
         pd.read_csv, sep=separator or r"\s+", header=None, names=range(width), index_col=False,
         skipinitialspace=True,
     )  # fmt: skip
     with suppress(ValueError):  # plain numbers: that is fast
         plain = read(io.StringIO(text), dtype=float)
         return {k: ("", plain[k].to_numpy(float)) for k in plain}
-    cells = read(io.StringIO(text), dtype=str)
+    cells: Any = read(io.StringIO(text), dtype=str)
     filled = cells.notna()
     clocks = [k for k in cells if filled[k].any() and is_clock(cells[k][filled[k].idxmax()])]
     numbers: Any = numbers_of(cells.drop(columns=clocks))

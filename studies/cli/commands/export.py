@@ -28,7 +28,7 @@ from quietarm.studies.reading.saved import load_plans
 
 @command(
     click.Argument(["plans"], nargs=-1, type=INPUT, metavar="PLAN ..."),
-    option("-o", "--output", type=Parsed("file", check_writable), required=True,
+    option("--output", "-o", type=Parsed("file", check_writable), required=True,
            help="The file, whose ending is the format; move.c has move.h beside it."),
     option("--columns", default=COLUMNS, help="Of csv and mat, with units: time:ms,angle:deg,"
            "speed,acceleration,jerk,tip:mm,torque,power."),
