@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.recording import Recording
-from quietarm.studies.identify.response import Driven, FreeDecay
+from quietarm.studies.identify.response import Columns
 
 Array = NDArray[np.float64]
 _HUBER = 2.5
@@ -36,7 +36,7 @@ class Model:
     ----------
     recording : Recording
         The part of it, thinned to what the modes need.
-    response : FreeDecay or Driven
+    response : FreeDecay, Forced or Driven
         The modes' columns.
     cosines : int, optional
         How many of a slow motion, beside an offset and a slope.
@@ -52,7 +52,7 @@ class Model:
     def __init__(
         self,
         recording: Recording,
-        response: FreeDecay | Driven,
+        response: Columns,
         cosines: int = 0,
         scaled: bool = True,
     ) -> None:
@@ -167,19 +167,18 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
     First all residuals count by their square, then by Huber's weights.
     """
     count, least = len(start), 1e-9 * model.values.std(axis=0)[:, None] + 1e-300
-    p, deviation = start, None
     weights = np.ones((model.values.shape[1], int(model.kept.sum())))
-    for most in (_STEPS, *[_STEPS_OF_ROUND] * _ROUNDS):
-        x = _search(model, p, weights, (lower, upper), most)
-        residual, before, p = model.left(x), deviation, x[:count]
-        spread = residual.std(axis=1, keepdims=True)
-        robust = 1.4826 * np.median(np.abs(residual), axis=1, keepdims=True)
-        deviation = np.clip(robust, np.maximum(0.1 * spread, least), spread + least)
+    x = _search(model, start, weights, (lower, upper), _STEPS)
+    residual = model.left(x)
+    deviation = _deviation(residual, least)
+    for _ in range(_ROUNDS):
         huber = np.minimum(1.0, _HUBER * deviation / np.maximum(np.abs(residual), 1e-300))
-        scaled = huber / (deviation / deviation.min()) ** 2
-        if before is not None and np.abs(scaled - weights).max() < _SETTLED:
+        before, weights = weights, huber / (deviation / deviation.min()) ** 2
+        if np.abs(weights - before).max() < _SETTLED:
             break
-        weights = scaled
+        x = _search(model, x[:count], weights, (lower, upper), _STEPS_OF_ROUND)
+        residual = model.left(x)
+        deviation = _deviation(residual, least)
     J = (model.jacobian(x) / deviation[..., None]).reshape(-1, len(x))
     time, weighed = model.time[model.kept], residual / deviation
     size = np.linalg.norm(J, axis=0)
@@ -197,6 +196,13 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
             known = np.delete(J, count + np.arange(signals) * ((len(x) - count) // signals), axis=1)
             inflation = np.sqrt(variances[:count] / _variances(known)[:count])
     return Fit(x[:count], deviations, model, swinging.T, residual.T, delay, inflation)
+
+
+def _deviation(residual: Array, least: Array) -> Array:
+    """The robust deviation of each signal's residuals (signals, 1)."""
+    spread = residual.std(axis=1, keepdims=True)
+    robust = 1.4826 * np.median(np.abs(residual), axis=1, keepdims=True)
+    return np.clip(robust, np.maximum(0.1 * spread, least), spread + least)
 
 
 def _search(
@@ -266,8 +272,8 @@ def least_squares(columns: Array, target: Array) -> Array:
             found = np.zeros((columns.shape[1], *target.shape[1:]))
             found[there] = (np.linalg.solve(gram, scaled.T @ target).T / size[there]).T
             return found
-    found, *_ = np.linalg.lstsq(columns, target, rcond=None)
-    return found
+    solve: Any = np.linalg.lstsq
+    return solve(columns, target, rcond=None)[0]
 
 
 def _step_within(p: Array, curvature: Array, gradient: Array, bounds: tuple[Array, Array]) -> Array:

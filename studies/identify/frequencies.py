@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import tau
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,11 +96,12 @@ def _candidates(recording: Recording) -> dict[float, float]:
     """
     from scipy.signal import find_peaks, spectrogram  # not at the top: it takes long to load
 
+    spectra: Any = spectrogram
     even, y = evenly(recording, 1 / (32 * recording.step))
     rate, total = 1 / float(even[1] - even[0]), len(even)
     found = dict[float, float]()
     for length in (total // share for share in _STRETCHES if total // share >= 32):
-        at, _, power = spectrogram(
+        at, _, power = spectra(
             y, rate, "hann", length, length // 2, 4 * length, detrend=_without_line, axis=0
         )
         known = slice(int(np.searchsorted(at, 1.5 * rate / length)), None)

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import JointMotion, Plant
+from quietarm.models.joint_motion import Modes
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
     GAUSS_WEIGHTS,
@@ -110,6 +111,7 @@ class Response:
         assert self._linear is not None
         slopes, size = self._linear(p).full(), 2 * self.plant.modes
         A, C = slopes[:size, :size], slopes[size:, :size]
+        values: Any
         values, right = np.linalg.eig(A.astype(complex))
         residues = (C @ right) * np.linalg.solve(right, slopes[:size, size])
         order = [k for k in np.argsort(values.imag) if values[k].imag >= 0]
@@ -123,9 +125,7 @@ class Response:
         seen = self._signals(plant, joint, W, dW, ddW)
         return ca.horzcat(seen, ca.jacobian(seen, X[:, 0]) @ X[:, 1:])
 
-    def _signals(
-        self, plant: Plant, joint: JointMotion, W: list[ca.SX], dW: list[ca.SX], ddW: list[ca.SX]
-    ) -> ca.SX:
+    def _signals(self, plant: Plant, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> ca.SX:
         """What is recorded, a row each, of modal amplitudes and their rates."""
         made = {
             "tip": iter(plant.tip_displacements(W)),
@@ -315,6 +315,9 @@ class Driven:
 def response_of(plant: Plant, names: tuple[str, ...], kinds: tuple[str, ...]) -> Response:
     """The response of a plant, built once for all recordings with the same signals."""
     return Response(plant, names, kinds)
+
+
+Columns: TypeAlias = FreeDecay | Forced | Driven
 
 
 def smooth(recording: Recording) -> Any:
