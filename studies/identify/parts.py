@@ -238,15 +238,12 @@ class PartFitter:
         near = self.frequency + np.linspace(-0.6, 0.6, 9) / float(np.ptp(model.time))
         starts = self._starts(np.maximum(near, 0.3 * self.frequency))
         part, best = self._met(part, min(starts, key=model.cost))
-        whole = rows, part, best
         for _ in range(0 if by_hand else 2):
             grown = self._grown(rows, best, earliest)
             if grown == rows:
                 break
             rows = grown
             part, best = self._met(self._part(rows), best.p)
-        if part.unexplained > _POOR:  # no end of it belongs to one swing
-            rows, part, best = whole
         piece = self._piece(part)
         flat = saturated(piece.values)
         if flat.any() and np.count_nonzero(~flat) > max(LEAST_ROWS, 0.1 * len(flat)):
