@@ -47,7 +47,7 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.
         return check_folder(path) if kind in (FOLDER, DATASET) else check_writable(path)
 
     return option(
-        "--output", type=Parsed("file", check), multiple=True, required=required,
+        "--output", "-o", type=Parsed("file", check), multiple=True, required=required,
         help=f"File to write, by its ending: {listed}.",
     )  # fmt: skip
 

@@ -257,8 +257,12 @@ def parse_units(text: str) -> dict[str, str]:
     return units
 
 
-def parse_scale(text: str) -> tuple[str, float]:
-    """Read what a count of a recorded quantity is in SI units: ``angle=2pi/4096``."""
+def parse_scales(text: str) -> list[tuple[str, float]]:
+    """Read what counts of recorded quantities are in SI units: ``angle=2pi/4096,tip=1e-5``."""
+    return [_scale(one) for one in text.split(",")]
+
+
+def _scale(text: str) -> tuple[str, float]:
     quantity, _, factor = (part.strip() for part in text.lower().partition("="))
     _of_column(quantity)
     number, _, divisor = factor.partition("/")
@@ -273,6 +277,17 @@ def _of_column(quantity: str) -> Mapping[str, float]:
     if quantity not in OF_COLUMNS:
         raise ValueError(unknown("quantity", quantity, OF_COLUMNS))
     return OF_COLUMNS[quantity]
+
+
+def parse_rate(text: str) -> float:
+    """Read samples per second: ``1000``, ``1000Hz`` or ``1kHz``."""
+    number = text.strip().lower().removesuffix("hz")
+    factor = 1000.0 if number.endswith("k") else 1.0
+    with suppress(ValueError):
+        rate = factor * float(number.removesuffix("k"))
+        if 0 < rate < math.inf:
+            return rate
+    raise ValueError(f"{text!r} is no rate; give the samples per second, as 1000 or 1kHz")
 
 
 def parse_coefficients(text: str) -> list[float]:

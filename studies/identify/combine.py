@@ -9,6 +9,7 @@ The interval of a further one is Higgins, Thompson and Spiegelhalter's (J. R. St
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,8 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> tuple[list[Estimate]
     for name in names:
         values = np.array([part.values[name] for part in parts])
         deviations = np.array([part.deviations[name] for part in parts])
-        one = estimate(name, values, deviations, recordings)
+        spreads = [part.spread[name] for part in parts if name in part.spread]
+        one = _widened(estimate(name, values, deviations, recordings), spreads)
         if one.value == 0 or one.error >= 1:
             low, high = one.widest
             wide[name] = say("parameter.wide", low=low, high=high)
@@ -65,6 +67,18 @@ def estimate(
 
     next_swing = ends(of_parts + between) if count > 1 else ()
     return Estimate(name, mean, *ends(of_parts), *next_swing)
+
+
+def _widened(own: Estimate, spreads: Sequence[tuple[float, float]]) -> Estimate:
+    """An estimate whose intervals hold what the parameter is at every amplitude as well."""
+    lowest = min((low for low, _ in spreads), default=np.inf)
+    highest = max((high for _, high in spreads), default=-np.inf)
+    next_swing = {}
+    if own.next_low is not None and own.next_high is not None:
+        next_swing = {
+            "next_low": min(own.next_low, lowest), "next_high": max(own.next_high, highest)
+        }  # fmt: skip
+    return replace(own, low=min(own.low, lowest), high=max(own.high, highest), **next_swing)
 
 
 def _mean(values: Array, variances: Array) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.studies.identify.recording import noise_of
+from quietarm.studies.identify.recording import noise_of, resolution_of
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
@@ -22,7 +22,8 @@ _AT_LIMIT = 6
 
 def doubt(cause: str, /, **facts: object) -> dict[str, str]:
     """Cause and warning of a part."""
-    return {"cause": cause.partition(".")[0], "warning": say(f"doubt.{cause}", **facts)}
+    name = "amplitude" if cause == "changes" else cause.partition(".")[0]
+    return {"cause": name, "warning": say(f"doubt.{cause}", **facts)}
 
 
 def spectrum_of(time: Array, left: Array) -> tuple[Array, Array]:
@@ -95,7 +96,11 @@ def saturated(values: Array, fitted: Array | None = None) -> NDArray[np.bool_]:
 
 
 def exceeds(values: Array, fitted: Array, flat: NDArray[np.bool_]) -> bool:
-    """Whether a swing fitted to the other samples passes what the flat ones show by far."""
+    """Whether a swing fitted to the other samples passes what the flat ones show by far.
+
+    That is by more than the noise and a step of the sensor: an encoder's peaks are flat, too.
+    """
     side = np.sign(values - np.median(values, axis=0))
     further = ((fitted - values) * side)[flat].mean(axis=0)
-    return bool((further > 2 * noise_of(values)).any())
+    steps = np.array([resolution_of(column) for column in values.T])
+    return bool((further > np.maximum(2 * noise_of(values), 1.5 * steps)).any())

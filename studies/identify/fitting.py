@@ -9,13 +9,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.recording import Recording
-from quietarm.studies.identify.response import Driven, FreeDecay
+from quietarm.studies.identify.response import Columns
 
 Array = NDArray[np.float64]
 _HUBER = 2.5
 """Residuals beyond so many deviations count by their size alone (Huber's)."""
-_ROUNDS = 3
-"""Of deviations, by which the residuals are weighed."""
+_ROUNDS = 8
+"""Of Huber's weights, at most."""
+_SETTLED = 0.02
+"""A change of these weights that changes nothing more."""
+_STEPS, _STEPS_OF_ROUND = 40, 10
+"""Of a search, and of one that begins where another ended."""
+_MANY, _TOLD_APART = 100, 1e11
+"""Rows, and the condition of their columns' products, for normal equations."""
 _LATE = 0.25
 """An angle is called late where that explains this share of the power that is left."""
 
@@ -30,7 +36,7 @@ class Model:
     ----------
     recording : Recording
         The part of it, thinned to what the modes need.
-    response : FreeDecay or Driven
+    response : FreeDecay, Forced or Driven
         The modes' columns.
     cosines : int, optional
         How many of a slow motion, beside an offset and a slope.
@@ -46,7 +52,7 @@ class Model:
     def __init__(
         self,
         recording: Recording,
-        response: FreeDecay | Driven,
+        response: Columns,
         cosines: int = 0,
         scaled: bool = True,
     ) -> None:
@@ -65,13 +71,16 @@ class Model:
         still = np.zeros((*dB.shape[:-1], trend.shape[-1]))
         return np.concatenate([B, trend], axis=-1), np.concatenate([dB, still], axis=-1)
 
-    def amplitudes(self, B: Array, rows: NDArray[np.bool_]) -> Array:
+    def amplitudes(self, B: Array, rows: NDArray[np.bool_], weights: Array | None = None) -> Array:
         """Those of columns that leave the least of some rows (signals, columns)."""
         found = np.ones((self.values.shape[1], B.shape[-1]))
         for k, y in enumerate(self.values.T):
             known, free = np.split(B[min(k, len(B) - 1), rows], [self.fixed], axis=1)
             target = y[rows] - known.sum(axis=1)
-            found[k, self.fixed :], *_ = np.linalg.lstsq(free, target, rcond=None)
+            if weights is not None:
+                root = weights[k] ** 0.5
+                free, target = root[:, None] * free, root * target
+            found[k, self.fixed :] = least_squares(free, target)
         return found
 
     def fitted(self, p: Array, rows: NDArray[np.bool_] | None = None) -> Array:
@@ -85,10 +94,11 @@ class Model:
         left, whole = self.values - self.fitted(p), self.values - trend
         return float(((left**2).sum(axis=0) / ((whole**2).sum(axis=0) + 1e-300)).sum())
 
-    def start(self, p: Array) -> Array:
-        """The parameters with their best amplitudes: x."""
+    def start(self, p: Array, weights: Array | None = None) -> Array:
+        """The parameters with their best amplitudes, by weights (signals, rows that count): x."""
         B, _ = self._last(p.tobytes(), True)
-        return np.concatenate([p, self.amplitudes(B, self.kept)[:, self.fixed :].ravel()])
+        best = self.amplitudes(B, self.kept, weights)[:, self.fixed :]
+        return np.concatenate([p, best.ravel()])
 
     def _evaluate(self, x: Array) -> tuple[Array, Array, Array]:
         """Columns of the rows that count, their derivatives by the parameters, amplitudes."""
@@ -152,33 +162,25 @@ class Fit:
 
 
 def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float) -> Fit:
-    """Least squares of parameters and amplitudes of a swing at a frequency [Hz]."""
-    from scipy.optimize import least_squares  # not at the top: it takes long to load
+    """Least squares of parameters and amplitudes of a swing at a frequency [Hz].
 
-    solve: Any = least_squares
-    count, x = len(start), model.start(start)
-    free = np.full(len(x) - count, np.inf)
-    bounds = np.append(lower, -free), np.append(upper, free)
-    least = 1e-9 * model.values.std(axis=0)[:, None] + 1e-300
+    First all residuals count by their square, then by Huber's weights.
+    """
+    count, least = len(start), 1e-9 * model.values.std(axis=0)[:, None] + 1e-300
+    weights = np.ones((model.values.shape[1], int(model.kept.sum())))
+    x = _search(model, start, weights, (lower, upper), _STEPS)
     residual = model.left(x)
-    deviation = np.maximum(residual.std(axis=1, keepdims=True), least)
-
-    def weighed_jacobian(x: Array) -> Array:
-        return (model.jacobian(x) / deviation[..., None]).reshape(-1, len(x))
-
-    for loss, most in (("linear", 40), *[("huber", 20)] * (_ROUNDS - 1)):
-        x = solve(
-            lambda x: (-model.left(x) / deviation).ravel(), x, weighed_jacobian,  # noqa: B023
-            bounds=bounds, x_scale="jac", loss=loss, f_scale=_HUBER, xtol=1e-12, ftol=1e-9,
-            gtol=1e-14, max_nfev=most,
-        ).x  # fmt: skip
-        residual, before = model.left(x), deviation
-        spread = residual.std(axis=1, keepdims=True)
-        robust = 1.4826 * np.median(np.abs(residual), axis=1, keepdims=True)
-        deviation = np.clip(robust, np.maximum(0.1 * spread, least), spread + least)
-        if loss == "huber" and np.allclose(before, deviation, rtol=0.02):
+    deviation = _deviation(residual, least)
+    for _ in range(_ROUNDS):
+        huber = np.minimum(1.0, _HUBER * deviation / np.maximum(np.abs(residual), 1e-300))
+        before, weights = weights, huber / (deviation / deviation.min()) ** 2
+        if np.abs(weights - before).max() < _SETTLED:
             break
-    time, weighed, J = model.time[model.kept], residual / deviation, weighed_jacobian(x)
+        x = _search(model, x[:count], weights, (lower, upper), _STEPS_OF_ROUND)
+        residual = model.left(x)
+        deviation = _deviation(residual, least)
+    J = (model.jacobian(x) / deviation[..., None]).reshape(-1, len(x))
+    time, weighed = model.time[model.kept], residual / deviation
     size = np.linalg.norm(J, axis=0)
     size[size == 0] = 1.0
     J /= size  # units apart: else the pseudo-inverse takes a small one for none
@@ -191,9 +193,105 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
         delay = _delay(weighed.ravel(), later.ravel(), J)
         if not model.fixed:
             signals = len(residual)
-            known = np.delete(J, count + np.arange(signals) * (len(free) // signals), axis=1)
+            known = np.delete(J, count + np.arange(signals) * ((len(x) - count) // signals), axis=1)
             inflation = np.sqrt(variances[:count] / _variances(known)[:count])
     return Fit(x[:count], deviations, model, swinging.T, residual.T, delay, inflation)
+
+
+def _deviation(residual: Array, least: Array) -> Array:
+    """The robust deviation of each signal's residuals (signals, 1)."""
+    spread = residual.std(axis=1, keepdims=True)
+    robust = 1.4826 * np.median(np.abs(residual), axis=1, keepdims=True)
+    return np.clip(robust, np.maximum(0.1 * spread, least), spread + least)
+
+
+def _search(
+    model: Model, p: Array, weights: Array, bounds: tuple[Array, Array], most: int
+) -> Array:
+    """Parameters and amplitudes of the least weighted squares, by Levenberg and Marquardt's steps.
+
+    Amplitudes are the best of the parameters at every step (variable projection), so that steps are
+    of the parameters alone.
+    """
+    x, cost = _projected(model, p, weights)
+    damping = 1e-4
+    for _ in range(most):
+        p = x[: model.count]
+        gradient, curvature = _slopes(model, x, weights)
+        while damping < 1e8:
+            scaled = curvature + damping * np.diag(np.diag(curvature) + 1e-300)
+            new = np.clip(p + _step_within(p, scaled, gradient, bounds), *bounds)
+            tried, tried_cost = _projected(model, new, weights)
+            if tried_cost < cost or np.array_equal(new, p):
+                break
+            damping *= 8
+        else:
+            break
+        step, gain = np.abs(new - p), cost - tried_cost
+        if tried_cost >= cost:
+            break
+        x, damping = tried, damping / 8
+        settled = (step <= 1e-12 * (np.abs(new) + 1e-6)).all() or gain <= 1e-9 * cost
+        cost = tried_cost
+        if settled:
+            break
+    return x
+
+
+def _projected(model: Model, p: Array, weights: Array) -> tuple[Array, float]:
+    """The parameters with the amplitudes that leave the least, and the squares that are left."""
+    x = model.start(p, weights)
+    return x, float((weights * model.left(x) ** 2).sum())
+
+
+def _slopes(model: Model, x: Array, weights: Array) -> tuple[Array, Array]:
+    """Gradient and Gauss and Newton's curvature by the parameters, amplitudes following them."""
+    J, left, count = model.jacobian(x), model.left(x), model.count
+    gradient, curvature = np.zeros(count), np.zeros((count, count))
+    width = (J.shape[-1] - count) // len(left)
+    for k, (weight, rest) in enumerate(zip(weights**0.5, left)):
+        by_p = weight[:, None] * J[k, :, :count]
+        columns = weight[:, None] * J[k, :, count + k * width : count + (k + 1) * width]
+        by_p = by_p - columns @ least_squares(columns, by_p)
+        gradient += by_p.T @ (weight * rest)
+        curvature += by_p.T @ by_p
+    return gradient, curvature
+
+
+def least_squares(columns: Array, target: Array) -> Array:
+    """What of columns is nearest to a target, or to each of several.
+
+    By the normal equations where the columns are told apart well: that is much faster.
+    """
+    size = np.linalg.norm(columns, axis=0)
+    there = size > 0
+    if len(columns) > _MANY and there.any():
+        scaled = columns[:, there] / size[there]
+        gram = scaled.T @ scaled
+        if np.linalg.cond(gram) < _TOLD_APART:
+            found = np.zeros((columns.shape[1], *target.shape[1:]))
+            found[there] = (np.linalg.solve(gram, scaled.T @ target).T / size[there]).T
+            return found
+    solve: Any = np.linalg.lstsq
+    return solve(columns, target, rcond=None)[0]
+
+
+def _step_within(p: Array, curvature: Array, gradient: Array, bounds: tuple[Array, Array]) -> Array:
+    """A step by a curvature, along the bounds at which it would leave them.
+
+    The curvature may be singular, where a parameter shows nowhere.
+    """
+    size = np.sqrt(np.maximum(np.diag(curvature), 1e-300))
+    matrix, target = curvature / np.outer(size, size), gradient / size
+    inside = np.ones(len(p), bool)
+    while True:
+        step = np.zeros(len(p))
+        among = np.ix_(inside, inside)
+        step[inside], *_ = np.linalg.lstsq(matrix[among], target[inside], rcond=None)
+        leaves = inside & (((p <= bounds[0]) & (step < 0)) | ((p >= bounds[1]) & (step > 0)))
+        if not leaves.any():
+            return step / size
+        inside &= ~leaves
 
 
 def _variances(J: Array) -> Array:

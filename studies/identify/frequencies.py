@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import tau
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,11 +32,11 @@ where it has this share of the loudest."""
 def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
     """The frequency of every recording's swing [Hz]: that of all, where it is a candidate.
 
-    0 where nothing swings; ValueError where nothing does in any, or as no arm does.
+    0 where nothing swings; ValueError where one swings as no arm does.
     """
     tables = [np.array([*_candidates_of(one).items()]).reshape(-1, 2).T for one in recordings]
     if not any(loud.any() for _, loud in tables):
-        raise ValueError(say("refused.silent", name=recordings[0].name))
+        return [0.0] * len(recordings)
     shares = [(f, loud / (loud.sum() or 1.0)) for f, loud in tables]
 
     def near(f: Array, frequency: float) -> NDArray[np.bool_]:
@@ -95,12 +96,13 @@ def _candidates(recording: Recording) -> dict[float, float]:
     """
     from scipy.signal import find_peaks, spectrogram  # not at the top: it takes long to load
 
+    spectra: Any = spectrogram
     even, y = evenly(recording, 1 / (32 * recording.step))
     rate, total = 1 / float(even[1] - even[0]), len(even)
     found = dict[float, float]()
     for length in (total // share for share in _STRETCHES if total // share >= 32):
-        at, _, power = spectrogram(
-            y, rate, "hann", length, length // 2, 4 * length, detrend="linear", axis=0
+        at, _, power = spectra(
+            y, rate, "hann", length, length // 2, 4 * length, detrend=_without_line, axis=0
         )
         known = slice(int(np.searchsorted(at, 1.5 * rate / length)), None)
         levels = np.log(power.sum(axis=1).max(axis=-1)[known] + 1e-300)
@@ -114,6 +116,13 @@ def _candidates(recording: Recording) -> dict[float, float]:
     return found
 
 
+def _without_line(values: Array) -> Array:
+    """Values less the line through them, along the last axis."""
+    at = np.linspace(-1.0, 1.0, values.shape[-1])
+    slope = (values @ at) / (at @ at)
+    return values - values.mean(axis=-1, keepdims=True) - slope[..., None] * at
+
+
 def _prominence(recording: Recording, frequency: float) -> float:
     """How much a recording rings at a frequency: the square of the amplitude, summed over periods.
 
@@ -122,7 +131,9 @@ def _prominence(recording: Recording, frequency: float) -> float:
     swing = envelope(recording, frequency)
     if swing is None:
         return 0.0
-    loud = swing.size[swing.size > 4 * swing.noise]
+    windows = len(swing.size) / 32 + 1  # a window has some hundred samples, and they overlap
+    level = max(4.0, 1 + (2 * np.log(windows)) ** 0.5)  # noise passes it in few recordings
+    loud = swing.size[swing.size > level * swing.noise]
     step = float(swing.time[1] - swing.time[0]) if len(swing.time) > 1 else recording.step
     accelerates = "acceleration" in recording.signals and "tip" not in recording.signals
     return float((loud**2).sum()) * step * frequency ** (-3 if accelerates else 1)

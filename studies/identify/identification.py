@@ -15,7 +15,14 @@ from quietarm.ocp.uncertainty import refuse_unknown
 from quietarm.studies.identify.combine import combine
 from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
-from quietarm.studies.identify.machine import Identified, Part, in_torque_alone, is_modal
+from quietarm.studies.identify.machine import (
+    Identified,
+    Part,
+    in_torque_alone,
+    is_damping,
+    is_modal,
+)
+from quietarm.studies.identify.mending import without_glitches
 from quietarm.studies.identify.parts import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.ring_downs import moves
@@ -24,8 +31,8 @@ from quietarm.studies.identify.words import say
 Array = NDArray[np.float64]
 _DEPENDENT = 1e-3
 """Parameters cannot be told apart where others explain all but this share of what one does."""
-_BAD = 0.9
-"""Share of the swing's size that a fit of all of a recording may leave."""
+_BAD = 0.4
+"""Share of the swing's size beside the noise that a fit may leave, to count."""
 
 
 @one_at_a_time
@@ -67,27 +74,32 @@ def identify(
     """
     kinds = _check(recordings, plant)
     names = _sought(plant, free, kinds)
+    recordings, doubts = without_glitches(recordings)
     frequencies = find_frequencies(recordings)
-    each = [
-        PartFitter(plant, names, one, frequency) for one, frequency in zip(recordings, frequencies)
+    fitters = [
+        PartFitter(plant, names, recording, frequency)
+        for recording, frequency in zip(recordings, frequencies)
     ]
-    fitted, left_out, unknown = list[Part](), dict[str, str](), dict[str, str]()
-    if "torque" not in kinds and all(is_modal(plant, name) for name in names):
-        for one in each:
-            found, why = one.ring_downs(parts)
-            fitted += found
-            if why:
-                left_out[one.recording.name] = why
-        if not fitted and not any(moves(one) for one in recordings):
-            raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
-    if not fitted:
-        silent = [one.recording.name for one in each if not one.frequency]
-        left_out = dict.fromkeys(silent, say("recording.silent"))
-        each = [one for one in each if one.frequency]
-        unknown = _not_identifiable(each)
-        fitted = _wholes(each, [name for name in names if name not in unknown])
-    doubts = doubt_units(recordings, frequencies, plant.joint)
-    estimates, wide = combine([name for name in names if name not in unknown], fitted)
+    at_rest = "torque" not in kinds and all(is_modal(plant, name) for name in names)
+    fitted, left_out, moving = list[Part](), dict[str, str](), list[PartFitter]()
+    for fitter in fitters:
+        found, why = fitter.ring_downs(parts) if at_rest else ([], say("recording.silent"))
+        fitted += found
+        if not found and fitter.frequency and (moves(fitter.recording) or not at_rest):
+            moving.append(fitter)
+        elif not found:
+            left_out[fitter.recording.name] = why
+    if not fitted and not moving:
+        if not any(frequencies):
+            raise ValueError(say("refused.silent", name=recordings[0].name))
+        raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
+    unknown = {} if fitted else _not_identifiable(moving)
+    sought = [name for name in names if name not in unknown]
+    fitted += [fitter.of(sought).whole() for fitter in moving]
+    fitted, worthless = _worth_pooling(plant, fitted)
+    left_out |= worthless
+    doubts += doubt_units(recordings, [one.frequency for one in fitters], plant.joint)
+    estimates, wide = combine(sought, fitted)
     unknown |= wide
     return Identified(
         replace(plant, **{one.parameter: one.value for one in estimates}),
@@ -98,7 +110,8 @@ def identify(
 
 def curve_of(found: Identified, part: Part, recordings: Sequence[Recording]) -> tuple[Model, Array]:
     """What was fitted in a part, and the signals that it was met by (rows, signals)."""
-    recording = next(one for one in recordings if one.name == part.recording)
+    named = [one for one in recordings if one.name == part.recording]
+    (recording, *_), _ = without_glitches(named)
     fitter = PartFitter(found.plant, list(part.values), recording, 1.0)
     fitter.frequency = fitter.frequency_of(part.vector)
     model = fitter.model(part)
@@ -137,15 +150,31 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
     return names
 
 
-def _wholes(each: Sequence[PartFitter], names: Sequence[str]) -> list[Part]:
-    """Every recording by all of its joint's motion."""
-    plant = each[0].plant
-    found = [PartFitter(plant, names, one.recording, one.frequency).whole() for one in each]
-    least = min(part.misfit for part in found)
-    if least > _BAD:
-        every = " and ".join(names)
-        raise ValueError(say("refused.misfit", plant=plant.name, names=every, least=least))
-    return found
+def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dict[str, str]]:
+    """The parts that tell of the machine, and why others do not, by recording.
+
+    Each is judged by itself, however many there are. ValueError where none is left.
+    """
+    worth, why = list[Part](), dict[str, list[str]]()
+    for part in parts:
+        facts = {"begin": part.begin, "end": part.end}
+        driven = [
+            value
+            for name, value in part.values.items()
+            if is_damping(plant, name) and value + part.deviations[name] < 0
+        ]
+        if part.unexplained > _BAD:
+            reason = say("recording.misfit", misfit=part.misfit, **facts)
+        elif driven:
+            reason = say("recording.negative", damping=min(driven), **facts)
+        else:
+            worth.append(part)
+            continue
+        why.setdefault(part.recording, []).append(reason)
+    left_out = {name: "; ".join(reasons) for name, reasons in why.items()}
+    if not worth:
+        raise ValueError("; ".join(f"{name}: {reasons}" for name, reasons in left_out.items()))
+    return worth, left_out
 
 
 def _not_identifiable(each: Sequence[PartFitter]) -> dict[str, str]:

@@ -17,7 +17,9 @@ from quietarm.studies.identify.words import say
 Array = NDArray[np.float64]
 _DAMPING = "zeta"
 """How the name of a damping ratio begins."""
-_MOST_DAMPING = 0.9
+_MOST_DAMPING, _LEAST_DAMPING = 0.9, 0.3
+_GROWTH = 100.0
+"""Logarithm of how much a swing may grow in a fit."""
 _LEAST_ERROR = 1e-6
 """Of a parameter known without error, as of a simulation: a range of none is no range."""
 
@@ -33,10 +35,11 @@ class Estimate:
     value : float
         The mean over the parts, weighted by their accuracy [SI units].
     low, high : float
-        Ends of the interval that covers the mean in 95 of 100 cases.
+        Ends of the interval that covers the mean in 95 of 100 cases; where the parameter changes
+        with the amplitude, all that it is along the swings.
     next_low, next_high : float or None
         Ends of the interval that covers the next swing's in 95 of 100 cases, from the scatter
-        of the parts beyond their own uncertainty; None with one part.
+        of the parts beyond their own uncertainty; likewise. None with one part.
     """
 
     parameter: str
@@ -90,6 +93,12 @@ class Part:
         Samples at the sensor's limit, which are excluded.
     drifts : bool
         Whether a slow drift of the signal is excluded.
+    spread : dict of str to (float, float)
+        Least and largest of parameters that change with the amplitude, by fits of pieces of the
+        swing at small and at large amplitudes.
+    largest : float
+        Of a swing that is fitted only where its amplitude is smaller, the amplitude at its begin,
+        in the signal's unit; else 0.
     hub : str
         How the joint's recorded motion is met: not at all where it is empty, ``"creeps"`` beside a
         free decay, ``"moves"`` all of it.
@@ -108,6 +117,13 @@ class Part:
     saturated: int = 0
     drifts: bool = False
     hub: str = ""
+    spread: dict[str, tuple[float, float]] = field(default_factory=dict)
+    largest: float = 0.0
+
+    @property
+    def unexplained(self) -> float:
+        """What the fit leaves beside the noise, as a share of the vibration."""
+        return float(max(self.misfit**2 - self.noise**2, 0.0)) ** 0.5
 
     @property
     def vector(self) -> NDArray[np.float64]:
@@ -208,7 +224,12 @@ def is_frequency(plant: Plant, name: str) -> bool:
 
 def is_modal(plant: Plant, name: str) -> bool:
     """Whether a parameter is the frequency or the damping ratio of a mode."""
-    return is_frequency(plant, name) or name.startswith(_DAMPING)
+    return is_frequency(plant, name) or is_damping(plant, name)
+
+
+def is_damping(plant: Plant, name: str) -> bool:
+    """Whether a parameter is the damping ratio of a mode, by its name."""
+    return name.startswith(_DAMPING) and not is_frequency(plant, name)
 
 
 def values_of(plant: Plant, names: Sequence[str]) -> Array:
@@ -216,12 +237,20 @@ def values_of(plant: Plant, names: Sequence[str]) -> Array:
     return np.array([getattr(plant, name) for name in names])
 
 
-def bounds_of(plant: Plant, names: Sequence[str], start: Array) -> tuple[Array, Array]:
-    """How far parameters may go from a start: dampings a little below 0, as an estimate may."""
+def bounds_of(
+    plant: Plant, names: Sequence[str], start: Array, seconds: float
+) -> tuple[Array, Array]:
+    """How far parameters may go from a start: dampings a little below 0, as an estimate may.
+
+    No swing of so many seconds grows beyond what numbers can hold.
+    """
     lower, upper = np.full(len(names), -np.inf), np.full(len(names), np.inf)
     for k, name in enumerate(names):
         if is_frequency(plant, name):
             lower[k], upper[k] = 0.3 * start[k], 3 * start[k]
-        elif is_modal(plant, name):
-            lower[k], upper[k] = -0.3, _MOST_DAMPING
+    fastest = float(upper[np.isfinite(upper)].max(initial=0.0)) or 1.0
+    for k, name in enumerate(names):
+        if is_damping(plant, name):
+            lower[k] = -min(_LEAST_DAMPING, _GROWTH / (fastest * seconds))
+            upper[k] = _MOST_DAMPING
     return lower, upper

@@ -4,24 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import pairwise, product
 from math import tau
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY
+from quietarm.studies.identify.amplitudes import spread_of
 from quietarm.studies.identify.diagnosis import doubt, doubt_of, exceeds, saturated
 from quietarm.studies.identify.fitting import Fit, Model, fit
 from quietarm.studies.identify.machine import Part, bounds_of, is_frequency, is_modal, values_of
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
-from quietarm.studies.identify.response import Driven, FreeDecay, Response, smooth
+from quietarm.studies.identify.response import Driven, Forced, FreeDecay, response_of, smooth
 from quietarm.studies.identify.ring_downs import LEAST_PERIODS, find_ring_downs, moves
+from quietarm.studies.identify.well_damped import find_well_damped
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _PER_PERIOD = 64
 """Samples a period of the fastest mode; more are averaged."""
+_ROUGHLY = 16
+"""The same where starts are compared."""
 _HELPS = 0.9
 """The hub is part of the model where what is left falls below this share by it."""
 _MET = 0.05
@@ -42,6 +47,22 @@ the frequency is not identifiable."""
 _MUCH_DAMPING = 0.12
 """More than a held beam has, that turns; a controller that gives way damps like that."""
 _DAMPINGS = (0.002, 0.01, 0.03, 0.08, 0.2, 0.4)
+_SAME_SWING = 1.25
+"""Times what is left of parts by themselves, that one swing may leave of them."""
+_ALONG = 0.003
+"""Misfit beside the noise, from which on pieces of a swing are fitted alone."""
+_PIECE, _PIECES = 3.0, 12
+"""Periods of such a piece, at least, and how many there are, at most."""
+_SMALL = 1 / 8
+"""Of the largest amplitude, below which friction alone is seen."""
+_LOST = 0.3
+"""Noise of a piece as a share of its swing, from which on the piece tells nothing."""
+_MUCH = 0.1
+"""Misfit beside the noise that a swing may have to be called met."""
+_WELL = 0.06
+"""Damping, from which on a swing is over too soon for an envelope to show it."""
+_POOR = 0.2
+"""Misfit, from which on a swing may be one that is damped well."""
 _STARTS = 2
 """Of whole recordings."""
 
@@ -67,24 +88,34 @@ class PartFitter:
         self.plant, self.names, self.recording = plant, list(names), recording
         self.frequency = frequency
         kinds = [kind for kind, values in recording.signals.items() for _ in values.T]
-        self._response = Response(plant, names, kinds)
+        self._response = response_of(plant, tuple(names), tuple(kinds))
         self._given = values_of(plant, names)
+        self._splines = dict[tuple[float, float, int], Any]()
         self._rates = np.array([is_frequency(plant, name) for name in names])
         modal = np.array([is_modal(plant, name) for name in names])
         self._dampings = modal & ~self._rates
         self._scaled = "torque" not in kinds and bool(modal.all())
         self._modes = self._response.eigenvalues(self._given)[0].imag
 
-    def model(self, part: Part, thin: bool = True) -> Model:
-        """The model of a part: without saturated samples, with drift or hub, as the part says."""
+    def of(self, names: Sequence[str]) -> PartFitter:
+        """The fits of the same recording with other parameters sought."""
+        return PartFitter(self.plant, names, self.recording, self.frequency)
+
+    def model(self, part: Part, thin: bool = True, per_period: float = _PER_PERIOD) -> Model:
+        """The model of a part: without saturated samples, with drift or hub, as the part says.
+
+        Where it is thinned it has so many samples a period of the fastest mode.
+        """
         piece = self._piece(part)
         fastest = self.frequency * float(self._modes[-1] / self._modes[0])
-        spline = smooth(piece) if part.hub else None
         if thin and not part.saturated:
-            piece = piece.averaged(1 / max(_PER_PERIOD * fastest * piece.step, 1e-9))
+            piece = piece.averaged(1 / max(per_period * fastest * piece.step, 1e-9))
         columns = FreeDecay(self._response, piece)
-        if spline:
-            columns = Driven(self._response, piece.time, spline, tau * fastest, self._scaled)
+        if part.hub:
+            spline, speed = self._spline(part, piece), tau * fastest
+            columns = Driven(self._response, piece.time, spline, speed, self._scaled)
+            if self._scaled and self._response.is_linear:
+                columns = Forced(self._response, piece.time, spline, speed)
         cosines = int(2 * _SLOW * self.frequency * np.ptp(piece.time)) if part.drifts else 0
         model = Model(piece, columns, cosines, self._scaled)
         if part.saturated:
@@ -93,34 +124,78 @@ class PartFitter:
                 model.kept = ~saturated(piece.values, model.fitted(part.vector))
         return model
 
+    def _spline(self, part: Part, piece: Recording) -> Any:
+        """The joint's motion in a part, smooth; told once from the samples of `piece`."""
+        ends = (part.begin, part.end, len(piece.time))
+        if ends not in self._splines:
+            self._splines[ends] = smooth(piece)
+        return self._splines[ends]
+
     def ring_downs(self, by_hand: Sequence[tuple[float, float]] = ()) -> tuple[list[Part], str]:
         """The ring-downs of the recording, or why there are none."""
         recording, frequency = self.recording, self.frequency
-        if not frequency:
-            return [], say("recording.silent")
-        found = [recording.rows(*ends) for ends in by_hand]
-        found = [rows for rows in found if rows.stop - rows.start >= LEAST_ROWS]
-        parts, end, why = list[Part](), 0, _no_ring_down(recording, frequency)
-        for rows in found if by_hand else find_ring_downs(recording, frequency):
-            part = self._ring_down(rows, end, bool(by_hand))
-            end = rows.stop
-            if part.misfit < 1 or by_hand:
-                parts.append(part)
-            else:
-                ends = {"begin": part.begin, "end": part.end}
-                why = say("recording.free", **ends, frequency=frequency)
+        parts, why = list[Part](), say("recording.silent")
+        if frequency:
+            parts, why = self._periodic(by_hand)
+        if all(part.misfit > _POOR for part in parts):
+            parts = self._well_damped(by_hand) or parts
         if moves(recording) and not by_hand:
             parts = self._with_hub(parts, slice(None))
         elif moves(recording):
             parts = [one for part in parts for one in self._with_hub([part], self._rows(part))]
         return parts, "" if parts else why
 
+    def _periodic(self, by_hand: Sequence[tuple[float, float]]) -> tuple[list[Part], str]:
+        """Ring-downs of several periods, or why there are none."""
+        recording, frequency = self.recording, self.frequency
+        found = [recording.rows(*ends) for ends in by_hand]
+        found = [rows for rows in found if rows.stop - rows.start >= LEAST_ROWS]
+        parts, end, why = list[Part](), 0, _no_ring_down(recording, frequency)
+        for rows in found if by_hand else find_ring_downs(recording, frequency):
+            part = self._by_amplitude(self._ring_down(rows, end, bool(by_hand)), rows)
+            end = rows.stop
+            last = parts[-1] if parts and not by_hand else None
+            if last and part.amplitude < last.amplitude and (whole := self._joined(last, part)):
+                parts[-1] = whole
+            elif part.misfit < 1 or by_hand:
+                parts.append(part)
+            else:
+                ends = {"begin": part.begin, "end": part.end}
+                why = say("recording.free", **ends, frequency=frequency)
+        return parts, why
+
+    def _well_damped(self, by_hand: Sequence[tuple[float, float]]) -> list[Part]:
+        """Swings that are over after a period or two, of all of the recording or of parts of it."""
+        usual, parts = self.frequency, list[Part]()
+        spans = [self.recording.rows(*ends) for ends in by_hand] or [slice(None)]
+        for span in spans:
+            piece = self.recording.part(span)
+            if moves(piece):
+                continue
+            swings = find_well_damped(piece)
+            if by_hand and len(swings) > 1:  # a part by hand is one ring-down
+                continue
+            for rows, self.frequency in swings:
+                ends = piece.time[[rows.start, rows.stop - 1]]
+                part = self._part(self.recording.rows(*ends))
+                starts = self._starts(self.frequency * _FACTORS)
+                part, _ = self._met(part, min(starts, key=self.model(part).cost))
+                damped = max(part.vector[self._dampings], default=0.0) > _WELL
+                if damped and part.misfit < max(_POOR, 2 * part.noise):
+                    parts.append(part)
+        if not parts:
+            self.frequency = usual
+        return parts
+
     def whole(self, rows: slice = slice(None)) -> Part:
         """All of the recording, or some rows, by how the plant answers its joint's motion."""
         part = self._part(rows, hub="moves")
         starts = [self._given, *self._starts(self.frequency * _FACTORS)]
-        best = sorted(starts, key=self.model(part).cost)[:_STARTS]
-        return min((self._met(part, start)[0] for start in best), key=lambda one: one.misfit)
+        roughly = self.model(part, per_period=_ROUGHLY)
+        tried = [
+            self._fit(roughly, part, start) for start in sorted(starts, key=roughly.cost)[:_STARTS]
+        ]
+        return self._met(part, min(tried, key=lambda fitted: fitted.misfit).p)[0]
 
     def sensitivities(self) -> Array:
         """How the whole recording would change by the given values, a column each.
@@ -185,6 +260,93 @@ class PartFitter:
             part = part if tried.cause == "drift" else tried
         return part
 
+    def _joined(self, first: Part, second: Part) -> Part | None:
+        """Two parts as one ring-down, where one swing meets both: samples between them lack."""
+        rows = slice(self._rows(first).start, self._rows(second).stop)
+        if moves(self.recording.part(rows)):
+            return None
+        model = self.model(self._part(rows))
+        start = min((first.vector, second.vector), key=model.cost)
+        whole, best = self._met(self._part(rows), start)
+        time = best.model.time
+        for part in (first, second):
+            alone = self.model(part)
+            left = (alone.values - alone.fitted(part.vector)).std(axis=0)
+            inside = (time >= part.begin) & (time <= part.end)
+            if (best.residual[inside].std(axis=0) > _SAME_SWING * left).any():
+                return None
+        return whole
+
+    def _by_amplitude(self, part: Part, rows: slice) -> Part:
+        """A ring-down with what its parameters are along it, fitted where one value meets it.
+
+        Pieces of it are fitted alone where all of it leaves more than noise; from the begin of the
+        rows in which it was found, if a swing is there.
+        """
+        if part.misfit <= 1.5 * part.noise + _ALONG or part.hub or part.saturated:
+            return part
+        last = self._rows(part).stop
+        pieces = self._pieces(slice(rows.start, last))
+        if not pieces or pieces[0].begin > part.begin or pieces[0].unexplained > _MUCH:
+            pieces = self._pieces(self._rows(part))
+        spread = {name: ends for name in self.names if (ends := spread_of(pieces, name))}
+        if not spread:
+            return part
+        found = part
+        if part.unexplained > _MUCH:
+            found = self._where_it_fits(part, pieces)
+        if found.cause in ("", "amplitude", "misfit") and found.unexplained < _MUCH:
+            changes = {"first": self._words(pieces[0]), "last": self._words(pieces[-1])}
+            found = replace(found, **doubt("changes", misfit=part.misfit, **changes))
+        return replace(found, spread=spread)
+
+    def _pieces(self, rows: slice) -> list[Part]:
+        """Pieces of some rows in order of time, each fitted alone, that stand out of noise."""
+        pieces = list[Part]()
+        periods = float(np.ptp(self.recording.time[rows])) * self.frequency
+        count = min(int(periods / _PIECE), _PIECES)
+        if count < 2:
+            return []
+        ends = np.linspace(rows.start, rows.stop, count + 1).astype(int)
+        start = None
+        for first, last in pairwise(ends):
+            if last - first < LEAST_ROWS:
+                return []
+            piece = self._part(slice(first, last))
+            if start is None:
+                near = self.frequency * np.linspace(0.85, 1.15, 13)
+                start = min(self._starts(near), key=self.model(piece).cost)
+            piece, best = self._met(piece, start)
+            if piece.noise < _LOST and piece.cause != "bound":
+                pieces.append(piece)
+                start = best.p
+        largest = max((piece.amplitude for piece in pieces), default=0.0)
+        return [piece for piece in pieces if piece.amplitude >= _SMALL * largest]
+
+    def _where_it_fits(self, part: Part, pieces: Sequence[Part]) -> Part:
+        """The longest end of a ring-down that one value of each parameter meets.
+
+        What comes after the pieces is left out, and of these the last where it has to be.
+        """
+        for last in range(len(pieces), 1, -1):
+            end, low, high, met = self._rows(pieces[last - 1]).stop, 1, last, None
+            while low < high:  # the later it begins, the better it fits
+                middle = (low + high) // 2
+                rows = slice(self._rows(pieces[middle]).start, end)
+                tried, _ = self._met(self._part(rows), pieces[last - 1].vector)
+                if tried.unexplained <= _MUCH:
+                    high, met = middle, tried
+                else:
+                    low = middle + 1
+            if met:
+                return replace(met, largest=pieces[0].amplitude)
+        return part
+
+    def _words(self, part: Part) -> str:
+        """What a part is in a sentence: its frequency and damping, and at which amplitude."""
+        damping = max(part.vector[self._dampings], default=0.0)
+        return f"{self.frequency_of(part.vector):.4g} Hz and {damping:.2g} at {part.amplitude:.3g}"
+
     def _grown(self, rows: slice, best: Fit, earliest: int) -> slice:
         """The rows with those before that the same swing meets, without those it does not."""
         size = max(2, round(0.25 / (self.frequency * self.recording.step)))
@@ -231,10 +393,14 @@ class PartFitter:
         noise = float(noise_of(piece.angle)[0])
         return float(np.hypot(*share[:2])) > max(8 * noise / len(piece.time) ** 0.5, noise / 2)
 
+    def _fit(self, model: Model, part: Part, start: Array) -> Fit:
+        ends = bounds_of(self.plant, self.names, start, part.end - part.begin)
+        return fit(model, start, *ends, self.frequency)
+
     def _met(self, part: Part, start: Array) -> tuple[Part, Fit]:
         """A fit of a part as it says, and the part with what that says."""
-        low, high = bounds_of(self.plant, self.names, start)
-        best = fit(self.model(part), start, low, high, self.frequency)
+        low, high = bounds_of(self.plant, self.names, start, part.end - part.begin)
+        best = self._fit(self.model(part), part, start)
         piece, model = self._piece(part), best.model
         time = model.time[model.kept]
         size = np.maximum(np.sqrt((best.swinging**2).mean(axis=0)), 1e-300)

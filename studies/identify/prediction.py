@@ -12,6 +12,7 @@ from quietarm.ocp.checks import takes
 from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import find_frequencies
 from quietarm.studies.identify.machine import Part, is_modal, values_of
+from quietarm.studies.identify.mending import without_glitches
 from quietarm.studies.identify.parts import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.words import say
@@ -62,6 +63,7 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
     """
     names = [name for name in plant.measured if is_modal(plant, name)]
     p, found = values_of(plant, names), list[Prediction]()
+    recordings, _ = without_glitches(recordings)
     for one, frequency in zip(recordings, find_frequencies(recordings)):
         fitter = PartFitter(plant, names, one, frequency)
         parts, why = fitter.ring_downs()

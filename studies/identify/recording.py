@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.studies.identify.stamps import mended
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
@@ -27,7 +29,8 @@ class Recording:
     Parameters
     ----------
     time : array, shape (rows,)
-        When [s], increasing.
+        When [s], increasing. Of rows with the same time the first is read; stamps that are rounded
+        are those of an even rate.
     angle : array, shape (rows,), optional
         Of the joint [rad]; without it the joint is held.
     tip : array, shape (rows,) or (rows, tips), optional
@@ -39,6 +42,8 @@ class Recording:
         Of the joint [N m].
     name : str, optional
         What messages call it.
+    mended : mapping, optional
+        What was mended in the times, a name of `words.toml` and its figures.
 
     Raises
     ------
@@ -53,6 +58,7 @@ class Recording:
     acceleration: Array | None = None
     torque: Array | None = None
     name: str = "the recording"
+    mended: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         given = {name: np.asarray(values, float) for name, values in self._arrays.items()}
@@ -66,8 +72,10 @@ class Recording:
         kept = np.count_nonzero(whole)
         if not LEAST_ROWS <= kept <= _MOST_ROWS:
             self._refuse("rows", rows=kept, least=LEAST_ROWS, most=_MOST_ROWS)
-        for name, values in given.items():
-            object.__setattr__(self, name, values[whole])
+        whole_rows, changes = mended({name: values[whole] for name, values in given.items()})
+        object.__setattr__(self, "mended", {**self.mended, **changes})
+        for name, values in whole_rows.items():
+            object.__setattr__(self, name, values)
         late = int(np.argmin(np.diff(self.time)))
         if self.time[late + 1] <= self.time[late]:
             self._refuse("time", row=late + 1)
@@ -82,6 +90,11 @@ class Recording:
         """What is given, by name."""
         names = ("time", "angle", "tip", "acceleration", "torque")
         return {name: v for name in names if (v := getattr(self, name)) is not None}
+
+    @property
+    def measured(self) -> dict[str, Array]:
+        """All that is given but the time, by name."""
+        return {name: values for name, values in self._arrays.items() if name != "time"}
 
     @property
     def signals(self) -> dict[str, Array]:
@@ -127,10 +140,10 @@ def noise_of(values: Array) -> Array:
     differences = np.diff(values, _ORDER, axis=0)
     robust = 1.4826 * np.median(np.abs(differences), axis=0)
     deviation = np.where(robust > 0, robust, differences.std(axis=0)) / 70**0.5
-    return np.maximum(deviation, [_resolution(column) / 12**0.5 for column in values.T])
+    return np.maximum(deviation, [resolution_of(column) / 12**0.5 for column in values.T])
 
 
-def _resolution(column: Array) -> float:
+def resolution_of(column: Array) -> float:
     """The least step of a column, where it has many values twice; else 0."""
     levels = np.unique(column)
     return float(np.diff(levels).min()) if 1 < len(levels) < len(column) / 4 else 0.0

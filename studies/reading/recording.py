@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from quietarm.ocp import FileFormatError
@@ -17,14 +18,17 @@ def read_recording(
     units: Mapping[str, str],
     name: str,
     scales: Mapping[str, float] | None = None,
+    rate: float | None = None,
 ) -> Recording:
     """Read a recording from the columns of a file, named by quantity of `UNITS`.
 
-    The time's column is found where it is not named. Units are those where the columns' names do
-    not end in one; a scale is what one count is in SI units.
+    The time's column is found where it is not named; with a rate [Hz] none is read. Units take the
+    place of those in the columns' names; a scale is what one count is in SI units.
     """
     table = read_table(path)
-    time = columns.get("time") or [table.first("time", "name it by --time")]
+    time = columns.get("time") or []
+    if rate is None and not time:
+        time = [table.first("time", "name it by --time, or give the samples per second by --rate")]
     named, of_scale = {**columns, "time": time}, scales or {}
     used = [table.find(one).name for names in named.values() for one in names]
     for one in used:
@@ -42,13 +46,17 @@ def read_recording(
         for quantity, names in named.items()
         if names
     }  # fmt: skip
+    if rate is not None:
+        longest = max(len(values) for values in signals.values())
+        signals["time"] = np.arange(longest)[:, None] / rate
     rows = {len(values) for values in signals.values()}
     if len(rows) > 1:
         raise FileFormatError(
             f"{path}: its columns have {' and '.join(map(str, sorted(rows)))} rows"
         )
     flat = {one: signals[one][:, 0] for one in ("time", "angle", "torque") if one in signals}
+    arrays: dict[str, Any] = {**signals, **flat}
     try:
-        return Recording(**{**signals, **flat}, name=name)
+        return Recording(**arrays, name=name)
     except ValueError as error:
         raise FileFormatError(str(error)) from None

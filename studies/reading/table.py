@@ -23,8 +23,14 @@ ARRAYS = (".npy", ".npz", ".mat")
 TABLES = (".csv", ".txt", ".dat", *ARRAYS)
 """Endings by which a table is told from numbers."""
 _SHOWN = 12
+_LEAST_STEPS = 8
+_EVEN = 0.95
+"""Share of the steps that are the usual one where a column rises evenly."""
+_LABELS = ("label", "name", "signalname")
+_SAMPLES = ("values", "data")
+"""Fields of a structure that is one signal, as Simulink and recorders write it."""
 _CALLED = {
-    "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds"},
+    "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds", "millis", "micros"},
     "angle": {"angle", "theta", "position", "q"},
     "position": {"position", "x", "s", "q"},
 }
@@ -52,9 +58,17 @@ class Table:
     columns: tuple[Column, ...]
 
     def find(self, name: str) -> Column:
-        """A column by its heading, or by its number from 0; FileFormatError where there is none."""
-        for same in (str, lambda text: text.strip().lower(), lambda text: split_name(text)[0]):
-            found = [k for k, one in enumerate(self.columns) if same(one.name) == same(name)]
+        """A column by its heading, or by its number from 0; FileFormatError where there is none.
+
+        Of a structure the last field serves, where no other column ends in it.
+        """
+        for of_column, of_name in (
+            (str, str), (_plain, _plain), (_without_unit, _plain), (_without_unit, _without_unit),
+            (_last_field, _last_field),
+        ):  # fmt: skip
+            found = [
+                k for k, one in enumerate(self.columns) if of_column(one.name) == of_name(name)
+            ]
             if len(found) > 1:
                 raise FileFormatError(
                     f"{self.path}: {len(found)} columns are called {name!r}; give one's number, "
@@ -77,13 +91,23 @@ class Table:
         FileFormatError with the remedy where none is.
         """
         for one in self.columns:
-            names = (one.name, split_name(one.name)[0])
-            if {name.strip().lower() for name in names} & _CALLED[quantity]:
+            names = {_plain(one.name), _without_unit(one.name), _last_field(one.name)}
+            if names & _CALLED[quantity]:
                 return one.name
+        if quantity == "time" and self.columns and self._first_is_time():
+            return self.columns[0].name
         names = ", ".join(one.name for one in self.columns[:_SHOWN])
         raise FileFormatError(
             f"{self.path} has no column called {quantity}; {remedy} (its columns, from 0: {names})"
         )
+
+    def _first_is_time(self) -> bool:
+        """Whether the first column rises evenly, and does not only count the rows."""
+        first = self.columns[0]
+        if len(self.columns) < 2 or not rises_evenly(first.values):
+            return False
+        counts = (np.diff(first.values[np.isfinite(first.values)]) == 1).all()
+        return not counts or normal(first.written) in UNITS["time"]
 
     def in_si(
         self,
@@ -96,18 +120,13 @@ class Table:
     ) -> Array:
         """A column in SI units: by a scale, a unit, that of its name, or as it is.
 
-        FileFormatError where its name ends in what may be a unit or not; it names the options of a
-        command that has some for it.
+        A unit that is given holds whatever the name says. FileFormatError where its name ends in
+        what may be a unit or not; it names the options of a command that has some for it.
         """
         column, known = self.find(name), UNITS[quantity]
         if scale is not None:
             return column.values * scale
         written = normal(column.written)
-        if unit and written in known and known[normal(unit)] != known[written]:
-            raise FileFormatError(
-                f"{self.path}: column {column.name} is in {column.written} by its name and in "
-                f"{unit} as given; leave the unit out, or rename the column"
-            )
         if written and not unit and written not in known:
             usual = next(iter(known))
             how = f"name the column {quantity}_{usual}"
@@ -117,6 +136,33 @@ class Table:
                 f"{self.path}: is {column.written!r} of column {column.name} a unit? {how}"
             )
         return column.values * known.get(normal(unit) or written, 1.0)
+
+
+def rises_evenly(values: Array) -> bool:
+    """Whether numbers rise as the times of samples do: all by the usual step, but where some lack.
+
+    Stamps may be rounded: to so much that several are the same.
+    """
+    steps = np.diff(values[np.isfinite(values)])
+    rising = steps[steps > 0]
+    if len(steps) < _LEAST_STEPS or (steps < 0).any() or len(rising) < len(steps) / 20:
+        return False
+    usual = max(float(np.median(steps)), float(np.ptp(values)) / len(steps))
+    near = np.abs(steps - usual) <= max(0.25 * usual, 1.01 * float(rising.min()))
+    return bool(near.mean() >= _EVEN)
+
+
+def _plain(name: str) -> str:
+    return name.strip().lower()
+
+
+def _without_unit(name: str) -> str:
+    return _plain(split_name(name)[0])
+
+
+def _last_field(name: str) -> str:
+    """Of a structure's column the name of the field, without its unit."""
+    return _without_unit(name.rpartition(".")[2])
 
 
 @contextmanager
@@ -170,18 +216,35 @@ def _arrays(kind: str, content: bytes, strict: bool) -> dict[str, Any]:
 
 
 def _of_variables(values: Mapping[str, Any], strict: bool, front: str = "") -> list[Column]:
-    """Vectors by name, a matrix by name and column (``X:2``), a structure by field (``a.b``)."""
+    """Vectors by name, a matrix by name and column (``X:2``), a structure by field (``a.b``).
+
+    Of several structures with a number, a signal by its label.
+    """
     found: list[Column] = []
     for name, value in values.items():
         array = np.asarray(value)
         if isinstance(value, Mapping):
-            found += _of_variables(value, strict, f"{front}{name}.")
+            found += _of_structure(value, strict, front, name)
+        elif array.dtype == object and all(isinstance(one, Mapping) for one in array.flat):
+            for k, one in enumerate(array.flat, 1):
+                found += _of_structure(one, strict, front, f"{name}:{k}")
         elif array.dtype.names:
             fields = {field: np.ravel(array[field]) for field in array.dtype.names}
             found += _of_variables(fields, strict, front)
         else:
             found += _of_array(front + name, array if strict else np.squeeze(array), strict)
     return found
+
+
+def _of_structure(fields: Mapping[str, Any], strict: bool, front: str, name: str) -> list[Column]:
+    """A signal's samples by its label, or all fields of any other structure."""
+    by_name = {field.lower(): value for field, value in fields.items()}
+    labels = [by_name[field] for field in _LABELS if isinstance(by_name.get(field), str)]
+    samples = next((by_name[field] for field in _SAMPLES if field in by_name), None)
+    if samples is None or not any(field in by_name for field in _LABELS):
+        return _of_variables(fields, strict, f"{front}{name}.")
+    label = next((text for one in labels if (text := one.strip("<> "))), name)
+    return _of_array(f"{front}{label}", np.squeeze(np.asarray(samples)), strict)
 
 
 def _of_array(name: str, values: NDArray[Any], strict: bool) -> list[Column]:

@@ -7,12 +7,14 @@ import io
 import re
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from itertools import groupby
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError
+from quietarm.studies.reading.cells import is_clock, is_number, numbers_of, seconds_of
 from quietarm.studies.reading.units import is_unit
 
 Array = NDArray[np.float64]
@@ -29,7 +31,8 @@ _HEAD = 2000
 def read_text(content: bytes, strict: bool) -> list[tuple[str, str, Array]]:
     """Names, units and numbers of a text's columns; separator, decimal mark and heading are found.
 
-    A `strict` table has nothing but its heading above the numbers, and may be one column.
+    A column of clock times is in seconds since its first row. A `strict` table has nothing but its
+    heading above the numbers.
     """
     lines = [line.strip(" ") for line in _decode(content).splitlines()]
     filled = [k for k, line in enumerate(lines) if line.strip()]
@@ -38,7 +41,9 @@ def read_text(content: bytes, strict: bool) -> list[tuple[str, str, Array]]:
     data = [k for k in filled if lines[k].lstrip()[0] not in "#%"]
     head = [lines[k] for k in data[:_HEAD]]
     marks = [one for one in _SEPARATORS if one is None or any(one in line for line in head)]
-    begins = {one: found for one in marks if (found := _begin(head, one, 1 if strict else 2))}
+    begins = dict[str | None, tuple[int, int, int]]()
+    for least in (1,) if strict else (2, 1):  # one column where there is nothing wider
+        begins = begins or {one: found for one in marks if (found := _begin(head, one, least))}
     if not begins:
         raise FileFormatError(
             f"no rows of numbers in it (its first line: {lines[filled[0]][:60]!r}); give columns "
@@ -46,18 +51,20 @@ def read_text(content: bytes, strict: bool) -> list[tuple[str, str, Array]]:
         )
     separator = min(begins, key=lambda one: begins[one][:2])
     above, data = data[: begins[separator][2]], data[begins[separator][2] :]
-    width = len(_cells(lines[data[0]], separator))
+    first_row = _cells(lines[data[0]], separator)
+    width = len(first_row)
     before = [lines[k].lstrip(_MARKS) for k in filled if k < data[0]]
-    heading = _heading(before, separator, width)
+    heading = _heading(before, separator, first_row, strict)
     if strict and above and not heading:
         raise FileFormatError(
             f"line {data[0] + 1} has {width} columns, the first "
             f"{len(_cells(lines[above[0]], separator))}; give as many in every line"
         )
     names, units = heading or ([str(k) for k in range(width)], [""] * width)
+    columns = _numbers([(k, lines[k]) for k in data], separator, len(names))
     return [
-        (names[k].strip(), units[k], column)
-        for k, column in _numbers([(k, lines[k]) for k in data], separator, width).items()
+        (names[k].strip(), unit or units[k], column)
+        for k, (unit, column) in columns.items()
         if names[k].strip() or np.isfinite(column).any()
     ]
 
@@ -78,21 +85,13 @@ def _cells(line: str, separator: str | None) -> list[str]:
     return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
 
 
-def _is_number(cell: str, separator: str | None) -> bool:
-    try:
-        float(cell if separator == "," else cell.replace(",", "."))
-    except ValueError:
-        return False
-    return True
-
-
 def _begin(lines: list[str], separator: str | None, least: int) -> tuple[int, int, int] | None:
     """Words and numbers, negative, in the first row of numbers, and which row that is.
 
     It is the first of several that have their words in the same places.
     """
     rows = [_cells(line, separator) for line in lines]
-    words = [[bool(cell) and not _is_number(cell, separator) for cell in row] for row in rows]
+    words = [[bool(cell) and not _is_value(cell) for cell in row] for row in rows]
     begin = 0
     for where, alike in groupby(words):
         count = len(list(alike))
@@ -103,32 +102,57 @@ def _begin(lines: list[str], separator: str | None, least: int) -> tuple[int, in
     return None
 
 
+def _is_value(cell: str) -> bool:
+    return is_number(cell) or is_clock(cell)
+
+
 def _heading(
-    before: list[str], separator: str | None, width: int
+    before: list[str], separator: str | None, first_row: list[str], strict: bool
 ) -> tuple[list[str], list[str]] | None:
-    """Names and units of the columns, of the last rows above them that have as many cells."""
-    rows = [row for line in before if (row := _named(line, separator, width))]
+    """Names and units of the columns, of the last rows above them that have as many cells.
+
+    The row just above the numbers may name one more, whose cells are empty: a comment. Not so in a
+    `strict` table.
+    """
+    rows = [row for line in before if (row := _named(line, separator, first_row))]
+    if before and separator is not None and not strict:
+        nearest_row = _cells(before[-1], separator)
+        if len(nearest_row) == len(first_row) + 1 and all(nearest_row) and _has_words(nearest_row):
+            return nearest_row, [""] * len(nearest_row)
     if len(rows) > 1 and all(is_unit(cell) for cell in rows[-1] if cell):
         return rows[-2], [cell.strip("()[]{} ") for cell in rows[-1]]
-    return (rows[-1], [""] * width) if rows else None
+    return (rows[-1], [""] * len(first_row)) if rows else None
 
 
-def _named(line: str, separator: str | None, width: int) -> list[str] | None:
-    """The cells of a line that may name the columns: as many, and not all of them numbers."""
+def _named(line: str, separator: str | None, first_row: list[str]) -> list[str] | None:
+    """The cells of a line that may name the columns: as many, and not all of them numbers.
+
+    One may be missing: that of rows with a mark at their end, or of rows that are numbered.
+    """
+    width = len(first_row)
     splits = [_cells(line, separator)]
     if separator is None:
         splits.append(re.split(r"\s{2,}|\t", line.strip()))
     for cells in splits:
-        named = [*cells, ""] if len(cells) + 1 == width else cells  # rows with a mark at their end
-        if len(named) == width and not all(_is_number(cell, separator) for cell in named if cell):
+        named = cells
+        if len(cells) + 1 == width:
+            named = ["", *cells] if first_row[-1] else [*cells, ""]
+        if len(named) == width and _has_words(named):
             return named
     return None
 
 
+def _has_words(cells: list[str]) -> bool:
+    return not all(_is_value(cell) for cell in cells if cell)
+
+
 def _numbers(
     rows: Sequence[tuple[int, str]], separator: str | None, width: int
-) -> dict[int, Array]:
-    """The columns' numbers, not a number where a cell is blank; without columns of words."""
+) -> dict[int, tuple[str, Array]]:
+    """The columns' units and numbers, not a number where a cell is blank; without those of words.
+
+    A unit is known of clock times alone: seconds.
+    """
     import pandas as pd  # not at the top: it takes half a second to load
 
     for k, line in rows:
@@ -137,18 +161,25 @@ def _numbers(
                 f"line {k + 1} has {count + 1} columns, the first {width}; give as many in every "
                 "line"
             )
-    cells = pd.read_csv(
-        io.StringIO("\n".join(line for _, line in rows)), sep=separator or r"\s+", header=None,
-        names=range(width), index_col=False, dtype=str, skipinitialspace=True,
+    text = "\n".join(line for _, line in rows)
+    read: Any = partial(
+        pd.read_csv, sep=separator or r"\s+", header=None, names=range(width), index_col=False,
+        skipinitialspace=True,
     )  # fmt: skip
-    plain = cells if separator == "," else cells.apply(lambda text: text.str.replace(",", "."))
-    numbers: Any = plain.apply(pd.to_numeric, errors="coerce")
-    wrong = cells.notna() & numbers.isna()
-    wrong = wrong.loc[:, wrong.mean() <= 0.5]
+    with suppress(ValueError):  # plain numbers: that is fast
+        plain = read(io.StringIO(text), dtype=float)
+        return {k: ("", plain[k].to_numpy(float)) for k in plain}
+    cells: Any = read(io.StringIO(text), dtype=str)
+    filled = cells.notna()
+    clocks = [k for k in cells if filled[k].any() and is_clock(cells[k][filled[k].idxmax()])]
+    numbers: Any = numbers_of(cells.drop(columns=clocks))
+    numbers = numbers.join(cells[clocks].apply(seconds_of))[list(cells)]
+    wrong = filled & numbers.isna()
+    wrong = wrong.loc[:, wrong.sum() <= 0.5 * filled.sum()]
     if wrong.any(axis=None):
         row, column = np.argwhere(wrong.to_numpy())[0]
         raise FileFormatError(
             f"line {rows[row][0] + 1}: {cells[wrong.columns[column]].iloc[row]!r} is no number; "
             "mend it, or leave the cell empty"
         )
-    return {k: numbers[k].to_numpy(float) for k in wrong.columns}
+    return {k: ("s" if k in clocks else "", numbers[k].to_numpy(float)) for k in wrong.columns}

@@ -42,6 +42,7 @@ _LIKE_UNITS = {unit for table in UNITS.values() for unit in table if unit != "in
 )
 """Endings that look like a unit, of whatever quantity."""
 _IN_BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*([^()\[\]{}<>]+?)\s*[)\]}>]")
+_INDEX = re.compile(r"\d+(?:\s*[,:;]\s*\d+)*")
 _AFTER = re.compile(r"(.*?[^\s_/,:;-])\s*(?:[_/,:; -]| in )\s*([^\s_,:;-]+(?:\s*[*·]\s*m)?)")
 
 
@@ -57,10 +58,11 @@ def normal(unit: str) -> str:
 def split_name(name: str) -> tuple[str, str]:
     """The name and the unit that a column's heading has: ``Time (ms)``, ``tip_mm``, ``theta/deg``.
 
-    The unit is empty where none is written. In brackets it is whatever stands there.
+    The unit is empty where none is written. In brackets it is whatever stands there but an index,
+    which belongs to the name: ``tau[3]``.
     """
     if match := _IN_BRACKETS.fullmatch(name.strip()):
-        return match[1], match[2]
+        return (name.strip(), "") if _INDEX.fullmatch(match[2]) else (match[1], match[2])
     for ending in ("m/s^2", "m/s2", "m/s²", "m/s**2"):  # these have a slash of their own
         for front in ("m", ""):
             if name.lower().endswith(f"{front}{ending}"):
@@ -76,4 +78,6 @@ def is_unit(text: str) -> bool:
     """Whether a cell is a unit and nothing else, as in a row of units below the names."""
     text = text.strip()
     bracketed = text[:1] in "([{" and text[-1:] in ")]}" and len(text) > 1
+    if bracketed and _INDEX.fullmatch(text[1:-1].strip()):
+        return False
     return bracketed or normal(text) in _LIKE_UNITS

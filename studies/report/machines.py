@@ -105,8 +105,11 @@ def _part(plant: Plant, part: Part) -> str:
     misfit = f"misfit {part.misfit:.1%}, noise {part.noise:.1%}"
     saturated = f"; {part.saturated} saturated samples excluded" if part.saturated else ""
     drift = "; a slow drift excluded" if part.drifts else ""
+    small = ""
+    if part.largest:
+        small = f"; fitted from an amplitude of {part.amplitude:.3g} on, of {part.largest:.3g}"
     span = span_words(part.begin, part.end)
-    return f"{span}: {values}, {misfit}{_HUB[part.hub]}{saturated}{drift}"
+    return f"{span}: {values}, {misfit}{_HUB[part.hub]}{saturated}{drift}{small}"
 
 
 def _short(plant: Plant, name: str, value: float) -> str:

@@ -31,7 +31,7 @@ from rich.console import Console
     SEED, METHOD_SETTING,
     option("--import", "imported", multiple=True, type=INPUT,
            help="A run of another library, by a recorded function, or a folder of such runs."),
-    option("--output", type=Parsed("folder", check_folder), required=True,
+    option("--output", "-o", type=Parsed("folder", check_folder), required=True,
            help="Folder for runs and report; runs that are there are kept."),
     PART, WORKERS, SCHEDULER,
 )  # fmt: skip

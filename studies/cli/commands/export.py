@@ -41,7 +41,7 @@ def _output(text: str) -> Path:
 
 @command(
     click.Argument(["plans"], nargs=-1, type=INPUT, metavar="PLAN ..."),
-    option("--output", type=Parsed("file", _output), required=True,
+    option("--output", "-o", type=Parsed("file", _output), required=True,
            help="The file, whose ending is the format; move.c has move.h beside it. - is standard "
            "output."),
     option("--format", "form", type=Named("format", FORMATS),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import chain
+
 import click
 from quietarm.studies import figures
 from quietarm.studies import identify as identification
@@ -9,7 +11,13 @@ from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_opt
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, busy, command, option
 from quietarm.studies.cli.plants import Kind, parse_plant
-from quietarm.studies.cli.quantities import once, parse_interval, parse_scale, parse_units
+from quietarm.studies.cli.quantities import (
+    once,
+    parse_interval,
+    parse_rate,
+    parse_scales,
+    parse_units,
+)
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from quietarm.studies.reading.recording import read_recording
 from quietarm.studies.report.machines import machine_notes, machine_rows, prediction_rows
@@ -21,15 +29,18 @@ _RINGS = ("tip", "acceleration", "torque")
 @command(
     click.Argument(["files"], type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT"),
     SET,
-    option("--time", help="Column of the time.  [default: the one that is called so]"),
+    option("--time", help="Column of the time.  [default: the one that is called so, or the "
+           "first if it rises evenly]"),
+    option("--rate", type=Parsed("rate", parse_rate), help="Samples per second, as 1kHz, of files "
+           "without a column of the time."),
     option("--angle", help="Column of the joint's angle; without it the joint was held."),
     option("--tip", multiple=True, help="Column of a tip's displacement."),
     option("--acceleration", multiple=True, help="Column of an accelerometer at a tip."),
     option("--torque", help="Column of the joint's torque."),
-    option("--units", type=Parsed("units", parse_units), help="Of columns whose names have none, "
-           "as time:ms,angle:deg,tip:mm,acceleration:g. [default: SI]"),
-    option("--scale", "scales", type=Parsed("scale", parse_scale), multiple=True,
-           help="What a count is in SI units, as angle=2pi/4096."),
+    option("--units", type=Parsed("units", parse_units), help="As time:ms,angle:deg,tip:mm,"
+           "acceleration:g. [default: those of the columns' names, or SI]"),
+    option("--scale", "scales", type=Parsed("scale", parse_scales), multiple=True,
+           help="What a count is in SI units, as angle=2pi/4096,tip=1e-5."),
     option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
            help="Begin and end of a ring-down [s], as 3.2:7.3. [default: they are found]"),
     option("--free", type=NAMES, help="The parameters that are sought, as omega,zeta. [default: "
@@ -62,10 +73,15 @@ def identify(given: Given) -> None:
     paths = given.files if given.check else given.files[:-1]
     if not paths:
         raise click.UsageError("give a RECORDING before PLANT")
-    known, scales = given.read_plant(kind), once(given.scales, "--scale ")
+    if given.rate and given.time:
+        raise click.UsageError("--rate is for files without a column of the time; leave --time out")
+    known = given.read_plant(kind)
+    scales = once(chain.from_iterable(given.scales), "--scale ")
     short = len({path.name for path in paths}) == len(paths)
     read = [
-        read_recording(path, columns, given.units or {}, path.name if short else str(path), scales)
+        read_recording(
+            path, columns, given.units or {}, path.name if short else str(path), scales, given.rate
+        )
         for path in paths
     ]
     if given.check:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.signal import StateSpace, lsim
 
 import quietarm as qa
@@ -315,3 +316,174 @@ def test_what_cannot_be_a_recording_is_refused(make, said):
 def test_noise_alone_is_no_swing():
     with pytest.raises(ValueError, match=r"no swing|no ring-down|no free decay"):
         beam(qa.Recording(T, tip=np.random.default_rng(0).standard_normal(len(T))))
+
+
+def released(t, hertz, zeta, size=11.0, start=0.5):
+    """Held, and released from rest at its start: the closed form of a free decay."""
+    omega = math.tau * hertz
+    s, damped = np.maximum(t - start, 0), omega * math.sqrt(1 - zeta**2)
+    swing = np.cos(damped * s) + zeta * omega / damped * np.sin(damped * s)
+    return size * np.exp(-zeta * omega * s) * swing
+
+
+def pendulum(hertz, zeta, friction, angle, seconds, step=0.004):
+    """A pendulum released from an angle, with friction as a share of gravity; by DOP853."""
+    omega = math.tau * hertz
+
+    def rates(_, y):
+        dry = friction * math.tanh(1e3 * y[1] / omega)
+        return [y[1], -(omega**2) * (math.sin(y[0]) + dry) - 2 * zeta * omega * y[1]]
+
+    t = np.arange(0, seconds, step)
+    motion = solve_ivp(rates, (0, seconds), [angle, 0], "DOP853", t, rtol=1e-8, atol=1e-9)
+    return qa.Recording(t, tip=motion.y[0], name="pendulum")
+
+
+@pytest.mark.parametrize(
+    ("hertz", "zeta", "gap"), [(2.3, 0.016, (1.9, 2.55)), (6.0, 0.008, (1, 2))]
+)
+def test_one_push_with_a_gap_is_one_ring_down(hertz, zeta, gap):
+    t = np.arange(0, 8, 0.003)
+    t = t[(t < gap[0]) | (t > gap[1])]
+    noise = np.random.default_rng(0).normal(0, 0.08, len(t))
+    found = beam(qa.Recording(t, tip=released(t, hertz, zeta) + noise))
+    assert len(found.parts) == 1
+    assert found.plant.omega == pytest.approx(math.tau * hertz, rel=1e-3)
+    assert found.plant.zeta == pytest.approx(zeta, rel=0.03)
+    with pytest.raises(ValueError, match="one ring-down does not tell"):
+        _ = found.errors
+
+
+@pytest.mark.parametrize(
+    ("count", "low", "high"), [(1, 480, 480), (1, 9e4, 9e4), (1, -999, -999), (18, -60, 60)]
+)
+def test_glitches_are_left_out_and_counted(count, low, high):
+    random = np.random.default_rng(3)
+    t = np.arange(0, 8, 0.002)
+    tip = released(t, 2.3, 0.016) + random.normal(0, 0.08, len(t))
+    rows = 100 * random.choice(40, count, replace=False) + 7
+    tip[rows] = random.uniform(low, high, count)
+    found = beam(qa.Recording(t, tip=tip))
+    assert len(found.parts) == 1
+    assert found.plant.omega == pytest.approx(math.tau * 2.3, rel=1e-3)
+    assert found.plant.zeta == pytest.approx(0.016, rel=0.03)
+    (word,) = found.warnings
+    assert f"{count} sample" in word
+    assert "left out, far from all beside" in word
+
+
+def test_steps_peaks_and_coarse_sensors_are_no_glitches():
+    t = np.arange(0, 12, 0.01)
+    tip = decay(t, 2.1, amplitude=9, start=1.0) * (t < 6) + decay(t, 2.1, amplitude=8, start=6.0)
+    for step in (0.5, 1e-3):
+        found = beam(qa.Recording(t, tip=np.round(tip / step) * step))
+        assert found.warnings == ()
+        assert len(found.parts) == 2
+
+
+@pytest.mark.parametrize("rounds", [np.floor, np.round, np.ceil])
+@pytest.mark.parametrize("step", [0.0008, 0.0033])
+def test_rounded_stamps_are_those_of_an_even_rate(rounds, step):
+    t = np.arange(0, 5, step)
+    tip = noisy(released(t, 2.3, 0.016), 0.01)
+    found = beam(qa.Recording(rounds(1e3 * t) / 1e3, tip=tip))
+    assert found.plant.omega == pytest.approx(math.tau * 2.3, rel=1e-3)
+    assert "rounded to 1 ms; an even rate is taken" in found.warnings[0]
+
+
+def test_a_row_that_stands_twice_is_read_once():
+    t = np.arange(0, 5, 0.002)
+    tip = noisy(released(t, 2.3, 0.016), 0.01)
+    rows = np.insert(np.arange(len(t)), [900, 1700], [900, 1700])
+    twice = beam(qa.Recording(t[rows], tip=tip[rows]))
+    assert twice.plant == beam(qa.Recording(t, tip=tip)).plant
+    assert "2 rows have the time of the row before" in twice.warnings[0]
+
+
+@pytest.mark.parametrize(("hertz", "zeta"), [(7.0, 0.23), (2.0, 0.12), (20.0, 0.35)])
+def test_a_swing_that_is_over_after_a_period_is_identified(hertz, zeta):
+    t = np.arange(0, 15 / hertz, 0.005 / hertz)
+    tip = 3 + released(t, hertz, zeta, 9, 2 / hertz)
+    found = qa.identify([qa.Recording(t, tip=noisy(tip, 0.005))], qa.LinearAxis())
+    assert found.plant.omega1 == pytest.approx(math.tau * hertz, rel=5e-3)
+    assert found.plant.zeta1 == pytest.approx(zeta, rel=0.03)
+
+
+def test_a_steady_swing_is_no_well_damped_one():
+    t = np.arange(0, 10, 0.004)
+    with pytest.raises(ValueError, match="no ring-down"):
+        beam(qa.Recording(t, tip=noisy(decay(t, zeta=-0.001), 0.01)))
+
+
+@pytest.mark.parametrize(
+    ("friction", "angle", "share"), [(0.0, 1.2, 0.911), (0.001, 1.0, 0.942), (0.0, 0.6, 0.978)]
+)
+def test_the_interval_covers_large_and_small_amplitudes(friction, angle, share):
+    """A pendulum's period is 1 + a^2 / 16 + 11 a^4 / 3072 of that at small amplitudes, about."""
+    found = beam(pendulum(1.0, 0.003, friction, angle, 80))
+    (omega, zeta), (part,) = found.estimates, found.parts
+    assert omega.low < math.tau * (share + 0.003)
+    assert omega.high > math.tau * 0.995
+    assert math.tau * 0.97 < omega.value < math.tau
+    assert zeta.low < 0.003 + friction < zeta.high + 0.003
+    assert part.cause == "amplitude"
+    assert "the intervals hold for this swing, not for a larger one" in part.warning.replace(
+        "The", "the"
+    )
+    assert part.largest == pytest.approx(angle, rel=0.1)
+    assert part.amplitude < 0.8 * angle
+
+
+def test_a_frequency_that_does_not_change_has_the_interval_of_its_fit():
+    found = beam(rung(seconds=12.0))
+    assert found.parts[0].spread == {}
+    assert found.estimates[0].error < 1e-3
+
+
+def test_parts_are_judged_by_themselves_however_many_there_are():
+    t = np.arange(0, 8, 0.004)
+    driven = qa.Recording(t, tip=noisy(decay(t, zeta=-0.01), 0.01), name="driven")
+    two = noisy(decay(t) + decay(t, 3.9, amplitude=14), 0.01)
+    torn = qa.Recording(t, tip=two * np.where(t % 1.7 < 1, 1, -0.4), name="torn")
+    by_hand = [(0.5, 7.0)]
+    for doubtful, word in ((driven, "a damping of -0.01"), (torn, "a misfit of")):
+        with pytest.raises(ValueError, match=f"{doubtful.name}: .*{word}"):
+            beam(doubtful, parts=by_hand)
+        good = [rung(seed=seed, seconds=8.0) for seed in range(3)]
+        found = beam(*good, doubtful, parts=by_hand)
+        assert found.left_out.keys() == {doubtful.name}
+        assert word in found.left_out[doubtful.name]
+        assert found.estimates == beam(*good, parts=by_hand).estimates
+
+
+@pytest.mark.parametrize("counts", [6, 12, 40])
+def test_the_peaks_of_an_encoder_are_not_saturated(counts):
+    t = np.arange(0, 8, 0.002)
+    (part,) = beam(qa.Recording(t, tip=np.round(decay(t, 2.0, 0.006, counts)))).parts
+    assert part.saturated == 0
+
+
+@pytest.mark.parametrize("acceleration", [False, True])
+@pytest.mark.parametrize("plant", [qa.FlexibleBeam(mode_count=2), qa.DualLinkManipulator()])
+def test_filters_of_the_acceleration_are_the_collocation_of_the_plans(plant, acceleration):
+    from quietarm.studies.identify.response import Driven, Forced, Response, smooth
+
+    names = [name for name in plant.measured if name.startswith(("omega", "zeta"))]
+    kinds = ["acceleration" if acceleration else "tip"] * plant.tips
+    response = Response(plant, names, kinds)
+    if not response.is_linear:
+        pytest.skip("its modes depend on the joint's angle")
+    p = 1.1 * np.array([getattr(plant, name) for name in names])
+    fastest = float(response.eigenvalues(p)[0].imag.max())
+    t = np.arange(0, 2, 0.2 / fastest)
+    t = t[(t < 0.7) | (t > 0.9)]  # a gap
+    angle = np.clip(t, 0, 1) - np.sin(math.tau * np.clip(t, 0, 1)) / math.tau
+    spline = smooth(qa.Recording(t, angle, tip=np.zeros_like(t)))
+    (marched, by_p), (filtered, slopes) = (
+        kind(p) for kind in (Driven(response, t, spline, fastest, True),
+                             Forced(response, t, spline, fastest))
+    )  # fmt: skip
+    size = np.abs(marched[..., 0]).max()
+    assert filtered[..., 0] == pytest.approx(marched[..., 0], abs=1e-5 * size)
+    for one, other in zip(by_p[..., 0], slopes[..., 0], strict=True):
+        assert other == pytest.approx(one, abs=1e-5 * np.abs(one).max())

@@ -1,6 +1,7 @@
 """`quietarm identify`, and machines in the place of plants."""
 
 import math
+from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
@@ -134,6 +135,86 @@ def test_one_column_for_two_signals_and_degrees_called_radians_are_told(push, ca
     line = "identify turned.csv flexible-beam --tip tip_mm --angle theta_rad --quiet"
     _, said, _ = call(line)
     assert "turns by 60 rad, more than two turns; is it in degrees?" in said
-    assert "rename the column" in refused(f"{line} --units angle:deg")
+    assert "is it in degrees?" not in call(f"{line} --units angle:deg")[1]
     (push / "turned.csv").write_text(f"time_s,theta_deg,tip_mm\n{columns}")
     assert "is it in degrees?" not in call(line.replace("theta_rad", "theta_deg"))[1]
+
+
+def clock(form, late=0.0):
+    """Times of day of the rows, from four minutes before a full hour on."""
+    day = datetime(2026, 3, 4, 23, 59, 58)
+    return [(day + timedelta(seconds=t + late)).strftime(form) for t in TIME]
+
+
+SINCE = 1e3 * TIME + 401233.0
+RECORDERS = {
+    "clock.csv": ("timestamp,tip_mm\n", "%s,%.3f\n", (clock("%Y-%m-%d %H:%M:%S.%f"), TIP), ""),
+    "day.txt": ("Clock\ttip_mm\n", "%s\t%.3f\n", (clock("%H:%M:%S.%f"), TIP), "--time Clock"),
+    "iso.csv": ("time;tip_mm\n", "%sZ;%.3f\n", (clock("%Y-%m-%dT%H:%M:%S.%f"), TIP), ""),
+    "noon.csv": ("time;tip_mm\n", "%s;%.3f\n", (clock("%m/%d/%Y %I:%M:%S.%f %p"), TIP), ""),
+    "commas.csv": ("time_ms;tip_um\n", "%s;%s\n",
+                   ([f"{1e3 * t:.1f}" for t in TIME], [f"{1e3 * w:,.1f}" for w in TIP]), ""),
+    "points.csv": ("time_ms;tip_um\n", "%s;%s\n",
+                   ([f"{1e3 * t:.1f}".replace(".", ",") for t in TIME],
+                    [f"{1e3 * w:,.2f}".translate({44: 46, 46: 44}) for w in TIP]), ""),
+    "spaces.csv": ("time_ms;tip_um\n", "%s;%s\n",
+                   ([f"{1e3 * t:.1f}" for t in TIME],
+                    [f"{1e3 * w:,.1f}".replace(",", "\u202f") for w in TIP]), ""),
+    "quoted.csv": ("time_ms,tip_um\n", '%s,"%s"\n',
+                   ([f"{1e3 * t:.1f}" for t in TIME], [f"{1e3 * w:,.1f}" for w in TIP]), ""),
+    "labview.lvm": ("LabVIEW Measurement\t\nSamples\t1200\t\n***End_of_Header***\t\t\n"
+                    "X_Value\ttip_mm\tComment\n", "%.3f\t%.4f\n", (TIME, TIP), ""),
+    "first.csv": ("sample,tip_mm\n", "%.3f,%.4f\n", (TIME, TIP), ""),
+    "bare.txt": ("", "%.3f %.4f\n", (TIME, TIP), "--tip 1 --units tip:mm"),
+    "since.txt": ("%%Time (s)\ttip_mm(m)\ttau[3]\n", "%.3f\t%.5f\t%.1f\n", (SINCE, TIP / 1e3, TIP),
+                  "--time 0 --tip tip_mm --units time:ms"),
+    "index.csv": ("time_s,tip[3]\n", "%.3f,%.4f\n", (TIME, TIP), "--tip tip[3] --units tip:mm"),
+    "one.txt": ("angle, rate\n4, 200\n", "%.3f\n", (TIP,), "--tip 0 --rate 200"),
+    "named.txt": ("tip_mm\n", "%.3f\n", (TIP,), "--rate 0.2kHz"),
+    "counts.csv": ("time_ms,tip_counts\n", "%.1f,%.0f\n", (1e3 * TIME, 100 * TIP),
+                   "--tip tip_counts --scale time=1e-3,tip=1e-5"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", RECORDERS)
+def test_files_of_recorders_tell_the_same(push, done, name):
+    header, form, columns, options = RECORDERS[name]
+    (push / name).write_text(header.replace("%%", "%") + rows(form, *columns), encoding="utf-8")
+    tip = "" if "--tip" in options else f"--tip {'tip_um' if 'tip_um' in header else 'tip_mm'}"
+    same(done, f"identify {name} flexible-beam {tip} {options}")
+
+
+def test_signals_of_a_simulink_structure_go_by_their_labels(push, done, refused):
+    signals = np.array([(TIP[:, None], "tip_mm"), (0 * TIP, "theta")],
+                       dtype=[("values", object), ("label", object)])  # fmt: skip
+    savemat(push / "scope.mat", {"Scope": {"time": TIME[:, None], "signals": signals}})
+    same(done, "identify scope.mat flexible-beam --tip tip_mm")
+    same(done, "identify scope.mat flexible-beam --tip Scope.tip_mm --time Scope.time")
+    said = refused("identify scope.mat flexible-beam --tip w")
+    assert "from 0, are Scope.time, Scope.tip_mm, Scope.theta" in said
+
+
+def test_a_first_column_that_counts_rows_is_no_time(push, refused):
+    (push / "counted.csv").write_text("row,tip_mm\n" + rows("%d,%.3f\n", range(len(TIP)), TIP))
+    said = refused("identify counted.csv flexible-beam --tip tip_mm")
+    assert "or give the samples per second by --rate" in said
+
+
+def test_output_has_a_short_name(push, done):
+    done(f"{PUSH} --set length=0.6 -o short.json")
+    done(f"{PUSH} --set length=0.6 --output long.json")
+    assert Identified.load("short.json") == Identified.load("long.json")
+
+
+def test_words_tell_from_which_amplitude_on_a_swing_is_fitted(push, done):
+    t = np.arange(0, 60, 0.01)
+    size = 20 * np.exp(-0.05 * t)
+    phase = 2 * math.pi * np.cumsum(2.0 - 0.1 * (size / 20) ** 2) * 0.01
+    (push / "hard.csv").write_text("time_s,tip_mm\n" + rows("%.2f,%.4f\n", t, size * np.cos(phase)))
+    out = " ".join(
+        done("identify hard.csv flexible-beam --tip tip_mm --quiet -o hard.json").split()
+    )
+    assert "fitted from an amplitude of" in out
+    assert "The intervals hold for this swing, not for a larger one" in out
+    omega = Identified.load("hard.json").estimates[0]
+    assert omega.low < 2 * math.pi * 1.91 < 2 * math.pi * 1.995 < omega.high

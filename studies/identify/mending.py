@@ -1,0 +1,127 @@
+"""Samples that recorders and sensors make up: far from all beside them, and left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.studies.identify.recording import Recording, noise_of
+from quietarm.studies.identify.words import say
+
+Array = NDArray[np.float64]
+_LENGTHS = (1, 2, 4)
+"""Samples that a glitch lasts at most: it is looked for at each."""
+_FAR = 8.0
+"""Deviations of what is usual nearby, from which on a sample is a glitch."""
+_BLOCK = 32
+"""Samples by which the usual is told."""
+_ROUNDS = 8
+_OUT = 3.0
+"""A glitch begins and ends by so many times the steps of the signal beside it."""
+_MOST = 0.1
+"""Share of the rows: where more stand out, that is how the sensor is."""
+
+
+def without_glitches(
+    recordings: Sequence[Recording],
+) -> tuple[list[Recording], list[str]]:
+    """The recordings without the rows of glitches, and in words what was mended in each."""
+    mended, notes = list[Recording](), list[str]()
+    for recording in recordings:
+        columns = [values.reshape(len(values), -1) for values in recording.measured.values()]
+        glitches = np.zeros(len(recording.time), bool)
+        for column in np.hstack(columns).T:
+            glitches |= _glitches(recording.time, column)
+        count = int(np.count_nonzero(glitches))
+        notes += [
+            say(f"mended.{how}", name=recording.name, **facts)
+            for how, facts in recording.mended.items()
+        ]
+        if 0 < count <= _MOST * len(glitches):
+            samples = "1 sample is" if count == 1 else f"{count} samples are"
+            notes.append(say("mended.glitches", name=recording.name, samples=samples))
+            recording = recording.part(~glitches)
+        mended.append(recording)
+    return mended, notes
+
+
+def _glitches(time: Array, values: Array) -> NDArray[np.bool_]:
+    """Samples that leave both neighbours on the same side, by far more than is usual nearby."""
+    found = np.zeros(len(values), bool)
+    plain = values.copy()
+    noise = float(noise_of(values)[0])
+    for length in _LENGTHS:
+        if len(values) < 8 * length:
+            break
+        for _ in range(_ROUNDS):
+            between, spike = _by_neighbours(time, plain, length)
+            far = np.abs(spike) > _FAR * np.maximum(_usual(plain - between), 1.4 * noise)
+            far &= ~found
+            if not far.any():
+                break
+            # what is beside a larger one is judged once that is replaced
+            largest = _largest_nearby(np.abs(plain - between), 2 * length)
+            new = far & (np.abs(plain - between) >= 0.8 * largest)
+            found |= new
+            plain[new] = between[new]
+            again = found & ~new
+            between, _ = _by_neighbours(time, plain, length)
+            plain[again] = between[again]
+    return _that_return(values, found)
+
+
+def _that_return(values: Array, found: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Of samples that stand out those after which the signal is back: a step is no glitch."""
+    kept, last = found.copy(), len(values) - 1
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], found, [False]])))
+    for first, after in ends.reshape(-1, 2):
+        before, behind = max(first - 1, 0), min(after, last)
+        jumps = np.abs([values[first] - values[before], values[after - 1] - values[behind]])
+        beside = values[[max(before - 1, 0), before]], values[[behind, min(behind + 1, last)]]
+        usual = max(float(np.ptp(pair)) for pair in beside)
+        if jumps.min() <= _OUT * usual:
+            kept[first:after] = False
+    return kept
+
+
+def _by_neighbours(time: Array, values: Array, reach: int) -> tuple[Array, Array]:
+    """Each sample by the cubic through two on each side, and how far it is beyond the nearest two.
+
+    A sample at an end or beside a gap is its own neighbour.
+    """
+    between, spike = values.copy(), np.zeros(len(values))
+    inner = slice(2 * reach, -2 * reach)
+    offsets = (-2 * reach, -reach, reach, 2 * reach)
+    count = len(values) - 4 * reach
+    starts = [2 * reach + offset for offset in offsets]
+    t = np.stack([time[k : k + count] - time[inner] for k in starts])
+    y = np.stack([values[k : k + count] for k in starts])
+    whole = np.ptp(t, axis=0) <= 1.5 * 4 * reach * float(np.median(np.diff(time)))
+    weights = np.ones_like(t)
+    for i in range(4):
+        for j in range(4):
+            if i != j:
+                weights[i] *= -t[j] / (t[i] - t[j])
+    at = values[inner]
+    between[inner] = np.where(whole, (weights * y).sum(axis=0), at)
+    beyond = at - np.clip(at, np.minimum(y[1], y[2]), np.maximum(y[1], y[2]))
+    spike[inner] = np.where(whole, beyond, 0.0)
+    return between, spike
+
+
+def _usual(residual: Array) -> Array:
+    """The robust deviation of residuals in each block of samples, or in one beside it."""
+    from scipy.ndimage import maximum_filter1d  # not at the top: it takes long to load
+
+    count = max(len(residual) // _BLOCK, 1)
+    sizes, size = np.abs(residual), len(residual) // count
+    usual = 1.4826 * np.median(sizes[: count * size].reshape(count, size), axis=1)
+    blocks = np.minimum(np.arange(len(residual)) // size, count - 1)
+    return maximum_filter1d(usual, 3)[blocks]
+
+
+def _largest_nearby(sizes: Array, reach: int) -> Array:
+    from scipy.ndimage import maximum_filter1d  # not at the top: it takes long to load
+
+    return maximum_filter1d(sizes, 2 * reach + 1)

@@ -1,0 +1,70 @@
+"""Times of samples as recorders write them: rows that stand twice, stamps that are rounded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+_SOME = 0.01
+"""Share of the rows: where more have the stamp of the row before, the stamps are rounded."""
+_COARSE = 0.02
+"""Of a step, from which on rounding of stamps matters."""
+_GAP = 4.0
+"""Steps without a sample, after which the rate is told anew."""
+_LEAST = 20
+"""Rows between gaps that tell a rate."""
+
+
+def mended(arrays: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, dict[str, str]]]:
+    """The arrays of a recording with increasing times where these can be told, and what was done.
+
+    Rounded stamps are those of an even rate; of rows with the same stamp the first stays.
+    """
+    time = arrays["time"]
+    steps, found = np.diff(time), dict(arrays)
+    if len(time) < _LEAST or not (steps >= 0).all() or not (steps > 0).any():
+        return found, {}
+    even = _even(time, steps)
+    if even is not None:
+        found["time"], tick = even
+        step = float(np.median(np.diff(found["time"])))
+        return found, {"rounded": {"tick": f"{1e3 * tick:.3g}", "step": f"{1e3 * step:.6g}"}}
+    again = np.append(False, steps == 0)
+    count = int(np.count_nonzero(again))
+    if not count or count > _SOME * len(time):
+        return found, {}
+    rows = "1 row has" if count == 1 else f"{count} rows have"
+    return {name: values[~again] for name, values in arrays.items()}, {"twice": {"rows": rows}}
+
+
+def _even(time: Array, steps: Array) -> tuple[Array, float] | None:
+    """The times of an even rate and what they were rounded to; None where they were not."""
+    tick = _tick(steps[steps > 0])
+    tick = float(np.ptp(time)) / round(float(np.ptp(time)) / tick)
+    ties = np.count_nonzero(steps == 0)
+    whole = np.abs(time / tick - np.round(time / tick)).max() < 1e-3
+    if not whole or not (ties == 0 or ties > _SOME * len(time)):
+        return None
+    longest = _GAP * max(float(np.median(steps)), tick)
+    if np.ptp(steps[steps <= longest]) < 0.5 * tick:
+        return None
+    runs = np.split(np.arange(len(time)), np.flatnonzero(steps > longest) + 1)
+    even = time.astype(float).copy()
+    for run in runs:
+        if len(run) < _LEAST:
+            return None
+        slope, offset = np.polyfit(run - run[0], time[run] - time[run[0]], 1)
+        even[run] = time[run[0]] + offset + slope * (run - run[0])
+    step = float(np.median(np.diff(even)))
+    rounded = np.abs(even - time).max() <= 1.05 * tick and tick > _COARSE * step
+    return (even, tick) if rounded and (np.diff(even) > 0).all() else None
+
+
+def _tick(steps: Array) -> float:
+    """The least difference of steps, or the least step: what stamps are rounded to, if they are."""
+    least = float(steps.min())
+    lengths = np.unique(np.round(steps / least, 6)) * least
+    return float(np.diff(lengths, prepend=0.0).min())
