@@ -30,9 +30,11 @@ from rich.console import Console
     option("--evaluations", default=10_000, help="Candidates of each run of a search."),
     SEED, METHOD_SETTING,
     option("--import", "imported", multiple=True, type=INPUT,
-           help="A run of another library, by a recorded function, or a folder of such runs."),
+           help="A run of another library, by a recorded function, or a folder of such runs; in a "
+           "folder, runs on other problems are left out."),
     option("--output", type=Parsed("folder", check_folder), required=True,
-           help="Folder for runs and report; runs that are there are kept."),
+           help="Folder for runs and report; runs that are there are kept, and so is a report that "
+           "has more."),
     PART, WORKERS, SCHEDULER,
 )  # fmt: skip
 def bench(given: Given) -> None:
@@ -49,26 +51,38 @@ def bench(given: Given) -> None:
       quietarm bench all --methods nsga2,gde3,epsilon,epsilon:ipopt --runs 15 --output bench
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.metaheuristics import LostJobsError, run_jobs
-    from quietarm.studies.bench.asked import jobs_of, problems_of, spell_method, write_references
-    from quietarm.studies.bench.page import bench_report, brief_report
+    from quietarm.metaheuristics import LostJobsError, finished_jobs, run_jobs
+    from quietarm.studies.bench.asked import (
+        imports_on,
+        jobs_of,
+        problems_of,
+        spell_method,
+        write_references,
+    )
+    from quietarm.studies.bench.page import (
+        bench_report,
+        brief_report,
+        not_reported_again,
+        reported_runs,
+    )
     from quietarm.studies.bench.results import Results, imported_runs
     from quietarm.studies.bench.statistics import say_power_of
     from quietarm.studies.reading.saved import load_runs
     from quietarm.studies.report import show
-    from quietarm.studies.report.words import print_lines
+    from quietarm.studies.report.words import counted, print_lines
 
     methods = list(map(spell_method, given.methods))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
     asked = methods, given.runs, given.evaluations, given.seed, settings
     problems = problems_of(given.problems)
     jobs, left_out = jobs_of(problems, *asked)
-    imported = load_runs(given.imported)
+    imported, not_imported = imports_on(problems, load_runs(given.imported), given.imported)
+    reported = reported_runs(given.output)
     planned = [(job.problem.name, job.label) for job in jobs]
     planned += [(run.problem.name, run.method) for run in imported_runs(imported, jobs)]
-    kept = sum((given.output / f"{job.name}.json").exists() for job in jobs)
+    kept = len(finished_jobs(jobs, given.output))  # refuses a changed file before anything is done
     there = [f"{kept} of {len(jobs)} runs are in {given.output}"] if kept else []
-    print_lines(progress_console(), *left_out, say_power_of(planned), *there)
+    print_lines(progress_console(), *left_out, *not_imported, say_power_of(planned), *there)
     write_references(problems, given.output)
     trouble = None
     with counting(len(jobs), "jobs") as progress:
@@ -81,10 +95,16 @@ def bench(given: Given) -> None:
             fronts, trouble = dict(error.fronts), error
     if fronts or trouble is None:
         results = Results.of_jobs(fronts, imported)
-        files = bench_report(results, given.line).files(given.output)
+        lost = not_reported_again(results, reported)
+        files = [] if lost else bench_report(results, given.line).files(given.output)
         for path, write in files:
             write(path)
         show(Console(), brief_report(results))
-        click.echo(f"wrote report.md and {len(files) - 1} tables and pictures to {given.output}")
+        click.echo(
+            f"report.md in {given.output} stays: {counted(lost, 'run')} in it would be lost. Ask "
+            "for those as well, give another folder, or delete it"
+            if lost
+            else f"wrote report.md and {len(files) - 1} tables and pictures to {given.output}"
+        )
     if trouble is not None:
         raise trouble
