@@ -32,8 +32,6 @@ ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
 _SAME_FRONT = 1e-5
 """Points of two fronts, scaled to the reference front, that differ by no more are the same: nearer
 the reference fronts are not known."""
-
-
 _COPIED = 1e-9
 """Share of the bound by which coefficients of one motion may differ: decimals that a file lost."""
 
@@ -150,8 +148,8 @@ class Results:
 
     @property
     def unsealed(self) -> int:
-        """How many runs have no checksum of a bench: imported ones, and files of before."""
-        return sum(not is_sealed(run.front) for run in self.runs)
+        """How many runs are no bench's by its checksum: imported ones, and files of before."""
+        return sum(run.imported or not is_sealed(run.front) for run in self.runs)
 
     def is_repeated(self, problem: str, method: str) -> bool:
         """Whether a method found the same from every seed: its runs are one, not independent.

@@ -308,8 +308,9 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
             f"not significantly different from it, as {runs} runs are too few to tell",
         ),
     ):
-        names = [name for name in values if name in beside[which][["one", "other"]].to_numpy()]
-        near = sorted((name for name in names if name != best), key=lambda name: medians[name])
+        named = {*beside[which]["one"], *beside[which]["other"]} - {best}
+        # in the order of the table where medians are the same
+        near = sorted((name for name in values if name in named), key=lambda name: medians[name])
         if near:
             sentence += f"; {words}: {'; '.join(map(bench_label, near))}"
     return sentence

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.given import Given
@@ -19,6 +21,9 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from rich.console import Console
+
+if TYPE_CHECKING:
+    from quietarm.studies.bench.results import Results
 
 
 @command(
@@ -59,17 +64,11 @@ def bench(given: Given) -> None:
         spell_method,
         write_references,
     )
-    from quietarm.studies.bench.page import (
-        bench_report,
-        brief_report,
-        not_reported_again,
-        reported_runs,
-    )
+    from quietarm.studies.bench.page import reported_runs
     from quietarm.studies.bench.results import Results, imported_runs
     from quietarm.studies.bench.statistics import say_power_of
     from quietarm.studies.reading.saved import load_runs
-    from quietarm.studies.report import show
-    from quietarm.studies.report.words import counted, print_lines
+    from quietarm.studies.report.words import print_lines
 
     methods = list(map(spell_method, given.methods))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
@@ -77,7 +76,7 @@ def bench(given: Given) -> None:
     problems = problems_of(given.problems)
     jobs, left_out = jobs_of(problems, *asked)
     imported, not_imported = imports_on(problems, load_runs(given.imported), given.imported)
-    reported = reported_runs(given.output)
+    reported_runs(given.output)  # refuses a folder whose runs.csv is another's
     planned = [(job.problem.name, job.label) for job in jobs]
     planned += [(run.problem.name, run.method) for run in imported_runs(imported, jobs)]
     kept = len(finished_jobs(jobs, given.output))  # refuses a changed file before anything is done
@@ -94,17 +93,30 @@ def bench(given: Given) -> None:
         except LostJobsError as error:
             fronts, trouble = dict(error.fronts), error
     if fronts or trouble is None:
-        results = Results.of_jobs(fronts, imported)
-        lost = not_reported_again(results, reported)
-        files = [] if lost else bench_report(results, given.line).files(given.output)
-        for path, write in files:
-            write(path)
-        show(Console(), brief_report(results))
-        click.echo(
-            f"report.md in {given.output} stays: {counted(lost, 'run')} in it would be lost. Ask "
-            "for those as well, give another folder, or delete it"
-            if lost
-            else f"wrote report.md and {len(files) - 1} tables and pictures to {given.output}"
-        )
+        _report(Results.of_jobs(fronts, imported), given)
     if trouble is not None:
         raise trouble
+
+
+def _report(results: Results, given: Given) -> None:
+    """Write the report, unless one that is there has more, and show what is in short."""
+    from quietarm.studies.bench.page import (
+        bench_report,
+        brief_report,
+        not_reported_again,
+        reported_runs,
+    )
+    from quietarm.studies.report import show
+    from quietarm.studies.report.words import counted
+
+    lost = not_reported_again(results, reported_runs(given.output))
+    files = [] if lost else bench_report(results, given.line).files(given.output)
+    for path, write in files:
+        write(path)
+    show(Console(), brief_report(results))
+    click.echo(
+        f"report.md in {given.output} stays: {counted(lost, 'run')} in it would be lost. Ask for "
+        "those as well, give another folder, or delete it"
+        if lost
+        else f"wrote report.md and {len(files) - 1} tables and pictures to {given.output}"
+    )
