@@ -22,6 +22,7 @@ from quietarm.ocp import Candidate, Front, FrontPoint, QuietarmError, non_domina
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.certify import Certified, Tolerances, certify
+from quietarm.ocp.record import versions
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.solvers.problem import STILL, Problem, Scalarization, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
@@ -69,7 +70,7 @@ def polished(front: Front, bound: float) -> tuple[Front, list[float]]:
         places = sorted(beside & set(range(len(points))))
     gains = [1 - point.energy / energy for point, energy in zip(points, before)]
     settings = {**front.record.settings, "polished_steps": STEPS, "residual_radians": RADIANS}
-    record = replace(front.record, settings=settings)
+    record = replace(front.record, settings=settings, versions=versions())
     return replace(front, points=non_dominated(points), record=record), gains
 
 
