@@ -1,11 +1,13 @@
 """The runs behind docs/results, and its page: methods of both kinds on independent moves.
 
     python benchmarks/results_page.py FOLDER [--workers N] [--page docs/results]
+    python benchmarks/results_page.py --check docs/results
 
-Goes on where it stopped; about an hour of one core. Seven named moves that share nothing but
-their plants, and three on which the gradient should have a hard time: Gaussians and a network as
-profiles, whose coefficients enter nonlinearly, and an energy in stages, flat in many places. Their
-reference fronts are the best of long runs of both kinds.
+Goes on where it stopped; about an hour of one core. The page has the histories of all runs beside
+it; the second line computes every expected running time from them again. Seven named moves that
+share nothing but their plants, and three on which the gradient should have a hard time: Gaussians
+and a network as profiles, whose coefficients enter nonlinearly, and an energy in stages, flat in
+many places. Their reference fronts are the best of long runs of both kinds.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import pandas as pd
 from quietarm.metaheuristics.gradient import multistart_front
 from scipy.optimize import minimize
 
@@ -34,6 +37,8 @@ SEARCHES = (
     "nsga2", "nsga2-paper", "vepso", "smsemoa", "spea2", "gde3", "mopso-cd", "cmopso", "agemoea2",
     "nsga3", "random",
 )  # fmt: skip
+HISTORIES = "histories.csv.gz"
+"""Beside the page: what every run lacked at the marks that improve it, and at its end."""
 SEEDS, FEW = 15, 3
 BUDGET, LARGE = 5_000, 50_000
 
@@ -150,14 +155,35 @@ def jobs_of(problems: list[Any]) -> list[qa.Job]:
     return jobs
 
 
+def check_running_times(page: Path) -> float:
+    """The largest relative difference of the page's running times from those of its histories."""
+    from quietarm.studies.bench.running_times import read_histories, running_times
+
+    keys = ["problem", "method", "target"]
+    published = pd.read_csv(page / "running_times.csv").set_index(keys).sort_index()
+    again = running_times(read_histories(page / HISTORIES)).set_index(keys).sort_index()
+    if not (published.index.equals(again.index) and published.isna().equals(again.isna())):
+        raise ValueError(f"{page} has running times of other runs than its histories")
+    return float((published / again - 1).abs().max().max())
+
+
 def main() -> None:
     """Run what is missing, then write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--page", type=Path)
     parser.add_argument("--only-page", action="store_true", help="of the runs that are there")
+    parser.add_argument("--check", type=Path, help="a page whose running times are checked")
     given = parser.parse_args()
+    if given.check:
+        print(f"differences are {check_running_times(given.check):.1g} at most")
+    if given.folder:
+        run(given)
+
+
+def run(given: argparse.Namespace) -> None:
+    """Run the jobs that are missing, and write the page where one is asked for."""
     hard = [hard_problem(name, given.folder) for name in hard_tasks()]
     jobs = jobs_of([*(qa.problem_of(name) for name in MOVES), *hard])
 
@@ -177,9 +203,10 @@ def main() -> None:
 
         line = f"python {' '.join(sys.argv)}"
         template = Path(__file__).with_name("results_page.md")
-        for path, write in bench_report(Results.of_jobs(fronts), line, template).files(given.page):
-            if path is not None:
-                write(path)
+        results = Results.of_jobs(fronts)
+        for path, write in bench_report(results, line, template).files(given.page):
+            write(path)
+        results.write_histories(given.page / HISTORIES)
 
 
 if __name__ == "__main__":

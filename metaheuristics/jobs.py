@@ -17,6 +17,7 @@ from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError
 from quietarm.metaheuristics.quality import measured
+from quietarm.metaheuristics.run_files import check_run, sealed
 from quietarm.metaheuristics.search import MOST_EVALUATIONS, search
 from quietarm.ocp import FileFormatError, Front, QuietarmError
 from quietarm.ocp.checks import unknown, whole
@@ -98,7 +99,8 @@ class Job:
     def run(self) -> Front:
         """Find the front, with its quality during the run; points by CVODES.
 
-        Its ``settings`` name the problem; its last mark has effort and quality at the end.
+        Its ``settings`` name the problem; its last mark has effort and quality at the end. A
+        ``checksum`` says that the file is as it was written.
         """
         reference, digest = self.problem.reference(), _digest_of(self.method)
         if (self.problem, self.label) not in _rehearsed:
@@ -110,7 +112,7 @@ class Job:
             stated["budget"] = self.budget
         if digest:
             stated["digest"] = digest
-        return found.restated(settings=stated)
+        return sealed(found.restated(settings=stated), self)
 
     def _find(self, rehearse: bool = False) -> Front:
         problem, budget, settings = self.problem, self.budget, dict(self.settings)
@@ -259,7 +261,8 @@ def run_jobs(
     ------
     ValueError
         When there is no job, or one twice, a file is of another problem, of other versions or of
-        a method that has changed, a number is out of range, or no scheduler answers.
+        a method that has changed, or is not what a bench wrote for its job, a number is out of
+        range, or no scheduler answers.
     LostJobsError
         At the end, if jobs failed, or their workers died twice.
     """
@@ -289,7 +292,10 @@ def run_jobs(
 
 
 def finished_jobs(jobs: Sequence[Job], folder: str | Path) -> dict[Job, Front]:
-    """The fronts of those jobs whose files are in a folder, which may be missing."""
+    """The fronts of those jobs whose files are in a folder, which may be missing.
+
+    Errors are those of `run_jobs`.
+    """
     paths = {job: Path(folder, f"{job.name}.json") for job in jobs}
     return {job: _load(job, path) for job, path in paths.items() if path.exists()}
 
@@ -314,6 +320,7 @@ def _load(job: Job, path: Path) -> Front:
                 f"{path} is by {name} {front.record.versions.get(name)}, and here is {now[name]}; "
                 "give another folder"
             )
+    check_run(front, job, path)
     return front
 
 

@@ -98,7 +98,11 @@ class FreeVibration:
     @cached_property
     def rows(self) -> Array:
         """F1 is the largest absolute product of a row and a state, to 5e-5; (rows, 2 * modes)."""
-        samples = max(2, math.ceil(self._radians / _RADIANS_OF_ROWS) + 1)  # both ends at least
+        return self.rows_every(_RADIANS_OF_ROWS)
+
+    def rows_every(self, radians: float) -> Array:
+        """The same at another distance [rad of the fastest mode]; the miss is its square by 8."""
+        samples = max(2, math.ceil(self._radians / radians) + 1)  # both ends at least
         step = exponential(self.matrix, self.window / (samples - 1), self._most)
         rows = extreme_rows(powers(self.tips, step, samples), len(self.tips))
         rows.setflags(write=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 from quietarm.metaheuristics import PRESETS, PROBLEMS, Job, NamedProblem, problem_of
@@ -82,6 +82,28 @@ def jobs_of(
                 budget = None if name in GRADIENT else evaluations
                 jobs.append(Job(problem, name, one, budget, of_method[name]))
     return jobs, list(left_out)
+
+
+def imports_on(
+    problems: Sequence[NamedProblem], runs: Mapping[Path, Front], given: Collection[Path]
+) -> tuple[list[Front], list[str]]:
+    """Imported runs, and words on those of another problem that a folder has besides.
+
+    One that was `given` by its own name is never left out.
+    """
+    names = [problem.name for problem in problems]
+    imported, left_out = list[Front](), list[str]()
+    for path, front in runs.items():
+        name = front.record.settings.get("problem")
+        if name in names or path in given:
+            imported.append(front)
+        else:
+            left_out.append(f"{path} is on {name or 'no named problem'}: left out")
+    if runs and not imported:
+        raise ValueError(
+            f"no run to import is on {', '.join(names)} ({left_out[0]}); give their problems, too"
+        )
+    return imported, left_out
 
 
 def write_references(problems: Sequence[NamedProblem], folder: Path) -> None:

@@ -64,7 +64,7 @@ def profiles_figure(results: Results) -> Figure:
     """
     figure = new_figure(7.2, 4.4)
     ax, random = figure.subplots(), np.random.default_rng(0)
-    every = [run.cost("seconds") for run in results.runs]
+    every = [run.history.seconds for run in results.runs]
     costs = np.concatenate(every)
     places = np.geomspace(costs[costs > 0].min(), costs.max(), 200)
     for number, method in enumerate(results.methods):

@@ -74,10 +74,48 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "energy_ranking": ranking_over(results, "energy_1mm"),
         "kruskal": {name: kruskal_on(results, name) for name in problems},
         "repeated": _repeated(results),
+        "copies": [run.label for run in results.copies],
+        "unsealed": results.unsealed,
         "machine": f"{platform.machine()}, {platform.system()}",
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
     }  # fmt: skip
     return Report(template, values, tables, figures)
+
+
+def reported_runs(folder: Path) -> pd.DataFrame | None:
+    """The table of runs beside a report that is in a folder; None where there is no report.
+
+    ValueError where it is no table of a bench.
+    """
+    path = folder / "runs.csv"
+    if not ((folder / "report.md").exists() and path.exists()):
+        return None
+    try:
+        return _identities(pd.read_csv(path))
+    except (OSError, ValueError, KeyError, TypeError):
+        raise ValueError(f"{path} is no table of a bench; give another folder") from None
+
+
+def not_reported_again(results: Results, reported: pd.DataFrame | None) -> int:
+    """How many runs of an earlier report are not among the results: a report of these loses them.
+
+    The arguments are the results and what `reported_runs` gave.
+    """
+    if reported is None:
+        return 0
+    now = _identities(_with_labels(results.table, "method"))
+    return len(set(reported.itertuples(index=False)) - set(now.itertuples(index=False)))
+
+
+def _identities(table: pd.DataFrame) -> pd.DataFrame:
+    """What tells the runs of a table apart; the gradient's candidates are no budget."""
+    by_candidates = table["gradients"] == 0
+    return pd.DataFrame({
+        "problem": table["problem"].astype(str),
+        "method": table["method"].astype(str),
+        "seed": table["seed"].fillna(-1).astype(int),
+        "budget": table["evaluations"].where(by_candidates, -1).astype(int),
+    })  # fmt: skip
 
 
 def _with_labels(table: pd.DataFrame, *columns: str) -> pd.DataFrame:
@@ -93,7 +131,8 @@ def brief_report(results: Results) -> Report:
         name: problem_table(results, name)[columns].map(_rounded) for name in names
     }
     verdicts = {name: verdict_on(results, name) for name in names}
-    values = {"verdicts": verdicts, "repeated": _repeated(results)}
+    values = {"verdicts": verdicts, "repeated": _repeated(results),
+              "copies": [run.label for run in results.copies]}  # fmt: skip
     return Report("bench/brief.md", values, tables)
 
 

@@ -5,26 +5,35 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics import Job, NamedProblem
-from quietarm.metaheuristics.quality import measured
+from quietarm.metaheuristics.quality import measured, objectives
+from quietarm.metaheuristics.run_files import is_sealed
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front
 from quietarm.ocp.front.points import LEVELS, beyond
+from quietarm.studies.bench.running_times import (
+    History,
+    expected_running_time,
+    hits,
+    running_times,
+    write_histories,
+)
 from quietarm.studies.report.methods import is_gradient, label_of, unpolished
 
 Array = NDArray[np.float64]
-TARGETS = (0.1, 0.03, 0.01, 0.003)
-"""Shares of the reference front's hypervolume that may be missing for a target to count as
-reached."""
 ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
 """Columns of energies within these residuals."""
-_RESAMPLED, _INTERVAL = 1000, (0.025, 0.975)
-"""How often runs are drawn again for an interval, and the quantiles that are its ends."""
+_SAME_FRONT = 1e-5
+"""Points of two fronts, scaled to the reference front, that differ by no more are the same: nearer
+the reference fronts are not known."""
+_COPIED = 1e-9
+"""Share of the bound by which coefficients of one motion may differ: decimals that a file lost."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +43,7 @@ class Run:
     problem: NamedProblem
     method: str
     front: Front
+    imported: bool = False
 
     def __post_init__(self) -> None:
         if not self.front.history:
@@ -42,14 +52,31 @@ class Run:
                 "recorded function wrote, or import its coefficients by quietarm evaluate"
             )
 
-    @cached_property
-    def missing(self) -> Array:
-        """Share of the reference front's hypervolume that it lacked at each mark."""
-        return np.array([_missing(mark.quality) for mark in self.front.history])
+    @property
+    def label(self) -> str:
+        """Method, seed and problem in words."""
+        seed = self.front.record.seed
+        return f"{self.method}{'' if seed is None else f', seed {seed}'} on {self.problem.name}"
 
-    def cost(self, by: str) -> Array:
-        """Processor seconds or evaluations at each mark."""
-        return np.array([getattr(mark, by) for mark in self.front.history], dtype=float)
+    @property
+    def copies_reference(self) -> bool:
+        """Whether all its points are motions of the reference front: it searched for none."""
+        known = self.problem.reference().front.coefficients
+        points = self.front.coefficients
+        nearest = [np.abs(known - point).max(axis=1).min() for point in points]
+        return len(points) > 0 and max(nearest) <= _COPIED * self.problem.bound
+
+    @cached_property
+    def history(self) -> History:
+        """What it lacked of the reference front's hypervolume, and had cost, at each mark."""
+        marks = self.front.history
+        counts_candidates = derivative_free(self.method)
+        columns = (
+            [_missing(mark.quality) for mark in marks],
+            [mark.seconds for mark in marks],
+            [mark.evaluations if counts_candidates else np.nan for mark in marks],
+        )
+        return History(*(np.array(column, dtype=float) for column in columns))
 
 
 class Results:
@@ -114,11 +141,30 @@ class Results:
         }
         return pd.DataFrame([_row(run, best[run.problem.name]) for run in self.runs])
 
+    @cached_property
+    def copies(self) -> list[Run]:
+        """Imported runs that only evaluated motions of the reference front."""
+        return [run for run in self.runs if run.imported and run.copies_reference]
+
+    @property
+    def unsealed(self) -> int:
+        """How many runs are no bench's by its checksum: imported ones, and files of before."""
+        return sum(run.imported or not is_sealed(run.front) for run in self.runs)
+
     def is_repeated(self, problem: str, method: str) -> bool:
-        """Whether a method found the same from every seed: its runs are one, not independent."""
-        runs = self.table.query("problem == @problem and method == @method")
-        found = runs[["missing", "missing_between", *ENERGIES]]
-        return len(runs) > 1 and len(found.drop_duplicates()) == 1
+        """Whether a method found the same from every seed: its runs are one, not independent.
+
+        By the residuals and energies of the fronts' points, not by what is computed from them.
+        """
+        return (problem, method) in self._repeated
+
+    @cached_property
+    def _repeated(self) -> frozenset[tuple[str, str]]:
+        return frozenset(group for group, runs in self._groups.items() if _is_one_front(runs))
+
+    def histories(self, problem: str, method: str) -> list[History]:
+        """Those of the runs of a method on a problem."""
+        return [run.history for run in self.of(problem, method)]
 
     def missing(self, problem: str, method: str, by: str = "seconds") -> tuple[Array, Array]:
         """Where the missing share changes, in processor seconds or evaluations, for every run.
@@ -130,65 +176,50 @@ class Results:
         missing : ndarray, shape (runs, places)
             Share after each; 1 before a run's first mark.
         """
-        runs = self.of(problem, method)
-        at = np.unique(np.concatenate([run.cost(by) for run in runs]))
+        histories = self.histories(problem, method)
+        at = np.unique(np.concatenate([history.cost(by) for history in histories]))
         rows = [
-            np.append(1.0, run.missing)[np.searchsorted(run.cost(by), at, side="right")]
-            for run in runs
+            np.append(1.0, history.missing)[np.searchsorted(history.cost(by), at, side="right")]
+            for history in histories
         ]
         return at, np.array(rows)
 
     def hits(
         self, problem: str, method: str, targets: Sequence[float], by: str = "seconds"
     ) -> Array:
-        """Where each run first missed no more than each target, shape (runs, targets).
-
-        Infinite where it never did.
-        """
-        rows = list[Array]()
-        for run in self.of(problem, method):
-            first = np.searchsorted(-np.minimum.accumulate(run.missing), -np.array(targets))
-            rows.append(np.append(run.cost(by), np.inf)[first])
-        return np.array(rows)
+        """Where each run first missed no more than each target, as `running_times.hits`."""
+        return hits(self.histories(problem, method), targets, by)
 
     def expected_running_time(
         self, problem: str, method: str, target: float, by: str = "seconds"
     ) -> tuple[float, float, float]:
-        """Effort of all runs until the target, or in all, divided by the number that reached it.
-
-        As COCO defines it: runs that did not reach it are censored, not left out; infinite where
-        none did.
-
-        Returns
-        -------
-        time, low, high : float
-            The expected running time, and the ends of its interval of 95 %: runs drawn again with
-            replacement.
-        """
-        hits = self.hits(problem, method, [target], by)[:, 0]
-        ends = np.array([run.cost(by)[-1] for run in self.of(problem, method)])
-        reached, drawn = np.isfinite(hits), _drawn_again(len(hits))
-        if not reached.any():
-            return np.inf, np.inf, np.inf
-        spent, count = np.where(reached, hits, ends)[drawn].sum(axis=1), reached[drawn].sum(axis=1)
-        times = np.where(count, spent / np.maximum(count, 1), np.inf)
-        low, high = np.quantile(times[1:], _INTERVAL, method="inverted_cdf").tolist()
-        return float(times[0]), low, high
+        """The time and its interval, as `running_times.expected_running_time`."""
+        return expected_running_time(self.histories(problem, method), target, by)
 
     @cached_property
     def running_times(self) -> pd.DataFrame:
-        """Expected running times to `TARGETS`, with intervals, and how many runs reached each."""
-        rows = list[dict[str, Any]]()
-        for (problem, method), runs in sorted(self._groups.items()):
-            reached = np.isfinite(self.hits(problem, method, TARGETS)).sum(axis=0)
-            for target, count in zip(TARGETS, reached.tolist()):
-                row = {"problem": problem, "method": method, "target": target,
-                       "reached": count, "runs": len(runs)}  # fmt: skip
-                for by in ("seconds", "evaluations") if derivative_free(method) else ("seconds",):
-                    found = self.expected_running_time(problem, method, target, by)
-                    row |= zip((by, f"{by}_low", f"{by}_high"), found)
-                rows.append(row)
-        return pd.DataFrame(rows).replace(np.inf, np.nan)
+        """Expected running times to all targets, with intervals, and how many runs reached each."""
+        return running_times({group: self.histories(*group) for group in self._groups})
+
+    def write_histories(self, path: str | Path) -> None:
+        """Write what every run lacked mark by mark, as `running_times.write_histories`."""
+        write_histories(
+            (
+                (run.problem.name, bench_label(run.method), run.front.record.seed, run.history)
+                for run in self.runs
+            ),
+            path,
+        )
+
+
+def _is_one_front(runs: Sequence[Run]) -> bool:
+    """Whether several runs have the same points, in residual and energy."""
+    scale = runs[0].problem.reference()
+    first, *others = (scale.scaled(objectives(run.front)) for run in runs)
+    return bool(others) and all(
+        points.shape == first.shape and np.abs(points - first).max(initial=0.0) <= _SAME_FRONT
+        for points in others
+    )
 
 
 def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
@@ -218,7 +249,7 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
         if front.record.bound != problem.bound:
             _refuse_beyond(front, problem)
             front = replace(front, history=front.history[-1:])
-        runs.append(Run(problem, method, measured(front, problem.reference())))
+        runs.append(Run(problem, method, measured(front, problem.reference()), imported=True))
     return runs
 
 
@@ -232,12 +263,6 @@ def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
             f"{problem.name} allows {lower[column]:.4g} to {upper[column]:.4g}; search within that "
             "box, or leave the run out"
         )
-
-
-def _drawn_again(runs: int) -> NDArray[np.int64]:
-    """Numbers of runs: all of them, then drawn again with replacement, a row each."""
-    again = np.random.default_rng(0).integers(0, runs, (_RESAMPLED, runs))
-    return np.vstack([np.arange(runs), again])
 
 
 def derivative_free(method: str) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import comb, sqrt
@@ -23,9 +23,22 @@ _EXACT = 50
 """Runs of the method with fewer, up to which Mann-Whitney's test is exact."""
 
 
-def attainable_p(runs: int, others: int, pairs: int) -> float:
-    """The least p value that Mann-Whitney's exact test can give so many runs, times the pairs."""
-    return min(1.0, 2 * pairs / comb(runs + others, runs))
+def attainable_p(runs: int, others: int) -> float:
+    """The least p that a pair of methods can have by its test.
+
+    By Mann and Whitney's exact test; by the sign test where one method is a single value, as its
+    runs repeat each other.
+    """
+    fewer, more = sorted((runs, others))
+    return min(1.0, 2 / comb(runs + others, runs) if fewer > 1 else 2 / 2**more)
+
+
+def attainable_by_holm(least: Array) -> Array:
+    """The least p by Holm that each of several pairs can have, from the least of their tests.
+
+    A pair comes before all those whose least is no lower. NaN where there is no test.
+    """
+    return np.minimum(1.0, least * (least[:, None] <= least).sum(axis=1))
 
 
 def say_power(runs: int, methods: int) -> str:
@@ -33,19 +46,31 @@ def say_power(runs: int, methods: int) -> str:
     pairs = comb(methods, 2)
     if pairs == 0:
         return "one method alone is compared with none"
-    least = attainable_p(runs, runs, pairs)
-    if least < ALPHA:
-        same = min(1.0, pairs * 2 / 2**runs)
+    least = pairs * attainable_p(runs, runs)
+    against_one = min(1.0, (methods - 1) * attainable_p(1, runs))
+    needed = _runs_needed(methods - 1, lambda number: attainable_p(1, number))
+    if least >= ALPHA:
+        usual = _runs_needed(pairs, lambda number: attainable_p(number, number))
         return (
-            f"with {runs} runs of each of {methods} methods ({counted(pairs, 'pair')}) the least p "
-            f"that a pair can have, by Holm, is {least:.2g}, or {same:.2g} where one of them finds "
+            f"with {counted(runs, 'run')} and {counted(pairs, 'pair')} no p by Holm can fall below "
+            f"{ALPHA}: {usual} runs are needed for a verdict, {needed} against a method that finds "
             "the same from every seed"
         )
-    needed = next(n for n in range(runs, 1000) if attainable_p(n, n, pairs) < ALPHA)
-    return (
-        f"with {counted(runs, 'run')} and {counted(pairs, 'pair')} no p by Holm can fall below "
-        f"{ALPHA}: {needed} runs are needed for a verdict"
+    words = (
+        f"with {runs} runs of each of {methods} methods ({counted(pairs, 'pair')}) the least p "
+        f"that a pair can have, by Holm, is {least:.2g}"
     )
+    if against_one < ALPHA:
+        return f"{words}, or {against_one:.2g} where one of them finds the same from every seed"
+    return (
+        f"{words}; against a method that finds the same from every seed it is {against_one:.2g}: "
+        f"no verdict can be had against one, {needed} runs are needed for that"
+    )
+
+
+def _runs_needed(pairs: int, least: Callable[[int], float]) -> int:
+    """From how many runs on so many pairs of one kind can have a p by Holm below `ALPHA`."""
+    return next(runs for runs in range(2, 1000) if pairs * least(runs) < ALPHA)
 
 
 def say_power_of(runs: Iterable[tuple[str, str]]) -> str:
@@ -103,7 +128,7 @@ class Ranking:
 
 
 def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.DataFrame:
-    """Every pair of methods on a problem: effect size, p and p by Holm.
+    """Every pair of methods on a problem: effect size, p, p by Holm and the least that can be.
 
     The effect is the share of pairs of runs in which the first is better (Vargha and Delaney's A;
     0.5 is no difference). Runs without a value come last. A method whose runs repeat each other is
@@ -121,7 +146,10 @@ def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.Data
     p_values = table["p"].to_numpy(dtype=float, copy=True)
     tested = np.isfinite(p_values)
     p_values[tested] = holm(p_values[tested])
-    return table.assign(p_holm=p_values)
+    sizes = [[len(values[name]) for name in pair] for pair in combinations(values, 2)]
+    least = np.array([attainable_p(*pair) for pair in sizes])
+    least[~tested] = np.nan
+    return table.assign(p_holm=p_values, least_p_holm=attainable_by_holm(least))
 
 
 def _tested(mine: Array, theirs: Array) -> tuple[float, float]:
@@ -253,20 +281,36 @@ def _same(known: Mapping[str, Mapping[str, Array]], one: str, other: str) -> boo
 
 
 def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
-    """Which methods end nearest on a problem, in a sentence; none without power to say so."""
+    """Which methods end nearest on a problem, in a sentence; none without power to say so.
+
+    Power is that of the test which a pair has: of few runs, a method that found the same from every
+    seed cannot be told from any other.
+    """
     values = values_on(results, problem, column)
     if len(values) < 2:
         return "fewer than two methods have two runs: no test"
     runs = min(map(len, values.values()))
-    pairs = comb(len(values), 2)
     medians = {name: quartiles(own)[1] for name, own in values.items()}
     best = min(medians, key=lambda name: medians[name])
     if not np.isfinite(medians[best]):
         return "no method has such a motion in the median"
-    if attainable_p(runs, max(map(len, values.values())), pairs) >= ALPHA:
-        return f"no verdict: {say_power(runs, len(values))}"
-    table = pairs_on(results, problem, column).query("p_holm >= @ALPHA")
+    table = pairs_on(results, problem, column)
     beside = table[(table["one"] == best) | (table["other"] == best)]
-    near = sorted({*beside["one"], *beside["other"]} - {best}, key=lambda name: medians[name])
-    alike = "; not significantly different from it: " * bool(near)
-    return f"{bench_label(best)} ends nearest{alike}{'; '.join(map(bench_label, near))}"
+    powerless = beside["least_p_holm"] >= ALPHA
+    if powerless.sum() == np.isfinite(beside["p"]).sum() > 0:
+        return f"no verdict: {say_power(runs, len(values))}"
+    alike = beside["p_holm"] >= ALPHA
+    sentence = f"{bench_label(best)} ends nearest"
+    for which, words in (
+        (alike & ~powerless, "not significantly different from it"),
+        (
+            alike & powerless,
+            f"not significantly different from it, as {runs} runs are too few to tell",
+        ),
+    ):
+        named = {*beside[which]["one"], *beside[which]["other"]} - {best}
+        # in the order of the table where medians are the same
+        near = sorted((name for name in values if name in named), key=lambda name: medians[name])
+        if near:
+            sentence += f"; {words}: {'; '.join(map(bench_label, near))}"
+    return sentence

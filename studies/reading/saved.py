@@ -32,15 +32,18 @@ def load_front(path: Path) -> Front:
     return front
 
 
-def load_runs(paths: Sequence[Path]) -> list[Front]:
+def load_runs(paths: Sequence[Path]) -> dict[Path, Front]:
     """Recorded runs, of files or of all files of folders, after their motions were evaluated again.
 
     Unlike a front, a run may have found nothing.
     """
     inside = [sorted(path.rglob("*.json")) if path.is_dir() else [path] for path in paths]
     files = [file for own in inside for file in own]
-    runs = list(map(Front.load, files))
-    for run, file in zip(runs, files):
+    for file in files:
+        if files.count(file) > 1:
+            raise ValueError(f"the run {file} is given twice; give it once")
+    runs = {file: Front.load(file) for file in files}
+    for file, run in runs.items():
         check_figures(run, str(file))
     return runs
 

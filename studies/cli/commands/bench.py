@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.given import Given
@@ -20,6 +22,9 @@ from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from rich.console import Console
 
+if TYPE_CHECKING:
+    from quietarm.studies.bench.results import Results
+
 
 @command(
     click.Argument(["problems"], nargs=-1, required=True, metavar="PROBLEM..."),
@@ -30,9 +35,11 @@ from rich.console import Console
     option("--evaluations", default=10_000, help="Candidates of each run of a search."),
     SEED, METHOD_SETTING,
     option("--import", "imported", multiple=True, type=INPUT,
-           help="A run of another library, by a recorded function, or a folder of such runs."),
+           help="A run of another library, by a recorded function, or a folder of such runs; in a "
+           "folder, runs on other problems are left out."),
     option("--output", "-o", type=Parsed("folder", check_folder), required=True,
-           help="Folder for runs and report; runs that are there are kept."),
+           help="Folder for runs and report; runs that are there are kept, and so is a report that "
+           "has more."),
     PART, WORKERS, SCHEDULER,
 )  # fmt: skip
 def bench(given: Given) -> None:
@@ -49,13 +56,18 @@ def bench(given: Given) -> None:
       quietarm bench all --methods nsga2,gde3,epsilon,epsilon:ipopt --runs 15 --output bench
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.metaheuristics import LostJobsError, run_jobs
-    from quietarm.studies.bench.asked import jobs_of, problems_of, spell_method, write_references
-    from quietarm.studies.bench.page import bench_report, brief_report
+    from quietarm.metaheuristics import LostJobsError, finished_jobs, run_jobs
+    from quietarm.studies.bench.asked import (
+        imports_on,
+        jobs_of,
+        problems_of,
+        spell_method,
+        write_references,
+    )
+    from quietarm.studies.bench.page import reported_runs
     from quietarm.studies.bench.results import Results, imported_runs
     from quietarm.studies.bench.statistics import say_power_of
     from quietarm.studies.reading.saved import load_runs
-    from quietarm.studies.report import show
     from quietarm.studies.report.words import print_lines
 
     methods = list(map(spell_method, given.methods))
@@ -63,12 +75,13 @@ def bench(given: Given) -> None:
     asked = methods, given.runs, given.evaluations, given.seed, settings
     problems = problems_of(given.problems)
     jobs, left_out = jobs_of(problems, *asked)
-    imported = load_runs(given.imported)
+    imported, not_imported = imports_on(problems, load_runs(given.imported), given.imported)
+    reported_runs(given.output)  # refuses a folder whose runs.csv is another's
     planned = [(job.problem.name, job.label) for job in jobs]
     planned += [(run.problem.name, run.method) for run in imported_runs(imported, jobs)]
-    kept = sum((given.output / f"{job.name}.json").exists() for job in jobs)
+    kept = len(finished_jobs(jobs, given.output))  # refuses a changed file before anything is done
     there = [f"{kept} of {len(jobs)} runs are in {given.output}"] if kept else []
-    print_lines(progress_console(), *left_out, say_power_of(planned), *there)
+    print_lines(progress_console(), *left_out, *not_imported, say_power_of(planned), *there)
     write_references(problems, given.output)
     trouble = None
     with counting(len(jobs), "jobs") as progress:
@@ -80,11 +93,30 @@ def bench(given: Given) -> None:
         except LostJobsError as error:
             fronts, trouble = dict(error.fronts), error
     if fronts or trouble is None:
-        results = Results.of_jobs(fronts, imported)
-        files = bench_report(results, given.line).files(given.output)
-        for path, write in files:
-            write(path)
-        show(Console(), brief_report(results))
-        click.echo(f"wrote report.md and {len(files) - 1} tables and pictures to {given.output}")
+        _report(Results.of_jobs(fronts, imported), given)
     if trouble is not None:
         raise trouble
+
+
+def _report(results: Results, given: Given) -> None:
+    """Write the report, unless one that is there has more, and show what is in short."""
+    from quietarm.studies.bench.page import (
+        bench_report,
+        brief_report,
+        not_reported_again,
+        reported_runs,
+    )
+    from quietarm.studies.report import show
+    from quietarm.studies.report.words import counted
+
+    lost = not_reported_again(results, reported_runs(given.output))
+    files = [] if lost else bench_report(results, given.line).files(given.output)
+    for path, write in files:
+        write(path)
+    show(Console(), brief_report(results))
+    click.echo(
+        f"report.md in {given.output} stays: {counted(lost, 'run')} in it would be lost. Ask for "
+        "those as well, give another folder, or delete it"
+        if lost
+        else f"wrote report.md and {len(files) - 1} tables and pictures to {given.output}"
+    )

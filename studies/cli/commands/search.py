@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -52,7 +53,7 @@ _BY_GRADIENT = {
     option("--generations", type=int, help="Generations."),
     METHOD_SETTING, SEED,
     option("--runs", default=1,
-           help="Seeds, from --seed on; each has a file, as front-seed0.json."),
+           help="Seeds, from --seed on; each has a file, as front-seed0.json, once it is done."),
     option("--from", "start_front", type=INPUT,
            help="A front to begin with, in the first population."),
     WORKERS,
@@ -96,6 +97,8 @@ def search(given: Given) -> None:
         try:
             for front in side_by_side(partial(_search, task, given.method, asked), seeds, workers):
                 fronts.append(front)
+                if several:
+                    _save_at_once(given.output, front)
                 display.finish(front)
         except (KeyboardInterrupt, LostWorkersError) as error:
             if not fronts:
@@ -112,6 +115,17 @@ def _search(task: PointToPoint, method: str, asked: dict[str, Any], seed: int) -
     from quietarm.metaheuristics import search
 
     return search(task, method, seed=seed, **asked)
+
+
+def _save_at_once(output: Sequence[Path], front: Front) -> None:
+    """Write the files of a seed as soon as it is done: what is killed later does not lose it.
+
+    What cannot be written is tried again at the end, and said there.
+    """
+    own = [path for path in output if ending_of(path) != PICTURE]
+    for path, write in _files(own, [front], several=True) if front.points else []:
+        with suppress(ValueError, OSError):
+            write(path)
 
 
 def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> list[File]:

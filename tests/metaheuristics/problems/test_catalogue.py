@@ -53,6 +53,28 @@ def test_no_motion_of_a_fine_grid_is_better_and_the_best_come_near(name):
     assert 0.95 < grid / exact < 1.02  # the motions between the reference front's points count here
 
 
+def test_a_motion_between_samples_of_the_residual_is_not_better():
+    # found by SLSQP on 480 steps and confirmed by DOP853: 2.0e-5 below the front of version 1
+    a = [-0.03232541, -0.146737461, 0.103634969, -0.2, -0.2, -0.2]
+    problem = problem_of("single-link-30deg-0.8s")
+    (front,) = problem.fronts()
+    motion = evaluate_coefficients(problem.task, a)
+    assert motion.residual == pytest.approx(0.022786523, abs=1e-9)
+    least = np.interp(motion.residual, front.residuals, front.energies)
+    assert motion.energy > least * (1 - 1e-6)
+
+
+@NAMES
+def test_a_front_says_how_it_was_polished_and_verified(name):
+    for front in problem_of(name).fronts():
+        settings = front.record.settings
+        assert settings["polished_steps"] >= 480
+        assert settings["verified_steps"] >= 480
+        assert settings["verified_points"] >= 60
+        assert settings["tried_starts"] >= 20
+        assert 0 <= settings["best_improvement"] <= 1e-5
+
+
 def test_pymoo_has_the_exact_front_and_set():
     problem = problem_of("arm-on-flexible-link-90deg-0.8s-limits")
     made = problem.pymoo()

@@ -1,6 +1,8 @@
 """`quietarm search`: whole runs of a small size."""
 
 import math
+import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -67,6 +69,21 @@ def test_several_seeds_are_written_to_a_file_each_with_their_spread(call):
         assert f"\nvepso, seed {seed}: " in f"\n{out}"
         assert f"seed {seed} is done: hypervolume " in err
     assert not Path("f.json").exists()
+
+
+@pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
+def test_seeds_that_are_done_survive_a_kill(at_a_terminal, stop, folder, workers):
+    process = at_a_terminal(
+        f"{SMALL} --quiet --runs 10000 --workers {workers} --output f.json --output f.csv"
+    )
+    done = [Path(f"f-seed{seed}.csv") for seed in range(2)]  # written after the .json
+    while not all(path.exists() for path in done):
+        assert process.poll() is None
+        time.sleep(0.01)
+    stop(process, signal.SIGKILL)
+    for seed in range(2):
+        assert Front.load(f"f-seed{seed}.json") == directly(seed=seed)
+    assert all(path.read_text().startswith("residual_m,energy_J,a_1,a_2") for path in done)
 
 
 @pytest.mark.slow

@@ -1,0 +1,132 @@
+"""Whether the file of a run is what a bench wrote for that job: by its checksum, or evaluated."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from quietarm.metaheuristics.algorithms.presets import PRESETS
+from quietarm.metaheuristics.objective.claims import check_figures
+from quietarm.metaheuristics.quality import measured, objectives
+from quietarm.ocp import Front, Mark, Quality
+from quietarm.ocp.saved import plain, typed
+
+if TYPE_CHECKING:
+    from quietarm.metaheuristics.jobs import Job
+
+CHECKSUM = "checksum"
+"""The setting of a run's record that has it."""
+_AGAIN = "delete that file, and its run is done again"
+_SAME_QUALITY = 1e-4
+"""Hypervolumes of one front differ by less: it is evaluated with the versions that wrote it."""
+
+
+def sealed(front: Front, job: Job) -> Front:
+    """The front of a job with its checksum, as it is written."""
+    settings = {**front.record.settings, CHECKSUM: _checksum(front, job)}
+    return front.restated(settings=settings)
+
+
+def is_sealed(front: Front) -> bool:
+    """Whether a run has a checksum; runs of before have none."""
+    return CHECKSUM in front.record.settings
+
+
+def check_run(front: Front, job: Job, path: Path) -> None:
+    """ValueError where a file does not hold what a bench wrote for a job.
+
+    A file without a checksum, of before, is evaluated again: its motions, and its quality at the
+    end. Its effort and what it says of the way there can only be consistent.
+    """
+    if is_sealed(front):
+        if front.record.settings[CHECKSUM] != _checksum(front, job):
+            raise ValueError(
+                f"{path} is not what a bench wrote for {job.label}, seed {job.seed}: it was "
+                "changed, is another run's, or was measured against another reference front; "
+                f"{_AGAIN}"
+            )
+        return
+    check_figures(front, str(path), remedy=_AGAIN)
+    difference = _different_job(front, job) or _different_end(front, job) or _disorder(front, job)
+    if difference:
+        raise ValueError(f"{path} {difference}; {_AGAIN}")
+
+
+def _checksum(front: Front, job: Job) -> str:
+    """A digest of all that a file says but the checksum itself, of its job and its reference."""
+    settings = front.record.settings.items()
+    others = {name: value for name, value in settings if name != CHECKSUM}
+    as_read = typed(plain(front.restated(settings=others)), Front)
+    scale = objectives(job.problem.reference().front).tolist()
+    text = json.dumps([job.name, scale, plain(as_read)], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _different_job(front: Front, job: Job) -> str:
+    """What a file says of method, seed, settings and budget that is not the job's."""
+    stated = {
+        "method": front.record.method,
+        "seed": front.record.seed,
+        **front.record.settings,
+    }
+    wanted = {
+        "seed": job.seed,
+        "problem": job.problem.name,
+        # multistart states its starts as points: each of them is one start
+        **{"points" if name == "starts" else name: job.settings[name] for name in job.settings},
+    }
+    if isinstance(job.method, str):  # of one's own the digest of the method tells
+        wanted["method"] = job.method
+    if job.budget is not None:
+        wanted["budget"] = job.budget
+    for name, value in wanted.items():
+        if stated.get(name) != value:
+            return f"states {name} {stated.get(name)}, and its job has {value}"
+    return ""
+
+
+def _different_end(front: Front, job: Job) -> str:
+    """What the last mark says of its points that is not so."""
+    if not front.history:
+        return "says nothing of its cost"
+    stated, gives = (run.history[-1] for run in (front, measured(front, job.problem.reference())))
+    for what, one, other in (
+        ("its points", stated.quality, gives.quality),
+        ("its points with motions between", stated.between, gives.between),
+    ):
+        if not _same_quality(one, other):
+            return (
+                f"states a hypervolume of {_share(one)} for {what}, and they have {_share(other)}"
+            )
+    return ""
+
+
+def _same_quality(one: Quality | None, other: Quality | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return abs(one.hypervolume - other.hypervolume) <= _SAME_QUALITY
+
+
+def _share(quality: Quality | None) -> str:
+    return "none" if quality is None else f"{quality.hypervolume:.4f}"
+
+
+def _disorder(front: Front, job: Job) -> str:
+    """What cannot be of the effort that a file states."""
+    first = Mark(0, 0.0)
+    for before, after in pairwise((first, *front.history)):
+        for name in ("evaluations", "seconds", "gradients", "hessians"):
+            if getattr(after, name) < getattr(before, name):
+                return f"states a history in which {name} fall"
+    last, record = front.history[-1], front.record
+    if last.evaluations != record.evaluations or last.seconds > record.seconds:
+        return (
+            f"states {record.evaluations} candidates in {record.seconds:.3g} s, and its history "
+            f"ends with {last.evaluations} in {last.seconds:.3g} s"
+        )
+    if isinstance(job.method, str) and job.method in PRESETS and last.evaluations != job.budget:
+        return f"states {last.evaluations} candidates, and its job has a budget of {job.budget}"
+    return ""

@@ -1,0 +1,163 @@
+"""A run's file is believed if it is what the bench wrote for its job, or evaluated again."""
+
+import json
+import shutil
+
+import pytest
+from bench_problems import NAME
+from quietarm.metaheuristics import Job, finished_jobs, run_jobs
+from quietarm.metaheuristics.run_files import CHECKSUM, is_sealed
+
+import quietarm as qa
+
+JOBS = [Job(NAME, "random", seed, 200) for seed in (0, 1)]
+JOB = JOBS[0]
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """The folder of two runs."""
+    folder = tmp_path_factory.mktemp("runs")
+    run_jobs(JOBS, folder)
+    return folder
+
+
+@pytest.fixture
+def runs(written, tmp_path):
+    """A copy of it, to be changed."""
+    return shutil.copytree(written, tmp_path / "runs")
+
+
+def path_of(job, folder):
+    return folder / f"{job.name}.json"
+
+
+def change(folder, edit, checksum=True):
+    """Edit a run's document, and leave its checksum or take it away."""
+    path = path_of(JOB, folder)
+    document = json.loads(path.read_text())
+    if not checksum:
+        del document["record"]["settings"][CHECKSUM]
+    edit(document)
+    path.write_text(json.dumps(document))
+
+
+def lower_energies(document):
+    for point in document["points"]:
+        point["energy"] *= 0.9
+
+
+def lower_residuals(document):
+    for point in document["points"]:
+        point["residual"] *= 0.9
+
+
+def better_end(document):
+    document["history"][-1]["quality"]["hypervolume"] = 1.0
+
+
+def better_way(document):
+    document["history"][0]["quality"]["hypervolume"] = 0.999
+
+
+def fewer_evaluations(document):
+    document["history"][-1]["evaluations"] = 20
+    document["record"]["evaluations"] = 20
+
+
+def less_time(document):
+    for mark in document["history"]:
+        mark["seconds"] *= 0.1
+    document["record"]["seconds"] *= 0.1
+
+
+def later_start(document):
+    document["history"][0]["seconds"] = document["record"]["seconds"] * 0.99
+
+
+def other_seed(document):
+    document["record"]["seed"] = 7
+
+
+CHANGES = [
+    lower_energies, lower_residuals, better_end, better_way, fewer_evaluations, less_time,
+    other_seed,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("edit", CHANGES)
+def test_a_run_that_was_changed_is_refused(runs, edit):
+    change(runs, edit)
+    with pytest.raises(ValueError, match=r"is not what a bench wrote for random, seed 0.*delete"):
+        run_jobs(JOBS, runs)
+
+
+@pytest.mark.parametrize("move", [shutil.copy, shutil.move])
+def test_another_run_in_its_place_is_refused(runs, move):
+    move(path_of(JOBS[1], runs), path_of(JOB, runs))
+    with pytest.raises(ValueError, match="is not what a bench wrote for random, seed 0"):
+        run_jobs([JOB], runs)
+    # another method's, with the budget and seed of the job
+    better = Job(NAME, "nsga2", 0, 200, {"population": 20})
+    run_jobs([better], runs)
+    shutil.copy(path_of(better, runs), path_of(JOB, runs))
+    with pytest.raises(ValueError, match="is not what a bench wrote for random, seed 0"):
+        run_jobs([JOB], runs)
+
+
+def test_what_the_bench_wrote_is_believed_and_what_is_deleted_is_done_again(runs):
+    before = finished_jobs(JOBS, runs)
+    assert all(map(is_sealed, before.values()))
+    change(runs, lambda document: None)  # other white space
+    assert finished_jobs(JOBS, runs) == before
+    path_of(JOB, runs).unlink()
+    assert run_jobs(JOBS, runs)[JOB].points == before[JOB].points
+
+
+def test_a_run_of_before_without_a_checksum_is_loaded(runs):
+    before = finished_jobs(JOBS, runs)
+    change(runs, lambda document: None, checksum=False)
+    after = finished_jobs(JOBS, runs)
+    assert after[JOBS[1]] == before[JOBS[1]]
+    assert not is_sealed(after[JOB])
+    assert (after[JOB].points, after[JOB].history) == (before[JOB].points, before[JOB].history)
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        (lower_energies, "point 1 of .* states energy"),
+        (lower_residuals, "point 1 of .* states residual"),
+        (better_end, "states a hypervolume of 1.0000 for its points, and they have 0"),
+        (fewer_evaluations, "states a history in which evaluations fall"),
+        (later_start, "states a history in which seconds fall"),
+        (other_seed, "states seed 7, and its job has 0"),
+    ],
+)
+def test_a_run_of_before_is_evaluated_again(runs, edit, words):
+    change(runs, edit, checksum=False)
+    with pytest.raises(ValueError, match=f"{words}.*; delete that file, and its run is done again"):
+        finished_jobs(JOBS, runs)
+
+
+def test_the_command_refuses_a_changed_run_in_one_line(call, runs):
+    change(runs, lower_energies)
+    line = f"bench {NAME} --methods random --runs 2 --evaluations 200 --output {runs}"
+    code, out, err = call(line)
+    assert (code, out) == (2, "")
+    assert "is not what a bench wrote for random, seed 0" in err.splitlines()[-1]
+    assert [path.name for path in runs.iterdir()] == [NAME]  # nothing was written
+
+
+def test_runs_measured_against_another_reference_are_refused(tmp_path):
+    reference = qa.problem_of(NAME).fronts()[0]
+    for points in (reference.points, reference.points[::2]):
+        front = qa.Front(
+            reference.task, reference.profile, points, reference.record, reference.reference
+        )
+        job = Job(qa.NamedProblem.of_front("mine", front), "random", 0, 100)
+        if points is reference.points:
+            run_jobs([job], tmp_path)
+        else:
+            with pytest.raises(ValueError, match="measured against another reference front"):
+                run_jobs([job], tmp_path)
