@@ -12,10 +12,12 @@ from importlib import import_module
 
 import click
 from quietarm.ocp import QuietarmError
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import cut, printable, unknown
 from quietarm.ocp.interrupts import STOPS
 
 BAD_INPUT, NOT_SOLVED = 2, 1
+_LONGEST_MESSAGE = 2000
+"""Letters, of which a name in it may have a hundred thousand; the remedy stands at its end."""
 
 COMMANDS = {
     "plan": "Find the move of least energy that arrives at rest.",
@@ -163,6 +165,6 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _complain(message: str, status: int) -> int:
-    line = " ".join(message.split())
+    line = cut(printable(" ".join(message.split())), _LONGEST_MESSAGE)
     click.echo(f"quietarm: {line}", err=True)
     return status

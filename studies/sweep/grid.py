@@ -15,6 +15,8 @@ from quietarm.ocp import PointToPoint
 OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
 """Axes over the move, with their units; all others are parameters of the plant."""
 _WHOLE_STEPS = 1e-6
+MOST_VALUES, MOST_CELLS = 100_000, 10_000_000
+"""Of an axis and of a grid; so many cells take some 14 hours on a core, and as dataset 3 GB."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,11 @@ def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
         if not (steps > 0 and math.isfinite(steps)):
             raise ValueError(
                 f"{text!r}: steps of {ends[2]} do not lead from {ends[0]} to {ends[1]}"
+            )
+        if steps >= MOST_VALUES:
+            raise ValueError(
+                f"{text!r}: steps of {ends[2]} make {steps + 1:.0f} values, and {MOST_VALUES} are "
+                "the most; give wider steps"
             )
         if abs(steps - round(steps)) > _WHOLE_STEPS * steps:
             raise ValueError(
