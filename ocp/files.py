@@ -6,6 +6,7 @@ import errno
 import os
 import shutil
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 from uuid import uuid4
 
@@ -38,6 +39,9 @@ def check_writable(path: str | Path) -> Path:
     """Make sure that a file can be written, before a solve rather than after it."""
     target = Path(path)
     try:
+        if target.is_symlink():
+            with suppress(FileNotFoundError):  # to a file that is to be
+                target.stat()  # of links that lead round the system says so
         # a link may lead to another folder
         folder = target.resolve().parent if target.is_symlink() else target.parent
         if target.is_dir():
