@@ -152,7 +152,7 @@ class MoveLibrary:
 
     def between(self, samples: int = _SAMPLES) -> Between:
         """Residual and energy of random moves between the cells; kept in the dataset."""
-        known = self.store.note("between the cells")
+        known = self.store.kept("between the cells")
         if known.get("samples") == samples:
             return Between(**known)
         low, high = np.array([(axis.values[0], axis.values[-1]) for axis in self.grid.axes]).T

@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MANY = 1_000_000
-_HOURS_OF_MANY = 1.4
 
 
 @command(
@@ -77,16 +76,17 @@ def sweep(given: Given) -> None:
     if len(datasets) != 1:
         raise click.UsageError("give one dataset by --output, a folder as moves.zarr")
     if grid.cells > _MANY and not given.yes:
-        hours = _HOURS_OF_MANY * grid.cells / _MANY
         raise ValueError(
-            f"the grid has {grid.cells} cells, some {hours:.0f} hours on a core; give wider steps, "
-            "or --yes"
+            f"the grid has {grid.cells} cells, some {grid.hours:.0f} hours on a core; give wider "
+            "steps, or --yes"
         )
     chooses = chooses_terms(given.profile, given.terms)
     motions = choose_profile(grid.task) if chooses else given.read_profile(grid.task)
     solve = SolveSettings(given.residual_limit or 0.0, given.bound, starts=1)
     store = Store.of(datasets[0], Definition(grid, motions, solve, given.front or 0, given.margin))
     missing, trouble = len(store.missing(given.part)), None
+    if not missing:
+        store.check()
     try:
         with counting(missing, "chunks") as report:
             run_sweep(store, given.part, report=report, **given.pick("workers", "scheduler"))
