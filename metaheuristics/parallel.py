@@ -16,6 +16,8 @@ from typing import Any
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.checks import install
 
+MOST_WORKERS = 1024
+"""Processes of one machine."""
 _ANSWER_SECONDS = 10
 """In which a scheduler answers, and within which it has a worker again that has lost the last."""
 _LOOK_SECONDS = 2

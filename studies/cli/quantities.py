@@ -14,9 +14,10 @@ from functools import partial, reduce
 from operator import add, lt
 from typing import Any, TypeVar
 
+from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import ModalState
-from quietarm.ocp.checks import finite, known, unknown
+from quietarm.ocp.checks import finite, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.limits import quantities_of
 from quietarm.studies.reading.units import UNITS as OF_COLUMNS
@@ -200,6 +201,14 @@ def parse_state(text: str) -> ModalState:
 def parse_torque_speed(text: str) -> tuple[tuple[float, float], ...]:
     """Read what a drive gives, torques at speeds: ``1.5Nm@0,0.8Nm@20`` or ``0.8Nm@190rpm``."""
     return tuple(map(_torque_at_speed, text.split(",")))
+
+
+def parse_workers(text: str) -> int:
+    """Read a number of processes."""
+    number: Any = text
+    with suppress(ValueError):
+        number = int(text)
+    return whole("workers", number, 1, MOST_WORKERS, "one for each core is the usual number")
 
 
 def parse_pair(

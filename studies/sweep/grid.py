@@ -50,7 +50,8 @@ def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
         steps = (last - first) / step if step else math.inf
         if not (steps > 0 and math.isfinite(steps)):
             raise ValueError(
-                f"{text!r}: steps of {ends[2]} do not lead from {ends[0]} to {ends[1]}"
+                f"{text!r}: steps of {ends[2]} do not lead from {ends[0]} to {ends[1]}; give "
+                "from:to:step, as 10deg:90deg:5deg"
             )
         if steps >= MOST_VALUES:
             raise ValueError(

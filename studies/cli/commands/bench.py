@@ -11,6 +11,7 @@ from quietarm.studies.cli.options import (
     SCHEDULER,
     SEED,
     WORKERS,
+    YES,
     command,
     counting,
     option,
@@ -33,7 +34,7 @@ from rich.console import Console
            help="A run of another library, by a recorded function, or a folder of such runs."),
     option("--output", type=Parsed("folder", check_folder), required=True,
            help="Folder for runs and report; runs that are there are kept."),
-    PART, WORKERS, SCHEDULER,
+    PART, WORKERS, SCHEDULER, YES,
 )  # fmt: skip
 def bench(given: Given) -> None:
     """Hold methods against the reference front of each PROBLEM, from several seeds.
@@ -50,6 +51,7 @@ def bench(given: Given) -> None:
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics import LostJobsError, run_jobs
+    from quietarm.metaheuristics.search import SECONDS_OF_CANDIDATE
     from quietarm.studies.bench.asked import jobs_of, problems_of, spell_method, write_references
     from quietarm.studies.bench.page import bench_report, brief_report
     from quietarm.studies.bench.results import Results, imported_runs
@@ -63,6 +65,8 @@ def bench(given: Given) -> None:
     asked = methods, given.runs, given.evaluations, given.seed, settings
     problems = problems_of(given.problems)
     jobs, left_out = jobs_of(problems, *asked)
+    candidates = sum(job.budget or 0 for job in jobs)
+    given.refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE)
     imported = load_runs(given.imported)
     planned = [(job.problem.name, job.label) for job in jobs]
     planned += [(run.problem.name, run.method) for run in imported_runs(imported, jobs)]
