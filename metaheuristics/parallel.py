@@ -139,7 +139,8 @@ def _threads_of(scheduler: str) -> int:
 
     async def ask() -> int:
         arguments = Security().get_connection_args("client")
-        async with rpc(scheduler, timeout=_ANSWER_SECONDS, connection_args=arguments) as there:
+        there: Any = rpc(scheduler, timeout=_ANSWER_SECONDS, connection_args=arguments)
+        async with there:
             threads = await there.ncores()
         return sum(threads.values())
 

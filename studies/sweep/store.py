@@ -163,43 +163,42 @@ def _lay_out(path: Path, definition: Definition) -> None:
 
     By zarr, which writes what the arrays are: xarray visits every chunk of what is empty.
     """
+    _xarray()
     import zarr
 
     texts = {"sweep": json.dumps(plain(definition)), "versions": json.dumps(versions())}
-    folder = tempfile.TemporaryDirectory(dir=path.parent, prefix=".sweep-")
-    with _undisturbed(), folder as name:
-        place = Path(name) / "store"
-        group = zarr.create_group(place, attributes={"format": _FORMAT, **texts})
+    with _undisturbed(), tempfile.TemporaryDirectory(dir=path.parent, prefix=".sweep-") as folder:
+        place = Path(folder) / "store"
+        group: Any = zarr.create_group(place, attributes={"format": _FORMAT, **texts})
+        for name, array in _arrays(definition).items():
+            group.create_array(name, **array)
         for axis in definition.grid.axes:
-            values, own = np.array(axis.values), {"units": axis.unit}
-            made = group.create_array(
-                axis.name, shape=values.shape, dtype=values.dtype, dimension_names=[axis.name],
-                attributes=own,
-            )  # fmt: skip
-            made[:] = values
-        for name, (dimensions, sizes, chunk, empty, attributes) in _arrays(definition).items():
-            group.create_array(
-                name, shape=sizes, chunks=chunk, dtype=np.asarray(empty).dtype, fill_value=empty,
-                dimension_names=dimensions, attributes=attributes,
-            )  # fmt: skip
+            group[axis.name][:] = np.array(axis.values)
         with suppress(OSError):  # another process was first
             os.rename(place, path)
 
 
-def _arrays(definition: Definition) -> dict[str, tuple[Any, ...]]:
-    """Dimensions, sizes, chunk, what stands for nothing, and attributes of every variable."""
-    grid = definition.grid
-    arrays: dict[str, tuple[Any, ...]] = {
-        name: (
-            [*grid.names, *beside], (*grid.shape, *beside.values()),
-            (*definition.chunk, *beside.values()), empty, {"units": unit, **attributes},
-        )
-        for name, (unit, beside, empty, attributes) in definition.variables.items()
+def _arrays(definition: Definition) -> dict[str, dict[str, Any]]:
+    """What zarr is told of the axes, the variables and the digests."""
+    grid, variables = definition.grid, definition.variables
+    arrays: dict[str, dict[str, Any]] = {}
+    for axis in grid.axes:
+        arrays[axis.name] = {
+            "shape": (len(axis.values),), "dtype": float, "dimension_names": [axis.name],
+            "attributes": {"units": axis.unit},
+        }  # fmt: skip
+    for name, (unit, beside, empty, attributes) in variables.items():
+        sizes = tuple(beside.values())
+        arrays[name] = {
+            "shape": (*grid.shape, *sizes), "chunks": (*definition.chunk, *sizes),
+            "dtype": np.asarray(empty).dtype, "fill_value": empty,
+            "dimension_names": [*grid.names, *beside], "attributes": {"units": unit, **attributes},
+        }  # fmt: skip
+    of_chunk = len(variables) - 1  # without the jumps, which follow from the others
+    arrays[DIGEST] = {
+        "shape": (len(definition.chunks), of_chunk), "chunks": (1, of_chunk), "dtype": np.int64,
+        "fill_value": 0, "dimension_names": ["chunk", "variable"],
     }  # fmt: skip
-    variables = len(definition.variables) - 1  # without the jumps, which others follow from
-    arrays[DIGEST] = (
-        ["chunk", "variable"], (len(definition.chunks), variables), (1, variables), np.int64(0), {},
-    )  # fmt: skip
     return arrays
 
 

@@ -9,19 +9,16 @@ from quietarm.studies.cli.quantities import parse_workers
 from quietarm.studies.cli.types import Parsed
 
 _MOST_SEEDS = 1000
-"""Of each search: nine take an hour."""
+"""Of each search; nine are those of the README."""
 
 
 @command(
     option("--full", is_flag=True, help="Judge every claim as well, with several seeds."),
     option("--seeds", type=int, help="Seeds of VEPSO and NSGA-II. [default: 1; --full: 9]"),
-    option(
-        "--workers",
-        type=Parsed("number", parse_workers),
-        help="Processes that share the work. [default: one a core]",
-    ),
+    option("--workers", type=Parsed("number", parse_workers),
+           help="Processes that share the work. [default: one a core]"),
     REPORT_OPTION,
-)
+)  # fmt: skip
 def reproduce(given: Given) -> None:
     """Recompute the paper's Tables 2, 3, 5 and 6 and its figures; --full also judges its claims.
 
