@@ -96,7 +96,8 @@ class Given:
     def read_profile(self, task: PointToPoint) -> JointProfile:
         """The joint profile; where it has many coefficients, a word of how long that takes."""
         profile = profile_of(self.profile, task, self.terms)
-        if profile.size > _MANY_COEFFICIENTS:
+        by_gradient = self._context.command.name != "search"
+        if profile.size > _MANY_COEFFICIENTS and by_gradient:
             print_lines(
                 Console(stderr=True, quiet=self.quiet),
                 f"{profile.size} coefficients: a plan takes minutes; with fewer --terms seconds",

@@ -7,6 +7,7 @@ import zipfile
 import numpy as np
 import pytest
 from lines import MOVE
+from quietarm.ocp import CycloidPolynomial, epsilon_front
 from quietarm.studies.reading.table import read_table
 from scipy.io import savemat
 
@@ -127,6 +128,25 @@ def test_a_name_of_a_file_is_cut_and_gives_the_terminal_no_orders(call, files):
     assert err.isascii()
     assert err.rstrip("\n").isprintable()
     assert "?[31mred" in err
+
+
+@pytest.mark.slow
+def test_the_name_of_a_method_gives_the_terminal_no_orders(call, folder, task):
+    front = epsilon_front(task, CycloidPolynomial(2), bound=0.3, points=3, starts=1)
+    front.restated(method="\x1b[31mred\x9b2J").save("front.json")
+    status, out, _ = call("compare front.json --no-free-motion")
+    assert status == 0
+    assert "?[31mred" in out
+    assert not {"\x1b", "\x9b"} & set(out)
+    with pytest.raises(ValueError, match="a name of 100000 letters; give at most 300"):
+        front.restated(method="n" * 100_000)
+
+
+def test_a_profile_of_many_coefficients_says_that_it_takes_minutes(call):
+    line = f"sweep {MOVE} --profile network --terms 30 --output a.zarr --starts 1"
+    assert call(line)[0] == 2  # sweep has no starts
+    _, _, err = call(f"plan {MOVE} --profile network --terms 30 --bound -1")
+    assert err.startswith("91 coefficients: a plan takes minutes; with fewer --terms seconds\n")
 
 
 SOUND = matlab(t=np.arange(50) / 50.0, tip=np.sin(np.arange(50.0)), s={"a": [1.0, 2.0]}, name="x")
