@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
 from quietarm.metaheuristics.gradient import GRADIENT, gradient_front, polished
-from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
+from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError
 from quietarm.metaheuristics.quality import measured
@@ -266,7 +266,7 @@ def run_jobs(
     LostJobsError
         At the end, if jobs failed, or their workers died twice.
     """
-    workers = whole("workers", workers, 1, 1024)
+    workers = whole("workers", workers, 1, MOST_WORKERS)
     index, parts = whole("part", part[0], 1, part[1]), whole("parts", part[1], 1)
     _refuse_twice(jobs)
     done, failures = finished_jobs(jobs, folder), dict[str, str]()

@@ -28,6 +28,8 @@ class PlantFile:
         return hashlib.sha256(self.source).hexdigest()
 
 
+_MOST_BYTES = 1_000_000
+"""Of a plant file: some twenty thousand lines."""
 _file_of: dict[type[Plant], PlantFile] = {}
 
 
@@ -52,9 +54,14 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
     if Path(path).suffix != ".py":  # a data file may be valid Python, and is not run by mistake
         raise ValueError(f"plant file {path} is not called .py; give a Python file")
     try:
-        source = Path(path).read_bytes()
+        if Path(path).exists() and not Path(path).is_file():  # a pipe or a device may never end
+            raise ValueError(f"plant file {path} is no ordinary file; save it as one")
+        with open(path, "rb") as file:
+            source = file.read(_MOST_BYTES + 1)
     except OSError as error:
         raise ValueError(f"plant file {path} cannot be read: {error}; give another file") from None
+    if len(source) > _MOST_BYTES:
+        raise ValueError(f"plant file {path} has over {_MOST_BYTES} bytes; is it another file?")
     return dict(_plants_of(PlantFile(str(path), source)))
 
 

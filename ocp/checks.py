@@ -196,6 +196,22 @@ def spelling(name: str) -> str:
     return re.sub(r"i{2,3}$", lambda match: str(len(match[0])), small)
 
 
+def cut(text: str, most: int) -> str:
+    """A text of at most so many letters, without its middle where it is longer."""
+    if len(text) <= most:
+        return text
+    left = (most - 5) // 2
+    return f"{text[:left]} ... {text[-left:]}"
+
+
+def printable(text: str) -> str:
+    """A text for a terminal, which would obey the control characters of a stranger's file."""
+    if text.isprintable():
+        return text
+    kept = "\n\t\N{NO-BREAK SPACE}"
+    return "".join(letter if letter.isprintable() or letter in kept else "?" for letter in text)
+
+
 def known(family: type[T]) -> dict[str, type[T]]:
     """The subclasses that have a name of their own, by it, those of the user's own files too."""
     found: dict[str, type[T]] = {}

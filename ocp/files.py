@@ -6,19 +6,30 @@ import errno
 import os
 import shutil
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 from uuid import uuid4
 
 from quietarm.ocp.errors import FileFormatError
 
+MOST_BYTES = 100_000_000
+"""Of a file that is read: two hours of four signals at 100 Hz as text are 40 MB."""
+
 
 def read_bytes(path: str | Path) -> bytes:
-    """The content of an ordinary file; FileFormatError where it cannot be read."""
+    """The content of an ordinary file; FileFormatError where it cannot be read, or is too large."""
     place = Path(path)
     try:
         if place.exists() and not place.is_file():  # a pipe may never end, and does not come again
             raise FileFormatError(f"{path} is no ordinary file; save it as one and give its name")
-        return place.read_bytes()
+        with open(place, "rb") as file:
+            content = file.read(MOST_BYTES + 1)
+        if len(content) > MOST_BYTES:
+            raise FileFormatError(
+                f"{path} has {place.stat().st_size / 1e6:.0f} MB; give at most "
+                f"{MOST_BYTES / 1e6:.0f} MB, the part that matters"
+            )
+        return content
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise FileFormatError(f"{path} cannot be read: {reason}; give another file") from None
@@ -28,6 +39,9 @@ def check_writable(path: str | Path) -> Path:
     """Make sure that a file can be written, before a solve rather than after it."""
     target = Path(path)
     try:
+        if target.is_symlink():
+            with suppress(FileNotFoundError):  # to a file that is to be
+                target.stat()  # of links that lead round the system says so
         # a link may lead to another folder
         folder = target.resolve().parent if target.is_symlink() else target.parent
         if target.is_dir():

@@ -31,6 +31,8 @@ MOST_BOUND = 1e6
 AGREEMENT, REST = 1e-3, 1e-6
 """Largest difference between integrators for a verified figure: a share, or [m] of a residual."""
 MOST_STARTS, MOST_POINTS = 10_000, 10_000
+_LONGEST_NAME = 300
+"""Letters; a file has at most 255 in its name, and may be what a method is called by."""
 
 
 def versions() -> dict[str, str]:
@@ -84,6 +86,10 @@ class Record:
     def __post_init__(self) -> None:
         if not self.method.strip():
             raise ValueError(f"method is {self.method!r}; give the name of the method")
+        if len(self.method) > _LONGEST_NAME:
+            raise ValueError(
+                f"method has a name of {len(self.method)} letters; give at most {_LONGEST_NAME}"
+            )
         for name, value in self.settings.items():
             if isinstance(value, float):
                 finite(f"setting {name}", value)

@@ -190,7 +190,9 @@ class Saved:
         content = content_of(path, document, cls.kind, cls.version)
         try:
             return typed(content, cls)
-        except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
+        except (
+            ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError,
+        ) as error:  # fmt: skip
             # what is wrong and what to do about it are parted by a semicolon
             remedy = "" if ";" in str(error) else f"; write the {cls.kind} again"
             raise FileFormatError(f"{path} is not a valid {cls.kind}: {error}{remedy}") from None

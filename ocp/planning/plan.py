@@ -34,7 +34,7 @@ from quietarm.ocp.solvers.batch import batch
 from quietarm.ocp.solvers.problem import STILL
 from quietarm.ocp.task import PointToPoint
 
-_LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
+_LEAST_TICKS, _MOST_SAMPLES = 1e-4, 500_000
 _SAMPLES = 1500
 """Of the trajectory of a plan."""
 _LOOKS = 2001
@@ -276,6 +276,7 @@ def ticks_of_move(duration: float, sample_rate: float) -> int:
         )
     if ticks > _MOST_SAMPLES:
         raise ValueError(
-            f"sample rate {sample_rate:g} Hz asks for {ticks:.0f} rows; give a lower rate"
+            f"sample rate {sample_rate:g} Hz asks for {ticks:.0f} rows, of at most "
+            f"{_MOST_SAMPLES}; give at most {_MOST_SAMPLES / duration:.6g} Hz"
         )
     return max(1, math.ceil(ticks - 1e-9))

@@ -12,10 +12,14 @@ from importlib import import_module
 
 import click
 from quietarm.ocp import QuietarmError
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import cut, printable, unknown
 from quietarm.ocp.interrupts import STOPS
 
 BAD_INPUT, NOT_SOLVED = 2, 1
+_STANDARD_ERROR = 2
+"""The last of the numbers that a system gives to a process's own streams."""
+_LONGEST_MESSAGE = 2000
+"""Letters, of which a name in it may have a hundred thousand; the remedy stands at its end."""
 
 COMMANDS = {
     "plan": "Find the move of least energy that arrives at rest.",
@@ -103,6 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         os.environ["MPLBACKEND"] = "agg"
         warnings.filterwarnings("ignore", ".* more than a turn")  # they had a unit
         sys.unraisablehook = _unless_ctrl_c
+        _open_what_is_closed()
         _take_ends_as_ctrl_c()
     if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
         del os.environ["COLUMNS"]
@@ -113,6 +118,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if arguments is None:  # answered: nothing is left that another Ctrl-C could stop
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.exit(status)
+
+
+def _open_what_is_closed() -> None:
+    """Let words go nowhere where a stream is closed, as by `>&-`; no file takes its place."""
+    while (number := os.open(os.devnull, os.O_RDWR)) <= _STANDARD_ERROR:
+        os.set_inheritable(number, True)  # workers have them, too
+    os.close(number)
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
 
 
 def _take_ends_as_ctrl_c() -> None:
@@ -163,6 +178,6 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _complain(message: str, status: int) -> int:
-    line = " ".join(message.split())
+    line = cut(printable(" ".join(message.split())), _LONGEST_MESSAGE)
     click.echo(f"quietarm: {line}", err=True)
     return status

@@ -22,11 +22,16 @@ from quietarm.studies.cli.plants import (
 )
 from quietarm.studies.cli.quantities import RESIDUAL_LIMIT, parse_of_plant
 from quietarm.studies.reading.profiles import profile_of
+from quietarm.studies.report.words import print_lines
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
+from rich.console import Console
 
 _OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()), TORQUE_SPEED)
 """Options that are read once the plant is known: in radians, or in metres of a linear axis."""
 _OTHERS = ("residual_window", "initial", "final", "energy")
+_MANY_HOURS = 10
+_MANY_COEFFICIENTS = 40
+"""With so many a solve takes minutes; six to thirty take seconds."""
 _NEEDED = {"target": "30deg", "duration": "0.8"}
 
 
@@ -66,6 +71,14 @@ class Given:
         """Refuse all options that were typed but some."""
         self.refuse({one.name for one in self._context.command.params if one.name} - {*than}, why)
 
+    def refuse_endless(self, number: int, what: str, seconds: float) -> None:
+        """Refuse work of many hours, so many seconds each, unless --yes is typed."""
+        hours = number * seconds / 3600
+        if hours > _MANY_HOURS and not self.yes:
+            raise ValueError(
+                f"{number} {what} take some {hours:.3g} hours on a core; give fewer, or --yes"
+            )
+
     def read_residual_limit(self, plant: Plant) -> float | None:
         """The residual limit in the unit of the plant's tips; None where none was typed."""
         return self.read_of_plant(RESIDUAL_LIMIT, plant)
@@ -85,8 +98,15 @@ class Given:
         return build_plant(kind, single_values(read_parameters(kind, self.parameters)))
 
     def read_profile(self, task: PointToPoint) -> JointProfile:
-        """The joint profile."""
-        return profile_of(self.profile, task, self.terms)
+        """The joint profile; where it has many coefficients, a word of how long that takes."""
+        profile = profile_of(self.profile, task, self.terms)
+        by_gradient = self._context.command.name != "search"
+        if profile.size > _MANY_COEFFICIENTS and by_gradient:
+            print_lines(
+                Console(stderr=True, quiet=self.quiet),
+                f"{profile.size} coefficients: a plan takes minutes; with fewer --terms seconds",
+            )
+        return profile
 
     def read_task(self, **known: float) -> PointToPoint:
         """The task, with what is `known` in the place of options."""

@@ -20,6 +20,7 @@ from quietarm.studies.cli.quantities import (
     parse_error,
     parse_share_of_work,
     parse_state,
+    parse_workers,
 )
 from quietarm.studies.cli.types import SETTING, TIME, Named, Parsed
 from quietarm.studies.reading.profiles import FAMILIES, POLYNOMIAL
@@ -132,8 +133,9 @@ SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much r
 METHOD_SETTING = option("--setting", "settings", type=SETTING, multiple=True, metavar="NAME=VALUE",
                         help="A setting of the method, as crossover=0.7, or in a bench "
                         "nsga2.crossover=0.7; quietarm list METHOD has them all.")  # fmt: skip
-WORKERS = option("--workers", type=int, default=1,
+WORKERS = option("--workers", type=Parsed("number", parse_workers), default="1",
                  help="Processes of this machine that share the work.")  # fmt: skip
+YES = option("--yes", is_flag=True, help="Begin what takes a core more than ten hours.")
 SCHEDULER = option("--scheduler", metavar="ADDRESS", help="Let the workers of this dask scheduler "
                    "share the work, as in tcp://host:8786.")  # fmt: skip
 PART = option("--part", type=Parsed("i/n", parse_share_of_work), default="1/1",

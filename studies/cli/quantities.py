@@ -14,9 +14,10 @@ from functools import partial, reduce
 from operator import add, lt
 from typing import Any, TypeVar
 
+from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.ocp import ModalState
-from quietarm.ocp.checks import finite, known, unknown
+from quietarm.ocp.checks import finite, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
 from quietarm.studies.reading.units import UNITS as OF_COLUMNS
@@ -226,6 +227,14 @@ def parse_torque_speed(text: str, joint: str = ROTARY) -> tuple[tuple[float, flo
     Of a linear joint forces: ``100N@0,40N@500mm/s``.
     """
     return tuple(map(_of_drives[joint], text.split(",")))
+
+
+def parse_workers(text: str) -> int:
+    """Read a number of processes."""
+    number: Any = text
+    with suppress(ValueError):
+        number = int(text)
+    return whole("workers", number, 1, MOST_WORKERS, "one for each core is the usual number")
 
 
 def parse_pair(

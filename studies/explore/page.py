@@ -40,6 +40,7 @@ _WAIT = 5
 """Milliseconds in which changes are gathered: a slider sends more of them than are drawn."""
 _WORK = ThreadPoolExecutor(1, "explore")
 """Where plans and fronts are computed, while the page goes on."""
+_ROUNDING = 1e-9
 _FOLLOW = "if (cb_obj.value !== null) other.value = cb_obj.value"
 _HERE = Path(__file__).parent
 
@@ -70,8 +71,9 @@ class Page:
             _button("Plain cycloid", partial(self._change, Explored.begin_again)),
             _button("Keep curve", partial(self._change, Explored.keep)),
         ]
-        for root in self._roots(plants):
-            document.add_root(root)
+        with document.models.freeze():  # else all models are collected anew for every root
+            for root in self._roots(plants):
+                document.add_root(root)
         document.title = "quietarm explore"
         document.theme = Theme(_HERE / "theme.yaml")
         loader = PackageLoader("quietarm.studies", "explore")
@@ -101,7 +103,7 @@ class Page:
         """Take what is set in a field, with all that is set within a moment."""
 
         def typed(_: str, old: Any, new: Any) -> None:
-            if new == self._explored.shown[name]:
+            if not self._typed and _same(new, self._explored.shown[name]):
                 return  # it was set by the page
             if not self._typed:
                 change: Any = self._change  # what it returns is not asked for
@@ -197,10 +199,21 @@ class Page:
             self._sliders = sliders
             self._shape.children = self._group("shape")
         for name, field in self._fields.items():
-            field.value = explored.shown[name]
+            if not _same(field.value, explored.shown[name]):
+                field.value = explored.shown[name]
         self._figures.text = _facts(explored)
         self._buttons[-1].label = "Drop curve" if explored.kept is explored.plan else "Keep curve"
         self._plots.show(explored)
+
+
+def _same(value: Any, shown: Any) -> bool:
+    """Whether a field shows a value: a slider's steps add up to it but for rounding.
+
+    What is set back for that alone meets the next moves of the slider, and none of them ends.
+    """
+    if isinstance(value, float | int) and isinstance(shown, float | int):
+        return math.isclose(value, shown, rel_tol=_ROUNDING, abs_tol=_ROUNDING)
+    return value == shown
 
 
 def _facts(explored: Explored) -> str:

@@ -15,7 +15,7 @@ from quietarm.studies.reading.table import ARRAYS, Column, read_table, reading
 Array = NDArray[np.float64]
 
 _COEFFICIENT = re.compile(
-    r"(?:a|x|coefficients?|pareto_set)?[ _:]?\(?\[?(\d+)\]?\)?", re.IGNORECASE
+    r"(?:a|x|coefficients?|pareto_set)?[ _:]?\(?\[?(\d{1,9})\]?\)?", re.IGNORECASE
 )
 _MATRICES = ("coefficients", "x", "a", "pareto_set")
 """What a matrix of coefficients is called; the first of them that a file has."""
@@ -56,12 +56,13 @@ def read_found(path: Path) -> Found:
     if not coefficients.size:
         raise FileFormatError(empty)
     claims, ignored = np.full((len(coefficients), 2), np.nan), dict[str, None]()
+    of_motions = set(chosen)
     for k, column in enumerate(columns):
         name = column.name.lower().replace(" ", "_")
         claim = _CLAIMS.get(name) or _CLAIMS.get(name.removesuffix(":1"))
         if claim and len(column.values) == len(claims):
             claims[:, claim[0]] = column.values * claim[1]
-        elif k not in chosen:
+        elif k not in of_motions:
             ignored[column.name.partition(":")[0][:30] or "a column without a name"] = None
     return Found(coefficients, claims, tuple(ignored))
 
@@ -110,7 +111,8 @@ def _coefficients(columns: Sequence[Column]) -> list[int]:
             "no column is a coefficient; name them a_1, a_2, ..., or a matrix X, or leave the "
             "names out"
         )
-    missing = set(range(min(1, *numbered), max(numbered) + 1)) - numbered.keys()
-    if missing:
-        raise FileFormatError(f"there is no column for coefficient {min(missing)}; give all")
+    # from 0 or 1 on; how many there would have to be is of no account, it may be a milliard
+    for wanted, number in enumerate(sorted(numbered), start=min(1, *numbered)):
+        if number != wanted:
+            raise FileFormatError(f"there is no column for coefficient {wanted}; give all")
     return [numbered[i] for i in sorted(numbered)]

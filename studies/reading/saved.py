@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
-import json
+from codecs import BOM_UTF8
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
+import msgspec
 from quietarm.metaheuristics.objective.claims import check_figures, check_plan
 from quietarm.ocp import FileFormatError, Front, Plan
+from quietarm.ocp.files import read_bytes
 
 
 def format_of(path: Path) -> str:
     """The format that a file states; empty where it states none, for its reader to refuse."""
-    with suppress(OSError, ValueError, AttributeError):
-        return str(json.loads(path.read_text(encoding="utf-8")).get("format", ""))
+    # a file that cannot be read, is no JSON, or is nested too deep
+    with suppress(FileFormatError, msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        content = read_bytes(path).removeprefix(BOM_UTF8)
+        return msgspec.json.decode(content, type=_Format).format
     return ""
+
+
+class _Format(msgspec.Struct):
+    """The entry of a file's format, among any others."""
+
+    format: str = ""
 
 
 def load_front(path: Path) -> Front:

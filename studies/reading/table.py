@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import io
+import re
+import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError
-from quietarm.ocp.checks import nearest
-from quietarm.ocp.files import read_bytes
+from quietarm.ocp.checks import cut, nearest
+from quietarm.ocp.files import MOST_BYTES, read_bytes
+from quietarm.studies.reading.matlab import read_matlab
 from quietarm.studies.reading.text import read_text
 from quietarm.studies.reading.units import UNITS, normal, split_name
 
@@ -29,6 +32,10 @@ _EVEN = 0.95
 _LABELS = ("label", "name", "signalname")
 _SAMPLES = ("values", "data")
 """Fields of a structure that is one signal, as Simulink and recorders write it."""
+_LONGEST_NAME = 100
+"""Letters of a column's heading: more are no name, and would fill every message."""
+_MOST_ROWS, _MOST_COLUMNS, _MOST_OF_ARRAY = 2_000_000, 1000, 10_000
+"""Rows and columns of a text, and columns of an array, which may be a long row."""
 _CALLED = {
     "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds", "millis", "micros"},
     "angle": {"angle", "theta", "position", "q"},
@@ -190,7 +197,9 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
         if path.suffix.lower() in ARRAYS:
             columns = _of_variables(_arrays(path.suffix.lower(), content, strict), strict)
         else:
+            _refuse_huge(content)
             columns = [Column(*one) for one in read_text(content, strict)]
+    columns = [replace(column, name=cut(column.name, _LONGEST_NAME)) for column in columns]
     if not columns and not strict:
         raise FileFormatError(f"{path}: it has no vectors of numbers; save the time and what rings")
     return Table(path, tuple(columns))
@@ -202,17 +211,32 @@ def _arrays(kind: str, content: bytes, strict: bool) -> dict[str, Any]:
     if kind == ".npy":
         return {"": np.load(file, allow_pickle=False)}
     if kind == ".npz":
+        with zipfile.ZipFile(file) as archive:
+            size = sum(entry.file_size for entry in archive.infolist())
+        if size > MOST_BYTES:  # compressed it may be a thousandth of that
+            raise FileFormatError(
+                f"its arrays take {size / 1e6:.0f} MB; give at most {MOST_BYTES / 1e6:.0f} MB, "
+                "what is needed alone"
+            )
         with np.load(file, allow_pickle=False) as arrays:
             return dict(arrays)
-    from scipy.io import loadmat  # not at the top: it takes long to load
-
-    try:
-        values = loadmat(file, simplify_cells=not strict)
-    except NotImplementedError:
-        raise FileFormatError(
-            "it is of MATLAB's version 7.3; save it by save(..., '-v7')"
-        ) from None
+    values = read_matlab(content, simple=not strict)
     return {name: value for name, value in values.items() if not name.startswith("__")}
+
+
+def _refuse_huge(content: bytes) -> None:
+    """Refuse a text of more rows or columns than any recording has."""
+    rows = max(content.count(b"\n"), content.count(b"\r"))
+    if rows > _MOST_ROWS:
+        raise FileFormatError(f"it has {rows} rows; give at most {_MOST_ROWS}")
+    for line in re.findall(rb"[^\r\n]{%d,}" % (2 * _MOST_COLUMNS), content):
+        columns = 1 + max(line.count(b","), line.count(b";"), line.count(b"\t"))
+        _refuse_wide(max(columns, len(line.split())), _MOST_COLUMNS)
+
+
+def _refuse_wide(columns: int, most: int) -> None:
+    if columns > most:
+        raise FileFormatError(f"it has {columns} columns; give at most {most}")
 
 
 def _of_variables(values: Mapping[str, Any], strict: bool, front: str = "") -> list[Column]:
@@ -255,6 +279,7 @@ def _of_array(name: str, values: NDArray[Any], strict: bool) -> list[Column]:
     if values.ndim == 1:
         return [Column(name or "0", "", values.astype(float))]
     rows = values.T if values.shape[0] < values.shape[1] and not strict else values
+    _refuse_wide(rows.shape[1], _MOST_OF_ARRAY)
     first = 0 if not name else 1  # MATLAB counts from 1
     return [
         Column(f"{name}:{k}" if name else str(k), "", column.astype(float))

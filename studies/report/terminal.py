@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from quietarm.ocp.checks import printable
 from quietarm.studies.report.report import Report
 from quietarm.studies.report.words import print_lines
 from rich.console import Console
@@ -18,7 +19,8 @@ def show(console: Console, report: Report) -> None:
     """Print a report without its pictures; in a pipe its tables are as wide as they need."""
     from rich.markdown import Markdown  # not at the top: it takes long to load
 
-    lines = [line for line in report.markdown().splitlines() if not line.startswith("![")]
+    text = printable(report.markdown())
+    lines = [line for line in text.splitlines() if not line.startswith("![")]
     if not console.is_terminal:
         widest = max((len(line) for line in lines if line.startswith("|")), default=0)
         console = Console(file=console.file, width=max(console.width, widest))
@@ -27,6 +29,7 @@ def show(console: Console, report: Report) -> None:
 
 def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
     """Print names and values in two columns, or one below the other on a narrow console."""
+    rows = [(printable(name), printable(value)) for name, value in rows]
     if console.width < max(len(name) for name, _ in rows) + _LEAST_VALUE:
         for name, value in rows:
             print_lines(console, name, f"  {value}")

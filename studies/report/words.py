@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import ModalState, PointToPoint
+from quietarm.ocp.checks import printable
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.record import REST
 from quietarm.studies.tips import tip_scale, tip_words
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 def print_lines(console: Console, *lines: str) -> None:
     """Print lines as they are, however narrow the console."""
-    text = "\n".join(lines)
+    text = printable("\n".join(lines))
     console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 

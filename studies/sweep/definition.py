@@ -16,7 +16,7 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness import OF_MODES
 from quietarm.studies.sweep.grid import Grid
 
-STATUS, COEFFICIENTS, JUMP = "status", "coefficients", "jump"
+STATUS, COEFFICIENTS, JUMP, DIGEST = "status", "coefficients", "jump", "digest"
 STATES = ("not computed", *(status.value for status in SolveStatus))
 """What `status` says, by its number."""
 _CELLS_OF_A_CHUNK = 256
@@ -101,7 +101,7 @@ class Definition:
                 limits[one.quantity.limit] = share * one.lower, share * one.upper
         return replace(self.grid, task=replace(task, **limits))
 
-    @property
+    @cached_property
     def variables(self) -> dict[str, Variable]:
         """The dataset's variables by name."""
         task, size = self.grid.task, {"coefficient": self.profile.size}

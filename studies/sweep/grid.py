@@ -11,10 +11,15 @@ from typing import Any
 import numpy as np
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint
+from quietarm.ocp.checks import finite, has_no
 
+_SECONDS_OF_CELL = 0.005
+"""Of six terms, without ranges of errors."""
 OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
 """Axes over the move, with their units; all others are parameters of the plant."""
 _WHOLE_STEPS = 1e-6
+MOST_VALUES, MOST_CELLS = 100_000, 5_000_000
+"""Of an axis and of a grid; so many cells take some 7 hours on a core, and as dataset 1.5 GB."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +31,13 @@ class Axis:
     unit: str
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "values", tuple(sorted(map(float, self.values))))
+        values = tuple(sorted(finite(f"a value of {self.name}", value) for value in self.values))
+        if not 0 < len(values) <= MOST_VALUES or len(set(values)) < len(values):
+            raise ValueError(
+                f"the axis {self.name} has {len(values)} values, {len(set(values))} different; "
+                f"give 1 to {MOST_VALUES}, each once"
+            )
+        object.__setattr__(self, "values", values)
 
 
 def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
@@ -39,7 +50,13 @@ def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
         steps = (last - first) / step if step else math.inf
         if not (steps > 0 and math.isfinite(steps)):
             raise ValueError(
-                f"{text!r}: steps of {ends[2]} do not lead from {ends[0]} to {ends[1]}"
+                f"{text!r}: steps of {ends[2]} do not lead from {ends[0]} to {ends[1]}; give "
+                "from:to:step, as 10deg:90deg:5deg"
+            )
+        if steps >= MOST_VALUES:
+            raise ValueError(
+                f"{text!r}: steps of {ends[2]} make {steps + 1:.0f} values, and {MOST_VALUES} are "
+                "the most; give wider steps"
             )
         if abs(steps - round(steps)) > _WHOLE_STEPS * steps:
             raise ValueError(
@@ -64,6 +81,22 @@ class Grid:
     axes: tuple[Axis, ...]
 
     def __post_init__(self) -> None:
+        units = self.task.plant.units()
+        units |= {name: joint_unit(unit, self.task.plant.joint) for name, unit in OF_MOVES.items()}
+        for axis in self.axes:
+            if axis.name not in units:
+                raise ValueError(has_no(self.task.plant.name, "axis", axis.name, units))
+            if self.names.count(axis.name) > 1:
+                raise ValueError(f"the axis {axis.name} is given twice; give it once")
+            if axis.unit != units[axis.name]:
+                raise ValueError(
+                    f"the axis {axis.name} is in {axis.unit!r}; give it in {units[axis.name]!r}"
+                )
+        if self.cells > MOST_CELLS:
+            raise ValueError(
+                f"the grid has {self.cells} cells, some {self.hours:.0f} hours on a core, and "
+                f"{MOST_CELLS} are the most of one dataset; give wider steps, or a part of it"
+            )
         known = {axis.name: axis.values for axis in self.axes}
         starts = known.get("start", (self.task.start,))
         for same in sorted({*starts} & {*known.get("target", (self.task.target,))}):
@@ -86,6 +119,11 @@ class Grid:
     def cells(self) -> int:
         """How many moves there are."""
         return math.prod(self.shape)
+
+    @property
+    def hours(self) -> float:
+        """How long a core takes to plan them, roughly."""
+        return _SECONDS_OF_CELL * self.cells / 3600
 
     def tasks(self, chunk: tuple[slice, ...]) -> list[PointToPoint]:
         """The moves of some cells."""

@@ -119,7 +119,7 @@ class MoveLibrary:
 
     def between(self) -> Between:
         """Residual and energy of random moves between the cells; kept in the dataset."""
-        if known := self.store.note(_BETWEEN):
+        if known := self.store.kept(_BETWEEN):
             return Between(**known)
         assessed = assess(self)
         self.store.keep(_BETWEEN, asdict(assessed))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import tempfile
@@ -14,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError, QuietarmError
-from quietarm.ocp.checks import install
+from quietarm.ocp.checks import cut, install
+from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.record import versions
 from quietarm.ocp.saved import plain, typed
-from quietarm.studies.sweep.definition import COEFFICIENTS, JUMP, STATUS, Definition
+from quietarm.studies.sweep.definition import COEFFICIENTS, DIGEST, JUMP, STATUS, Definition
 from quietarm.studies.sweep.interpolation import find_jumps
 
 if TYPE_CHECKING:
@@ -33,9 +35,12 @@ class Store:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.dataset = _open(path)
-        with _damage_told(path):
+        with _undisturbed():
+            self.dataset = _open(path)
+        with _undisturbed(), _damage_told(path):
             self.definition = typed(self.note("sweep"), Definition)
+            self._names = [name for name in self.definition.variables if name != JUMP]
+            self._check_layout()
 
     @classmethod
     def of(cls, path: Path, definition: Definition) -> Store:
@@ -50,10 +55,45 @@ class Store:
             )
         return store
 
+    def _check_layout(self) -> None:
+        """Hold axes and variables against what was asked; ValueError where they are others."""
+        for axis in self.definition.grid.axes:
+            if not np.array_equal(self.dataset[axis.name].to_numpy(), np.array(axis.values)):
+                raise ValueError(f"axis {axis.name} has other values than were asked for")
+        for name, (_, beside, empty, _) in self.definition.variables.items():
+            shape = (*self.definition.grid.shape, *beside.values())
+            found = self.dataset[name]
+            if (found.shape, found.dtype) != (shape, np.asarray(empty).dtype):
+                raise ValueError(f"variable {name} has another shape or type than was asked for")
+
     def read(self, name: str) -> NDArray[Any]:
-        """All of a variable; FileFormatError where a file of it is broken."""
-        with _damage_told(self.path / name):
-            return self.dataset[name].to_numpy()
+        """All of a variable; FileFormatError where a file of it is broken, or was changed.
+
+        The states are read first and the digests last, since others may write at the same time.
+        """
+        with _undisturbed(), _damage_told(self.path / name):
+            status = self.dataset[STATUS].to_numpy()
+            values = status if name == STATUS else self.dataset[name].to_numpy()
+            if name == JUMP:
+                return values
+            digests = self.dataset[DIGEST].to_numpy()[:, self._names.index(name)]
+        for digest, chunk in zip(digests.tolist(), self.definition.chunks):
+            if (status[chunk] != 0).any() and digest != self._digest_of(values[chunk]):
+                raise FileFormatError(
+                    f"{self.path}: {name} is not what was swept; remove the dataset and sweep it "
+                    "again"
+                )
+        return values
+
+    def _digest_of(self, values: NDArray[Any]) -> int:
+        """Of a variable's part that was computed, as an answer to what was asked."""
+        content = self.dataset.attrs["sweep"].encode() + np.ascontiguousarray(values).tobytes()
+        return int.from_bytes(hashlib.sha256(content).digest()[:7], "little")
+
+    def check(self) -> None:
+        """Read all variables; FileFormatError where one was changed."""
+        for name in self._names:
+            self.read(name)
 
     def missing(self, part: tuple[int, int] = (1, 1)) -> list[int]:
         """The chunks of a part, i of n, that are not computed."""
@@ -65,11 +105,14 @@ class Store:
         """Write a chunk; its status last, so that a killed run computes it again."""
         names = self.definition.grid.names
         region = dict(zip(names, self.definition.chunks[number]))
-        part = self.dataset.drop_vars([*names, JUMP]).isel(region).load()
+        part = self.dataset.drop_vars([*names, JUMP, DIGEST]).isel(region).load()
         for name, column in cells.items():
             places = part[name].to_numpy().reshape(len(cells), -1)
             for place, value in zip(places, column):
                 place[: np.size(value)] = np.ravel(value)
+        digests = [self._digest_of(part[one].to_numpy()) for one in self._names]
+        digest = self.dataset[[DIGEST]].isel(chunk=[number]).copy(data={DIGEST: [digests]})
+        self._write(digest, {"chunk": slice(number, number + 1)})
         for some in (part.drop_vars(STATUS), part[[STATUS]]):
             self._write(some, region)
 
@@ -88,36 +131,84 @@ class Store:
             ) from None
 
     def note(self, name: str) -> Any:
-        """What an attribute holds; empty where there is none."""
-        return json.loads(self.dataset.attrs.get(name, "{}"))
+        """What an attribute holds; empty where there is none, and FileFormatError if it is none."""
+        with _damage_told(self.path):
+            note = json.loads(self.dataset.attrs.get(name, "{}"))
+            if not isinstance(note, dict):
+                raise ValueError(f"{name} is {note!r}")
+            return note
+
+    def kept(self, name: str) -> dict[str, Any]:
+        """What `keep` has kept; empty where that was changed since."""
+        with suppress(FileFormatError):
+            note = self.note(name)
+            if note.pop(DIGEST, None) == self._digest_of_note(note):
+                return note
+        return {}
+
+    def _digest_of_note(self, entries: Mapping[str, Any]) -> int:
+        return self._digest_of(np.frombuffer(json.dumps(entries).encode(), np.uint8))
 
     def keep(self, name: str, entries: Mapping[str, Any]) -> None:
         """Keep a few numbers about the dataset as an attribute."""
         import zarr
 
-        text = json.dumps(entries)
+        text = json.dumps({**entries, DIGEST: self._digest_of_note(entries)})
         zarr.open_group(self.path, mode="r+").attrs[name] = text
         self.dataset.attrs[name] = text
 
 
 def _lay_out(path: Path, definition: Definition) -> None:
-    """Make a dataset whole or not at all, also where two begin at once."""
-    xr, grid = _xarray(), definition.grid
-    variables: dict[str, Any] = {
-        axis.name: (axis.name, np.array(axis.values), {"units": axis.unit}) for axis in grid.axes
-    }
-    for name, (unit, beside, empty, attributes) in definition.variables.items():
-        sizes = beside.values()
-        nothing = np.broadcast_to(empty, [*grid.shape, *sizes])  # takes no memory
-        how = {"chunks": (*definition.chunk, *sizes), "_FillValue": None, "fill_value": empty}
-        variables[name] = [*grid.names, *beside], nothing, {"units": unit, **attributes}, how
+    """Make a dataset whole or not at all, also where two begin at once.
+
+    By zarr, which writes what the arrays are: xarray visits every chunk of what is empty.
+    """
+    _xarray()
+    import zarr
+
     texts = {"sweep": json.dumps(plain(definition)), "versions": json.dumps(versions())}
-    dataset = xr.Dataset(variables, attrs={"format": _FORMAT, **texts})
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".sweep-") as folder:
+    with _undisturbed(), tempfile.TemporaryDirectory(dir=path.parent, prefix=".sweep-") as folder:
         place = Path(folder) / "store"
-        dataset.to_zarr(place, consolidated=False, zarr_format=3)
+        group: Any = zarr.create_group(place, attributes={"format": _FORMAT, **texts})
+        for name, array in _arrays(definition).items():
+            group.create_array(name, **array)
+        for axis in definition.grid.axes:
+            group[axis.name][:] = np.array(axis.values)
         with suppress(OSError):  # another process was first
             os.rename(place, path)
+
+
+def _arrays(definition: Definition) -> dict[str, dict[str, Any]]:
+    """What zarr is told of the axes, the variables and the digests."""
+    grid, variables = definition.grid, definition.variables
+    arrays: dict[str, dict[str, Any]] = {}
+    for axis in grid.axes:
+        arrays[axis.name] = {
+            "shape": (len(axis.values),), "dtype": float, "dimension_names": [axis.name],
+            "attributes": {"units": axis.unit},
+        }  # fmt: skip
+    for name, (unit, beside, empty, attributes) in variables.items():
+        sizes = tuple(beside.values())
+        arrays[name] = {
+            "shape": (*grid.shape, *sizes), "chunks": (*definition.chunk, *sizes),
+            "dtype": np.asarray(empty).dtype, "fill_value": empty,
+            "dimension_names": [*grid.names, *beside], "attributes": {"units": unit, **attributes},
+        }  # fmt: skip
+    of_chunk = len(variables) - 1  # without the jumps, which follow from the others
+    arrays[DIGEST] = {
+        "shape": (len(definition.chunks), of_chunk), "chunks": (1, of_chunk), "dtype": np.int64,
+        "fill_value": 0, "dimension_names": ["chunk", "variable"],
+    }  # fmt: skip
+    return arrays
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """Let Ctrl-C wait for the end of the block: zarr's own thread would go on without this one."""
+    with note_interrupts() as came:
+        yield
+    if came:
+        raise KeyboardInterrupt
 
 
 @contextmanager
@@ -125,10 +216,12 @@ def _damage_told(path: Path) -> Iterator[None]:
     """Tell whatever zarr makes of a damaged dataset in a line."""
     try:
         yield
+    except FileFormatError:  # told already
+        raise
     except Exception as error:
         raise FileFormatError(
-            f"{path} is damaged or of another version ({type(error).__name__}); remove the dataset "
-            "and sweep it again"
+            f"{path} is damaged, changed or of another version ({type(error).__name__}: "
+            f"{cut(str(error), 200)}); remove the dataset and sweep it again"
         ) from None
 
 

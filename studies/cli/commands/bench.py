@@ -13,6 +13,7 @@ from quietarm.studies.cli.options import (
     SCHEDULER,
     SEED,
     WORKERS,
+    YES,
     command,
     counting,
     option,
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
     option("--output", "-o", type=Parsed("folder", check_folder), required=True,
            help="Folder for runs and report; runs that are there are kept, and so is a report that "
            "has more."),
-    PART, WORKERS, SCHEDULER,
+    PART, WORKERS, SCHEDULER, YES,
 )  # fmt: skip
 def bench(given: Given) -> None:
     """Hold methods against the reference front of each PROBLEM, from several seeds.
@@ -57,6 +58,7 @@ def bench(given: Given) -> None:
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics import LostJobsError, finished_jobs, run_jobs
+    from quietarm.metaheuristics.search import SECONDS_OF_CANDIDATE
     from quietarm.studies.bench.asked import (
         imports_on,
         jobs_of,
@@ -75,6 +77,8 @@ def bench(given: Given) -> None:
     asked = methods, given.runs, given.evaluations, given.seed, settings
     problems = problems_of(given.problems)
     jobs, left_out = jobs_of(problems, *asked)
+    candidates = sum(job.budget or 0 for job in jobs)
+    given.refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE)
     imported, not_imported = imports_on(problems, load_runs(given.imported), given.imported)
     reported_runs(given.output)  # refuses a folder whose runs.csv is another's
     planned = [(job.problem.name, job.label) for job in jobs]

@@ -5,14 +5,20 @@ from __future__ import annotations
 from quietarm.studies.cli.files import FOLDER, REPORT_OPTION, ending_of, finish
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import command, option, progress_console
+from quietarm.studies.cli.quantities import parse_workers
+from quietarm.studies.cli.types import Parsed
+
+_MOST_SEEDS = 1000
+"""Of each search; nine are those of the README."""
 
 
 @command(
     option("--full", is_flag=True, help="Judge every claim as well, with several seeds."),
     option("--seeds", type=int, help="Seeds of VEPSO and NSGA-II. [default: 1; --full: 9]"),
-    option("--workers", type=int, help="Processes that share the work. [default: one a core]"),
+    option("--workers", type=Parsed("number", parse_workers),
+           help="Processes that share the work. [default: one a core]"),
     REPORT_OPTION,
-)
+)  # fmt: skip
 def reproduce(given: Given) -> None:
     """Recompute the paper's Tables 2, 3, 5 and 6 and its figures; --full also judges its claims.
 
@@ -31,8 +37,8 @@ def reproduce(given: Given) -> None:
     from quietarm.studies.reproduce.report import reproduction_report
 
     usual = 9 if given.full else 1
-    seeds = usual if given.seeds is None else whole("seeds", given.seeds, 1)
-    workers = joblib.cpu_count() if given.workers is None else whole("workers", given.workers, 1)
+    seeds = usual if given.seeds is None else whole("seeds", given.seeds, 1, _MOST_SEEDS)
+    workers = given.workers or joblib.cpu_count()
     effort = Effort(full=given.full, seeds=seeds)
     folder = next((path / "fronts" for path in given.output if ending_of(path) == FOLDER), None)
     with progress(number_of_pieces(effort), progress_console()) as begin:

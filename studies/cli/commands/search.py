@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
+from quietarm.metaheuristics.search import SECONDS_OF_CANDIDATE
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
@@ -21,6 +22,7 @@ from quietarm.studies.cli.options import (
     SEED,
     TASK,
     WORKERS,
+    YES,
     command,
     method_option,
     option,
@@ -56,7 +58,7 @@ _BY_GRADIENT = {
            help="Seeds, from --seed on; each has a file, as front-seed0.json, once it is done."),
     option("--from", "start_front", type=INPUT,
            help="A front to begin with, in the first population."),
-    WORKERS,
+    WORKERS, YES,
     output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"}),
 )  # fmt: skip
 def search(given: Given) -> None:
@@ -88,8 +90,13 @@ def search(given: Given) -> None:
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )
-    workers, first = whole("workers", given.workers, 1), whole("seed", given.seed, 0)
+    workers, first = given.workers, whole("seed", given.seed, 0)
     seeds = range(first, first + whole("runs", given.runs, 1, 10_000))
+    preset = PRESETS[given.method]
+    size, rounds = given.population or preset.population, given.generations or preset.generations
+    given.refuse_endless(
+        len(seeds) * preset.evaluations(size, rounds), "candidates", SECONDS_OF_CANDIDATE
+    )
     fronts, trouble = list[Front](), None
     with search_display(progress_console()) as display:
         if not several and workers == 1:

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MANY = 1_000_000
-_HOURS_OF_MANY = 1.4
 
 
 @command(
@@ -75,16 +74,17 @@ def sweep(given: Given) -> None:
     if len(datasets) != 1:
         raise click.UsageError("give one dataset by --output, a folder as moves.zarr")
     if grid.cells > _MANY and not given.yes:
-        hours = _HOURS_OF_MANY * grid.cells / _MANY
         raise ValueError(
-            f"the grid has {grid.cells} cells, some {hours:.0f} hours on a core; give wider steps, "
-            "or --yes"
+            f"the grid has {grid.cells} cells, some {grid.hours:.0f} hours on a core; give wider "
+            "steps, or --yes"
         )
     motions = given.read_profile(grid.task)
     residual_limit = given.read_residual_limit(grid.task.plant) or 0.0
     solve = SolveSettings(residual_limit, given.bound, starts=1)
     store = Store.of(datasets[0], Definition(grid, motions, solve, given.front or 0, given.margin))
     missing, trouble = len(store.missing(given.part)), None
+    if not missing:
+        store.check()
     try:
         with counting(missing, "chunks") as report:
             run_sweep(store, given.part, report=report, **given.pick("workers", "scheduler"))

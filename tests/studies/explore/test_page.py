@@ -108,6 +108,13 @@ def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
     assert 0 <= beside[0]["y"] < beside[0]["y"] + beside[0]["height"] <= beside[1]["y"] <= 844
 
 
+def test_a_hundred_moves_of_a_slider_end_where_the_last_one_is(page):
+    slider = page.locator(".shape .noUi-handle").nth(1)
+    for _ in range(100):
+        slider.press("ArrowLeft")
+    api.expect(figures(page)).to_contain_text("coefficients 0, -0.1, 0")
+
+
 def test_profile_and_terms_are_chosen_and_a_curve_is_kept(page):
     button(page, "Keep curve").click()
     api.expect(button(page, "Drop curve")).to_be_visible()
