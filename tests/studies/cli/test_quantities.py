@@ -9,7 +9,7 @@ from quietarm.studies.cli.quantities import (
     parse_coefficients,
     parse_energy,
     parse_quantity,
-    parse_scale,
+    parse_scales,
 )
 
 import quietarm as qa
@@ -51,7 +51,7 @@ def test_quantities_as_people_write_them(unit, text, number):
 
 @pytest.mark.parametrize("text", ["angle=2pi/4096", "angle=2PI/4096", "Angle = 2 * Pi / 4096"])
 def test_a_scale_is_typed_in_large_letters_too(text):
-    assert parse_scale(text) == ("angle", 2 * math.pi / 4096)
+    assert parse_scales(text) == [("angle", 2 * math.pi / 4096)]
 
 
 @given(FINITE, st.sampled_from(["rad", "m", "s", "N m", "kg m^2"]))

@@ -100,7 +100,7 @@ def test_a_changed_question_is_told(copied, value, place):
 @pytest.mark.parametrize("text", ["[]", "5", "no JSON", "[" * 100_000, 7, None])
 def test_an_attribute_of_another_kind_is_told_or_found_anew(copied, text):
     known = MoveLibrary(copied).between()
-    for name in ("between the cells", "sweep"):
+    for name in ("moves between the cells", "sweep"):
         zarr.open_group(copied, mode="r+").attrs[name] = text
         if name == "sweep":
             with pytest.raises(FileFormatError, match="remove the dataset and sweep it again"):
@@ -112,8 +112,8 @@ def test_an_attribute_of_another_kind_is_told_or_found_anew(copied, text):
 def test_better_figures_between_the_cells_are_not_believed(copied):
     known = MoveLibrary(copied).between()
     group = zarr.open_group(copied, mode="r+")
-    entries = json.loads(group.attrs["between the cells"])
-    group.attrs["between the cells"] = json.dumps(entries | {"residual": 0.0})
+    entries = json.loads(group.attrs["moves between the cells"])
+    group.attrs["moves between the cells"] = json.dumps(entries | {"residual": 0.0})
     assert MoveLibrary(copied).between() == known
 
 
