@@ -14,6 +14,7 @@ from bokeh.plotting import figure
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
+from quietarm.studies.figures.axes import residual_label
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
 from quietarm.studies.figures.structure import INK, structures_of
@@ -61,6 +62,7 @@ class Plots:
         self._sources["points"].selected.indices = []  # so that one can be clicked again
         self._front.title.text = "front (cross: this motion)" if explored.front else _NO_FRONT
         self._front.axis.visible = bool(explored.front)
+        self._front.xaxis.axis_label = residual_label(explored.task.residual_window)
         for name, rows in _drawn(explored).items():
             table = pd.DataFrame(rows, columns=_COLUMNS[name])
             self._sources[name].data = table.to_dict("list")
@@ -86,8 +88,8 @@ class Plots:
 
     def _tradeoff(self, pick: Callable[[int], None]) -> Any:
         """The front, and where the motion in hand lies."""
-        axes: dict[str, Any] = {"x_axis_label": "residual F1 [mm]", "y_axis_label": "energy F2 [J]"}
-        plot: Any = figure(name="front", tools="tap", **axes)
+        plot: Any = figure(name="front", tools="tap", x_axis_label=" ",
+                           y_axis_label="energy F2 [J]")  # fmt: skip
         points, here = self._sources["points"], self._sources["here"]
         points.selected.on_change("indices", lambda _, old, new: pick(new[0]) if new else None)
         plot.line(*_POINT, source=points, color=BLUE)

@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
+from quietarm.studies.report.words import window_words
 
 Array = NDArray[np.float64]
 
@@ -71,9 +72,14 @@ def legend_below(figure: Figure, axes: Sequence[Axes], columns: int, size: float
     )
 
 
-def name_objectives(ax: Axes) -> None:
-    """Label the axes of a front."""
-    ax.set(xlabel="residual F1 [mm]", ylabel="energy F2 [J]")
+def name_objectives(ax: Axes, window: float | None = None) -> None:
+    """Label the axes of a front; residuals by their window [s], where one is given."""
+    ax.set(xlabel=residual_label(window), ylabel="energy F2 [J]")
+
+
+def residual_label(window: float | None) -> str:
+    """The label of residuals [mm] within a window [s]."""
+    return "residual F1 [mm]" if window is None else f"residual F1 {window_words(window)} [mm]"
 
 
 def legend_of(axes: Sequence[Axes]) -> tuple[list[Artist], list[str]]:

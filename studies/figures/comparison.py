@@ -22,6 +22,7 @@ from quietarm.studies.figures.axes import (
     logarithmic,
     name_objectives,
     new_figure,
+    residual_label,
 )
 from quietarm.studies.figures.looks import Look, look
 from quietarm.studies.report.words import title_of
@@ -141,7 +142,7 @@ def draw_comparison(
         ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
     highest = max([_TALLEST * comparison.best_front[0, 1], *(1.05 * one.energy for one in known)])
     ax.set_ylim(top=min(ax.get_ylim()[1], highest))
-    name_objectives(ax)
+    name_objectives(ax, comparison.task.residual_window)
     ax.set_title("small residuals" if small else "the whole fronts", **TITLE)
     if small:
         _logarithmic(ax, comparison, right)
@@ -197,7 +198,7 @@ def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
     left = _left(comparison)
     logarithmic(ax, [left, right])
     ax.set_xlim(left * 1e3, right * 1e3)
-    ax.set_xlabel("residual F1 [mm], logarithmic")
+    ax.set_xlabel(f"{residual_label(comparison.task.residual_window)}, logarithmic")
     for level in comparison.levels:
         if left <= level <= right:
             ax.axvline(level * 1e3, color="0.75", linewidth=0.8, zorder=0)

@@ -18,6 +18,7 @@ from quietarm.studies.figures.axes import (
     draw_front,
     logarithmic,
     name_objectives,
+    residual_label,
     side_by_side,
 )
 from quietarm.studies.figures.looks import BLUE, RED, look
@@ -198,6 +199,7 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     title = f"{label_of(method)}: {title_of(fronts[0].task)}"
     figure, axes = side_by_side(panels, title, width=4.2 if panels > 1 else 6.4)
     draw_fronts(fronts, axes[0], linear=gradient)
+    name_objectives(axes[0], fronts[0].task.residual_window)
     if len(fronts) == 1 and len(fronts[0].points) > 2:
         knee = fronts[0].knee()
         label = f"knee: {knee.energy:.4g} J at {millimetres(knee.residual)}"
@@ -214,12 +216,13 @@ def polish_figure(before: Front, polish: Polish) -> Figure:
     name = label_of(polish.front.record.method)
     figure, (ax, saved) = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
     draw_fronts([before, polish.front], ax, ("before", "after"))
+    name_objectives(ax, before.task.residual_window)
     residuals = [max(gain.residual, REST) for gain in polish.gains]
     axes_or_new(saved).plot(
         np.multiply(1e3, residuals), [100 * gain.share for gain in polish.gains], "o", color=BLUE,
         markersize=3,
     )  # fmt: skip
-    saved.set(xlabel="residual F1 [mm]", ylabel="energy saved [%]")
+    saved.set(xlabel=residual_label(before.task.residual_window), ylabel="energy saved [%]")
     saved.set_ylim(bottom=0)
     logarithmic(saved, residuals, least_span=_LOGARITHMIC_FROM)
     return figure

@@ -8,7 +8,12 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
-from quietarm.studies.figures.axes import logarithmic, name_objectives, new_figure
+from quietarm.studies.figures.axes import (
+    logarithmic,
+    name_objectives,
+    new_figure,
+    residual_label,
+)
 from quietarm.studies.figures.looks import look
 from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.grid import Axis
@@ -16,12 +21,6 @@ from quietarm.studies.sweep.store import Store
 
 Array = NDArray[np.float64]
 _MOST_SLICES = 4
-_SHOWN = {
-    "energy": ("energy F2 [J]", 1.0, 0.0),
-    "residual": ("residual F1 [mm]", 1e3, 1e-3),
-    "price_residual": ("shadow price [J/mm]", 1e-3, 1e-9),
-}
-"""Variables with their labels, factors and least values that are told apart."""
 _GREYS = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")
 """How cells ended, in the order of `STATES`; told apart in print by their lightness as well."""
 
@@ -78,7 +77,7 @@ def fronts_figure(store: Store) -> Figure:
         for k, value in enumerate(values):
             ax.plot(1e3 * residual[(*place, k)], energy[(*place, k)], color=colours.to_rgba(value))
         ax.set_title(_words(axes, place), loc="left", fontsize=9)
-        name_objectives(ax)
+        name_objectives(ax, store.definition.grid.task.residual_window)
         ax.grid(alpha=0.25)
         logarithmic(ax, energy.ravel(), "y")
     figure.colorbar(colours, ax=list(panels), label=name)
@@ -105,9 +104,15 @@ def _over_one(store: Store, axis: Axis) -> Figure:
 
 def _variables(store: Store) -> list[tuple[str, Array, float]]:
     """What is shown and known: labels, values that are no less than the least, the least."""
+    residual = residual_label(store.definition.grid.task.residual_window)
+    shown = [  # with their factors and the least values that are told apart
+        ("energy", "energy F2 [J]", 1.0, 0.0),
+        ("residual", residual, 1e3, 1e-3),
+        ("price_residual", "shadow price [J/mm]", 1e-3, 1e-9),
+    ]
     every = [
         (label, np.maximum(factor * store.read(name), least), least)
-        for name, (label, factor, least) in _SHOWN.items()
+        for name, label, factor, least in shown
     ]
     return [one for one in every if np.isfinite(one[1]).any()] or every[:1]
 

@@ -15,6 +15,7 @@ from quietarm.studies.figures.axes import (
     legend_of,
     logarithmic,
     name_objectives,
+    residual_label,
     side_by_side,
 )
 from quietarm.studies.figures.looks import look
@@ -88,8 +89,13 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None) -> Axes:
         ax.plot(ends, [energy] * 2, linestyle=how.dash, linewidth=1, label=judged.name,
                 markevery=[1], **line)  # fmt: skip
     logarithmic(ax, [REST, 1.0])
-    name_objectives(ax)
+    name_objectives(ax, _window(motions))
     return ax
+
+
+def _window(motions: Sequence[Judged]) -> float | None:
+    """The residual window of motions that are judged together [s]."""
+    return next((judged.window for judged in motions if judged.window is not None), None)
 
 
 def motions_figure(motions: Sequence[Judged], title: str) -> Figure:
@@ -99,7 +105,8 @@ def motions_figure(motions: Sequence[Judged], title: str) -> Figure:
     figure, axes = side_by_side(1 + len(names), title, width=6.0)
     draw_motions(motions, axes[0])
     if any(judged.worst for judged in motions):
-        axes[0].set_xlabel("residual F1 [mm] (open: nominal plant, filled: worst case)")
+        label = residual_label(_window(motions))
+        axes[0].set_xlabel(f"{label} (open: nominal plant, filled: worst case)")
     for name, ax in zip(names, axes[1:]):
         draw_robustness(curves, name, ax)
     figure.legend(*legend_of(axes), loc="outside lower center", ncols=4, fontsize=8)

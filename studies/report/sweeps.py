@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from quietarm.ocp import SolveStatus
 from quietarm.ocp.record import REST
-from quietarm.studies.report.words import moved
+from quietarm.studies.report.words import moved, residual_place
 from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
 
@@ -35,7 +35,8 @@ def sweep_rows(store: Store) -> list[tuple[str, str]]:
         checked = np.isfinite(excess)
         rows += [
             ("energy", f"{energy[known].min():.4g} to {energy[known].max():.4g} J"),
-            ("residual", f"{1e3 * store.read('residual')[known].max():.3g} mm at most, by CVODES"),
+            ("residual", f"{1e3 * store.read('residual')[known].max():.3g} mm at most "
+             f"{residual_place(grid.task)}, by CVODES"),
             ("from cold starts", f"at most {max(excess[checked].max(), 0):.1g} of the energy less, "
              f"in {checked.sum()} cells"),
         ]  # fmt: skip
