@@ -180,7 +180,7 @@ class PointToPoint:
             check_contract(plant)
             check_along(plant, self.start, self.target)
         if follows:
-            window = default_window([(self.plant, self.target)])
+            window = min(default_window([(self.plant, self.target)]), DefaultWindow(_MOST))
             object.__setattr__(self, "residual_window", window)
 
     @property

@@ -145,7 +145,9 @@ def plans_report(task: PointToPoint, motions: Sequence[Judged]) -> Report:
             "shown": shown(table),
             "remarks": remarks(motions, joint_unit("rad", joint)),
             "errors": list(ranges),
-            "window": next(window_words(one.window) for one in motions if one.window),
+            "window": window_words(
+                next((one.window for one in motions if one.window), task.residual_window)
+            ),
             "robust": robust,
             "tolerated": f"{100 * TOLERATED:g} %",
             "ruckig": any("ruckig" in one.name for one in motions),

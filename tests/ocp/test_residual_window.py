@@ -62,8 +62,10 @@ def test_a_mode_that_is_far_faster_leaves_a_window_that_can_be_resolved():
     task = move(fast, uncertainty=qa.Uncertainty({"frequency": 0.9}))
     for plant in task.perturbed_plants:
         assert qa.FreeVibration(plant, task.target, task.residual_window).window > 1.0
-    # and never less than eq (11) has
+    # never less than eq (11) has, nor more than a task takes
     assert move(qa.LinearAxis(omega1=1e5)).residual_window == 1.0
+    slow = move(qa.LinearAxis(omega1=1e-6))
+    assert replace(slow, residual_window=float(slow.residual_window)) == slow
 
 
 def test_another_plant_or_target_has_its_own_and_a_window_that_was_given_stays():

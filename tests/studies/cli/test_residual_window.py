@@ -40,6 +40,11 @@ def test_commands_say_it(done, folder, line):
     assert WITHIN in " ".join(done(line).split())
 
 
+def test_a_named_problem_has_the_papers(done):
+    assert "residuals within 1 s" in " ".join(done("list single-link-30deg-0.8s").split())
+    assert "residuals within 1 s" in " ".join(done("list problems").split())
+
+
 def test_one_that_was_given_is_said_and_stored(done, folder):
     line = f"evaluate {CRANE} --coefficients=0 --residual-window 3s --output e.json"
     assert "within 3 s" in done(line)
