@@ -233,17 +233,17 @@ def _refuse(fronts: Sequence[Front], names: Sequence[str], apart: int) -> None:
     for i, (front, name) in enumerate(zip(fronts, names)):
         if not front.points:
             raise ValueError(f"{name} has no finite point; leave it out, or search longer")
-        first = fronts[0].task
-        if difference := task_difference(front.task, first):
+        task = fronts[0].task
+        if difference := task_difference(front.task, task):
             remedy = "compare fronts of one task"
-            if differ_in_window_alone(front.task, first):
-                remedy = f"find it again with --residual-window {first.residual_window:.10g}s"
+            if differ_in_window_alone(front.task, task):
+                remedy = f"find it again with --residual-window {task.residual_window:.10g}s"
             raise ValueError(
                 f"{name} is of another task than {names[0]}: its {difference}; {remedy}"
             )
         if i < apart and front in fronts[:i]:
-            twin = names[list(fronts).index(front)]
-            twin = "given twice" if name == twin else f"the same front as {twin}"
+            first = names[list(fronts).index(front)]
+            twin = "given twice" if name == first else f"the same front as {first}"
             raise ValueError(f"{name} is {twin}; give every front once")
 
 
