@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
 import numpy as np
+from quietarm.models import Plant
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint
+from quietarm.ocp.window import DefaultWindow, default_window
 
 OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
 """Axes over the move, with their units; all others are parameters of the plant."""
@@ -58,6 +60,7 @@ class Grid:
     """The moves of several axes, in C order.
 
     Parameters of the plant come before the quantities of the move: chunks then have few plants.
+    All moves have one residual window, the task's; where nobody gave it, the longest of their own.
     """
 
     task: PointToPoint
@@ -71,6 +74,9 @@ class Grid:
                 f"start and target are both {same:g} {joint_unit('rad', self.task.plant.joint)} in "
                 "some cells: there is no move; leave that value out of one axis"
             )
+        if self.axes and isinstance(self.task.residual_window, DefaultWindow):
+            window = float(default_window(self._plants_and_targets()))
+            object.__setattr__(self, "task", replace(self.task, residual_window=window))
 
     @property
     def names(self) -> list[str]:
@@ -96,6 +102,16 @@ class Grid:
     def task_at(self, at: Mapping[str, float]) -> PointToPoint:
         """The move of a value of every axis."""
         move = {name: at[name] for name in OF_MOVES if name in at}
+        return replace(self.task, plant=self._plant_at(at), **move)
+
+    def _plant_at(self, at: Mapping[str, float]) -> Plant:
+        """The plant of a value of every axis; those over the move do not count."""
         plant: Any = self.task.plant
-        given = {name: value for name, value in at.items() if name not in move}
-        return replace(self.task, plant=replace(plant, **given), **move)
+        return replace(plant, **{name: at[name] for name in at if name not in OF_MOVES})
+
+    def _plants_and_targets(self) -> Iterator[tuple[Plant, float]]:
+        """Where the moves end, by what decides how slowly the plant swings there."""
+        axes = [axis for axis in self.axes if axis.name not in ("start", "duration")]
+        for values in product(*(axis.values for axis in axes)):
+            at = dict(zip([axis.name for axis in axes], values))
+            yield self._plant_at(at), at.get("target", self.task.target)
