@@ -40,20 +40,21 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 from parts.measuring import console, forget_compiled, machine, timed
-from parts.population.equations import PLANT, PROFILE, TASK
+from parts.population.equations import PROFILE, TASK
 from parts.population.rows import CANDIDATES, SHARE, Method, methods
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.solvers.batch import batch
 from rich.table import Table
 
-SECOND_TASK = PointToPoint(PLANT, start=-pi / 2, target=pi / 4, duration=1.0)
+SECOND_TASK = replace(TASK, start=-pi / 2, target=pi / 4, duration=1.0)
 BOX, MANY = 0.5, 10_000
 
 

@@ -62,13 +62,15 @@ def hard_tasks() -> dict[str, tuple[qa.PointToPoint, Any, float]]:
     gaussians, network = qa.CycloidGaussians(3), qa.CycloidNetwork(3)
     return {
         "link-60deg-0.9s-gaussians": (
-            qa.PointToPoint(link, pi / 3, 0.9), gaussians, gaussians.default_bound,
+            qa.PointToPoint(link, pi / 3, 0.9, residual_window=1.0),
+            gaussians, gaussians.default_bound,
         ),
         "arm-60deg-0.7s-network": (
-            qa.PointToPoint(arm, pi / 3, 0.7), network, network.default_bound,
+            qa.PointToPoint(arm, pi / 3, 0.7, residual_window=1.0), network, network.default_bound,
         ),
         "link-45deg-0.85s-stages": (
-            qa.PointToPoint(link, pi / 4, 0.85, energy=Stages()), qa.CycloidPolynomial(6), 0.2,
+            qa.PointToPoint(link, pi / 4, 0.85, residual_window=1.0, energy=Stages()),
+            qa.CycloidPolynomial(6), 0.2,
         ),
     }  # fmt: skip
 

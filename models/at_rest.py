@@ -9,6 +9,7 @@ and W', at every angle.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from quietarm.models.joint_motion import Array
 
 _TINY = 1e-12
@@ -21,11 +22,16 @@ _SWINGS = (1e-3 + 1j) * np.geomspace(1e-2, 1e2, 21)
 """Z is looked at close to the imaginary axis, at these multiples of the modes' frequencies."""
 
 
-def check_stable(plant: str, angles: Array, slopes: Array) -> None:
-    """Refuse a plant of this name one of whose modes grows, or does not come back."""
+def eigenvalues(slopes: Array) -> NDArray[np.complex128]:
+    """Of the modes [1/s], two for each mode, at every angle."""
     by_W, by_dW = _of_modes(slopes)
     one = np.broadcast_to(np.eye(by_W.shape[1]), by_W.shape)
-    values = np.linalg.eigvals(np.block([[0 * one, one], [by_W, by_dW]]))
+    return np.linalg.eigvals(np.block([[0 * one, one], [by_W, by_dW]])).astype(complex)
+
+
+def check_stable(plant: str, angles: Array, slopes: Array) -> None:
+    """Refuse a plant of this name one of whose modes grows, or does not come back."""
+    values = eigenvalues(slopes)
     largest = np.abs(values).max(axis=1, keepdims=True)
     wrong = (values.real > _GROWTH * largest) | (np.abs(values) <= _TINY * largest)
     for row, mode in np.argwhere(wrong):

@@ -73,6 +73,20 @@ def check_along(plant: Plant, start: float, target: float) -> None:
     _check_finite(plant, motions, next(_evaluate(plant, motions)))
 
 
+@lru_cache(maxsize=4096)
+def eigenvalues_at_rest(plant: Plant, angle: float) -> tuple[complex, ...]:
+    """Eigenvalues of the modes [1/s] with the joint at rest at an angle [rad].
+
+    ValueError where the equations have no value there.
+    """
+    motion = np.zeros((1, 1, 3 + 2 * plant.modes))
+    motion[..., 0] = angle
+    values, slopes = _evaluate(plant, motion)
+    _check_finite(plant, motion, np.concatenate([values, slopes], axis=2))
+    of_inputs = slopes.reshape(1, motion.shape[2], -1)
+    return tuple(map(complex, at_rest.eigenvalues(of_inputs)[0]))
+
+
 @lru_cache(maxsize=256)
 def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
     """Angles that have values, and the slopes there; ValueError where the equations are wrong."""

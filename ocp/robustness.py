@@ -197,7 +197,8 @@ def sensitivities_of_moves(
     one, moves = tasks[0], np.array([task.row for task in tasks])
     rows = batch(one.plant, profile, max(map(default_steps, tasks)), (), OF_MODES, one.energy)
     targets = [task.target for task in tasks]
-    vibrations = FreeVibration(one.plant, targets, one.residual_window)
+    windows = [task.residual_window for task in tasks]
+    vibrations = FreeVibration(one.plant, targets, windows)
 
     def of(error: Array) -> tuple[Array, Array]:
         errors = np.tile(_STEP * error, (len(tasks), 1))

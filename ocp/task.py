@@ -20,6 +20,7 @@ from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.limits import QUANTITIES, Bounds, Limit, Quantity, TorqueSpeedLine, quantities_of
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
+from quietarm.ocp.window import EQ_11, DefaultWindow, default_window
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,9 @@ class PointToPoint:
         Largest torque [N m] of the drive at speeds [rad/s], as [(1.5, 0), (0.8, 20)]; of a linear
         joint forces [N] at speeds [m/s]. See `TorqueSpeedLine`.
     residual_window : float, optional
-        Time after arrival in which the residual is measured [s]; eq (11) has 1 s.
+        Time after arrival in which the residual is measured [s]. By default, or None, eq (11)'s
+        1 s, or two periods of the nominal plant's slowest mode at the target where these are
+        longer; `dataclasses.replace` with another plant or target then works it out again.
     initial, final : ModalState, optional
         States at the start (of every scenario) and wanted on arrival; at rest by default. The
         residual is measured from the free vibration that begins with `final`.
@@ -124,7 +127,7 @@ class PointToPoint:
     speed_limit: Bounds | None = None
     acceleration_limit: Bounds | None = None
     deflection_limit: Bounds | None = None
-    residual_window: float = 1.0
+    residual_window: float = DefaultWindow(EQ_11)
     jerk_limit: Bounds | None = None
     initial: ModalState | None = None
     final: ModalState | None = None
@@ -146,7 +149,9 @@ class PointToPoint:
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)
         way = joint_unit("rad", self.plant.joint)
-        for name, unit in {"start": way, "target": way, **_TIMES}.items():
+        follows = _is_default(self.residual_window)
+        times = {name: unit for name, unit in _TIMES.items() if name == "duration" or not follows}
+        for name, unit in {"start": way, "target": way, **times}.items():
             check = positive if name in _TIMES else finite
             number = check(name.replace("_", " "), getattr(self, name), unit, _MOST)
             object.__setattr__(self, name, number)
@@ -182,6 +187,9 @@ class PointToPoint:
         for plant in self.perturbed_plants:
             check_contract(plant)
             check_along(plant, self.start, self.target)
+        if follows:
+            window = min(default_window([(self.plant, self.target)]), DefaultWindow(_MOST))
+            object.__setattr__(self, "residual_window", window)
 
     @property
     def span(self) -> float:
@@ -260,6 +268,11 @@ class PointToPoint:
     def limit_of(self, name: str) -> Limit | None:
         """The limit of a quantity by name; None where it has none."""
         return next((limit for limit in self.limits if limit.name == name), None)
+
+
+def _is_default(window: object) -> bool:
+    """Whether a residual window was not given: it was worked out for another task, or for none."""
+    return window is None or isinstance(window, DefaultWindow)
 
 
 def _check_bounds(quantity: Quantity, given: Any) -> Bounds:

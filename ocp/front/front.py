@@ -107,17 +107,24 @@ class Front(Answer):
         return np.array([point.energy for point in self.points])
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
-        """``residual_m`` (or ``_rad``), ``energy_J`` and ``a_1``, ``a_2``, ... of all points."""
+        """``residual_m`` (or ``_rad``), ``energy_J``, ``a_1``, ``a_2``, ... of all points, by name.
+
+        The last, ``residual_window_s``, is the task's residual window, the same for all.
+        """
         shape = len(self.points), self.profile.size
         coefficients = np.array([point.coefficients for point in self.points]).reshape(shape)
         named = {f"a_{i + 1}": column for i, column in enumerate(coefficients.T)}
         residual = f"residual_{self.task.plant.tip_unit}"
-        return {residual: self.residuals, "energy_J": self.energies, **named}
+        window = {"residual_window_s": np.full(len(self.points), self.task.residual_window)}
+        return {residual: self.residuals, "energy_J": self.energies, **named, **window}
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        unit = self.task.plant.tip_unit
-        head = f"residual F1 [{unit}]", "energy F2 [J]", f"shadow price [J/{unit}]", "coefficients"
+        unit, within = self.task.plant.tip_unit, f"within {self.task.residual_window:.4g} s"
+        head = (
+            f"residual F1 {within} [{unit}]", "energy F2 [J]", f"shadow price [J/{unit}]",
+            "coefficients",
+        )  # fmt: skip
         rows = [
             (
                 f"{point.residual:.3g}" if point.residual > REST else "0",

@@ -286,8 +286,9 @@ def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
         of = [row.transcription for row in own]
         tasks = [each.task for each in of]
         values = _values(_finer(of[0]), of, _table(own))
-        window = tasks[0].residual_window
-        vibrations = FreeVibration(tasks[0].plant, [task.target for task in tasks], window)
+        targets = [task.target for task in tasks]
+        windows = [task.residual_window for task in tasks]
+        vibrations = FreeVibration(tasks[0].plant, targets, windows)
         wanted = np.array([task.final_state for task in tasks])
         figures = zip(values.energy, vibrations.peak(values.arrival - wanted))
         for row, arrival, (energy, residual) in zip(own, values.arrival, figures):
@@ -312,10 +313,10 @@ def _confirm(found: Sequence[Outcome]) -> Sequence[Outcome]:
 
 
 def _alike(rows: Sequence[_Row]) -> list[list[_Row]]:
-    """The rows of the same steps and residual window."""
+    """The rows of the same steps."""
 
-    def key(row: _Row) -> tuple[float, float]:
-        return row.transcription.steps, row.transcription.task.residual_window
+    def key(row: _Row) -> int:
+        return row.transcription.steps
 
     return [list(own) for _, own in groupby(sorted(rows, key=key), key)]
 

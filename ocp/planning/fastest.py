@@ -148,21 +148,22 @@ def _fastest_on_spline(task: PointToPoint, tolerance: float, settings: dict[str,
     failed = {least.too_short: _why_too_short(task, least)}
     shortest = _LONGER[0] if task.uncertainty is None else _LONGER_IF_UNCERTAIN
     for longer in (share for share in _LONGER if share >= shortest):
-        longer_task = replace(task, duration=(1 + longer) * least.duration)
+        duration = (1 + longer) * least.duration
         try:
-            plan = plan_move(longer_task, least.profile, guess=least.coefficients, **settings)
+            plan = plan_move(
+                replace(task, duration=duration),
+                least.profile,
+                guess=least.coefficients,
+                **settings,
+            )
         except SolverFailedError as error:
-            failed[longer_task.duration] = str(error)
-        else:
-            break
-    else:
-        raise InfeasibleTaskError(
-            f"no duration up to {longer_task.duration:.3g} s will do: "
-            f"{failed[longer_task.duration]}"
-        )
-    stated = {**plan.record.settings}
-    stated.pop("guess", None)
-    return Fastest(plan.restated(settings=stated), tuple(sorted(failed.items(), reverse=True)))
+            failed[duration] = str(error)
+            continue
+        stated = {name: value for name, value in plan.record.settings.items() if name != "guess"}
+        shorter = tuple(sorted(failed.items(), reverse=True))
+        return Fastest(plan.restated(settings=stated), shorter)
+    longest, why = max(failed.items())
+    raise InfeasibleTaskError(f"no duration up to {longest:.3g} s will do: {why}")
 
 
 def _why_too_short(task: PointToPoint, least: LeastTime) -> str:

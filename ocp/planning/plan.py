@@ -150,7 +150,7 @@ class Plan(MotionAnswer):
             "plant": task.plant.name,
             "move": f"{task.start:.4g} to {task.target:.4g} rad in {task.duration:.4g} s",
             "energy F2": f"{motion.energy:.5g} J",
-            "residual vibration F1": residual,
+            f"residual vibration F1 within {task.residual_window:.4g} s": residual,
             "peak torque": f"{motion.peak_torque:.4g} N m",
             "peak speed": f"{motion.peak_speed:.4g} rad/s",
             "peak acceleration": f"{motion.peak_acceleration:.4g} rad/s\u00b2",

@@ -142,9 +142,9 @@ def plan_move(
     def plan(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Plan:
         return _plan_within(task, profile, settings, residual_limit)
 
-    if profile is None and guess is None:
-        return plan_on_chosen_profile(task, settings, limit_of(task, residual_limit), plan)
     if profile is None:
+        if guess is None:
+            return plan_on_chosen_profile(task, settings, limit_of(task, residual_limit), plan)
         profile = CycloidPolynomial.of_size(np.size(guess))
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)

@@ -142,8 +142,9 @@ def declared_bounds(task: PointToPoint) -> RigidBounds:
         limit = by_name.get(name)
         if limit is None:
             return math.inf, math.inf
-        bounds = limit.upper, -limit.lower
-        return bounds if task.span > 0 else bounds[::-1]
+        if task.span > 0:
+            return limit.upper, -limit.lower
+        return -limit.lower, limit.upper
 
     line = by_name.get(TORQUE_SPEED)
     no_torque_beyond = math.inf
@@ -199,7 +200,9 @@ class _Needed(NamedTuple):
     def along(cls, task: PointToPoint) -> _Needed:
         """The largest of each along the way."""
         angles = np.linspace(task.start, task.target, _ANGLES).tolist()
-        return cls(*np.abs([cls._at(task.plant, angle) for angle in angles]).max(axis=0).tolist())
+        needed = np.abs([cls._at(task.plant, angle) for angle in angles])
+        torque, deflection, friction = needed.max(axis=0).tolist()
+        return cls(torque, deflection, friction)
 
     @staticmethod
     def _at(plant: Plant, angle: float) -> tuple[float, float, float]:

@@ -14,6 +14,7 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.simulation.collocation import modal_system
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.window import MOST_RADIANS
 
 Array = NDArray[np.float64]
 
@@ -24,8 +25,6 @@ _RADIANS_OF_PEAKS = 0.06
 _STRIDE, _STRIDES_AT_ONCE = 16, 64
 """Samples of a peak: products of so many rows, and as many states at once."""
 _TIMES_AT_ONCE = 4096
-_MOST_RADIANS = 4000
-"""In a residual window: rows of more take too much memory."""
 _SMALL, _TERMS = 0.1, 10
 """Up to this phase the exponential is its Taylor series of so many terms, to 1e-18."""
 _ANGLES = 49
@@ -44,8 +43,9 @@ class FreeVibration:
         The plant. Its parameters may be columns with an entry for each of several plants.
     angle : float or array_like, shape (n,)
         Joint angle [rad]; n vibrations at once have arrays with a leading axis of n.
-    window : float
-        Time after arrival in which displacements count [s]; frequencies and states need none.
+    window : float or array_like, shape (n,)
+        Time after arrival in which displacements count [s], of n vibrations one for each or for
+        all; frequencies and states need none.
 
     Attributes
     ----------
@@ -65,8 +65,8 @@ class FreeVibration:
     @one_at_a_time
     @keep_interrupts()  # casadi loses a Ctrl-C
     @takes(plant=Plant)
-    def __init__(self, plant: Plant, angle: ArrayLike, window: float = 0.0) -> None:
-        self.window = window
+    def __init__(self, plant: Plant, angle: ArrayLike, window: ArrayLike = 0.0) -> None:
+        self.window: Array = np.asarray(window, dtype=float)
         angles, modes = np.atleast_1d(np.asarray(angle, dtype=float)), plant.modes
         of_rates = np.zeros((len(angles), 2 * modes, 2 * modes))
         of_rates[:, :modes, modes:] = np.eye(modes)
@@ -82,11 +82,12 @@ class FreeVibration:
         self._eigenvalues = np.linalg.eigvals(self.matrix).astype(complex)
         self.fastest: Array = np.abs(self._eigenvalues).max(axis=-1)
         self._most = float(self.fastest.max())
-        self._radians = window * self._most
-        if self._radians > _MOST_RADIANS:
+        longest = float(self.window.max())
+        self._radians = longest * self._most
+        if self._radians > MOST_RADIANS:
             raise ValueError(
-                f"residual window {window:g} s is {self._radians:.3g} radians of the plant's "
-                f"fastest mode; give at most {window * _MOST_RADIANS / self._radians:.3g} s"
+                f"residual window {longest:g} s is {self._radians:.3g} radians of the plant's "
+                f"fastest mode; give at most {longest * MOST_RADIANS / self._radians:.3g} s"
             )
 
     @property
@@ -122,7 +123,7 @@ class FreeVibration:
         columns = math.ceil(strides / rounds)
         between = self.window / (rounds * columns * _STRIDE)
         step = exponential(matrix, between, self._most)
-        outputs = np.concatenate([tips, between * tips @ matrix], axis=1)
+        outputs = np.concatenate([tips, between[..., None, None] * tips @ matrix], axis=1)
         rows = powers(outputs, step, _STRIDE + 1)
         stride = np.linalg.matrix_power(step, _STRIDE).swapaxes(1, 2)
         starts, round_ = powers(state, stride, columns), np.linalg.matrix_power(stride, columns)

@@ -141,6 +141,7 @@ class _Linearised:
         count = len(limits.room)
         chosen = np.zeros(count, dtype=bool)
         chosen[:: max(1, count // _ROWS_AT_FIRST)] = True
+        solution = needed = None
         for _ in range(_MOST_ROUNDS_OF_ROWS):
             solution = self._solve(limits, np.flatnonzero(chosen), reach)
             if solution is None:
@@ -149,6 +150,8 @@ class _Linearised:
             if needed.max() <= solution[-1] + _EXCEEDED:
                 break
             chosen |= _peaks(needed, solution[-1] + _EXCEEDED)
+        assert solution is not None  # there is a round
+        assert needed is not None
         return np.append(solution[:-1], needed.max())
 
     def _solve(self, limits: _Rows, chosen: NDArray[np.intp], reach: float) -> Array | None:

@@ -23,6 +23,7 @@ from quietarm.studies.bench.statistics import (
     verdict_on,
 )
 from quietarm.studies.report import Report
+from quietarm.studies.report.words import window_words
 
 SHOWN_TARGET = 0.1
 """Share of the hypervolume missing to which tables give the expected running time."""
@@ -71,6 +72,7 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "target": f"{100 * SHOWN_TARGET:g}", "moves": len(moves_of(results.problems)),
         "verdicts": {name: verdict_on(results, name) for name in problems},
         "on_energy": {name: verdict_on(results, name, "energy_1mm") for name in problems},
+        "windows": _windows(results),
         "energy_ranking": ranking_over(results, "energy_1mm"),
         "kruskal": {name: kruskal_on(results, name) for name in problems},
         "repeated": _repeated(results),
@@ -131,9 +133,23 @@ def brief_report(results: Results) -> Report:
         name: problem_table(results, name)[columns].map(_rounded) for name in names
     }
     verdicts = {name: verdict_on(results, name) for name in names}
-    values = {"verdicts": verdicts, "repeated": _repeated(results),
-              "copies": [run.label for run in results.copies]}  # fmt: skip
+    values = {
+        "verdicts": verdicts,
+        "repeated": _repeated(results),
+        "copies": [run.label for run in results.copies],
+        "windows": _windows(results),
+    }
     return Report("bench/brief.md", values, tables)
+
+
+def _windows(results: Results) -> str:
+    """Residual windows of the problems; of which, where they differ."""
+    names: dict[str, list[str]] = {}
+    for problem in results.problems:
+        names.setdefault(window_words(problem.task.residual_window), []).append(problem.name)
+    if len(names) == 1:
+        return next(iter(names))
+    return ", ".join(f"{words} ({', '.join(of)})" for words, of in names.items())
 
 
 def _repeated(results: Results) -> dict[str, list[str]]:

@@ -301,6 +301,7 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     front, last = run.front, run.front.history[-1]
     row: dict[str, Any] = {
         "problem": run.problem.name, "method": run.method, "seed": front.record.seed,
+        "residual_window_s": front.task.residual_window,
         "points": len(front.points), "missing": _told_apart(_missing(last.quality)),
         "missing_between": _told_apart(_missing(last.between)),
     }  # fmt: skip

@@ -107,8 +107,9 @@ TASK = (
     ),
     option("--torque-speed", metavar="TORQUE@SPEED", help="Torque limit by speed, as points: "
            "1.5Nm@0,0.8Nm@190rpm; of a linear axis 100N@0,40N@500mm/s."),
-    option("--residual-window", type=TIME, default="1",
-           help="Time after arrival in which the residual is measured."),
+    option("--residual-window", type=TIME,
+           help="Time after arrival in which the residual is measured. [default: 1 s, or two "
+           "periods of the slowest mode at the target where these are longer]"),
     option("--initial", type=Parsed("W:W'", parse_state), help="Vibration at the start, modal "
            "amplitudes W [m] and rates W' [m/s]: 5mm:-0.3, or of two modes 5mm,0:0,0.1."),
     option("--final", type=Parsed("W:W'", parse_state),

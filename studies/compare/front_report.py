@@ -10,10 +10,20 @@ from quietarm.metaheuristics.quality import BETWEEN
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.studies import figures
-from quietarm.studies.compare.fronts import Comparison, Group, compare_fronts
+from quietarm.studies.compare.fronts import (
+    Comparison,
+    Group,
+    compare_fronts,
+    differ_in_window_alone,
+)
 from quietarm.studies.figures.comparison import KnownPoint
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import spread_words, title_of
+from quietarm.studies.report.words import (
+    residual_place,
+    spread_words,
+    title_of,
+    window_words,
+)
 from quietarm.studies.tips import tip_scale, tip_words
 
 _INDICATORS = {"hypervolume": ".4f", "igd_plus": ".2g", "epsilon": ".2g"}
@@ -43,6 +53,17 @@ def _by_task(fronts: Mapping[str, Front]) -> list[dict[str, Front]]:
         else:
             tasks.append({name: front})
     return tasks
+
+
+def _apart_by_window(comparisons: Sequence[Comparison]) -> list[str]:
+    """Residual windows of tasks that are one but for these; none where there are no such."""
+    windows = {
+        one.task.residual_window: window_words(one.task.residual_window)
+        for one in comparisons
+        for other in comparisons
+        if differ_in_window_alone(one.task, other.task)
+    }
+    return [words for _, words in sorted(windows.items())]
 
 
 def methods_table(comparison: Comparison) -> pd.DataFrame:
@@ -89,6 +110,7 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
                 "move": title_of(front.task), "name": run.name, "label": group.label,
                 "method": record.method, "seed": record.seed, "bound": record.bound,
                 "coefficients": front.profile.size, "points": len(front.points),
+                "residual_window_s": front.task.residual_window,
                 "hypervolume": run.hypervolume, "hypervolume_found": run.hypervolume_found,
                 "igd_plus": run.igd_plus, "epsilon": run.epsilon,
             }  # fmt: skip
@@ -117,7 +139,9 @@ def fronts_report(
             "parts": list(zip(comparisons, tables, pictures)),
             "title_of": title_of,
             "tip_words": tip_words,
+            "residual_place": residual_place,
             "fill": BETWEEN if comparisons[0].fill else 0,
+            "apart": _apart_by_window(comparisons),
             "several": any(len(g.runs) > 1 for one in comparisons for g in one.groups),
         },
         {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import attrgetter
 
 import moocore
@@ -235,15 +235,24 @@ def _refuse(fronts: Sequence[Front], names: Sequence[str], apart: int) -> None:
     for i, (front, name) in enumerate(zip(fronts, names)):
         if not front.points:
             raise ValueError(f"{name} has no finite point; leave it out, or search longer")
-        if difference := task_difference(front.task, fronts[0].task):
+        task = fronts[0].task
+        if difference := task_difference(front.task, task):
+            remedy = "compare fronts of one task"
+            if differ_in_window_alone(front.task, task):
+                remedy = f"find it again with --residual-window {task.residual_window:.10g}s"
             raise ValueError(
-                f"{name} is of another task than {names[0]}: its {difference}; compare fronts of "
-                "one task"
+                f"{name} is of another task than {names[0]}: its {difference}; {remedy}"
             )
         if i < apart and front in fronts[:i]:
             first = names[list(fronts).index(front)]
             twin = "given twice" if name == first else f"the same front as {first}"
             raise ValueError(f"{name} is {twin}; give every front once")
+
+
+def differ_in_window_alone(one: PointToPoint, other: PointToPoint) -> bool:
+    """Whether two tasks have another residual window, and are one task but for that."""
+    alike = replace(one, residual_window=other.residual_window)
+    return bool(task_difference(one, other)) and not task_difference(alike, other)
 
 
 def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:

@@ -36,6 +36,8 @@ class Judged:
         What tables call it.
     motion : Motion or None
         Residual, energy and peaks on the nominal plant.
+    window : float or None
+        Time after arrival in which residuals are measured [s].
     worst : Worst or None
         The largest residual within the parameter errors, and the errors there.
     exceeded : tuple of str
@@ -51,6 +53,7 @@ class Judged:
 
     name: str
     motion: Motion | None = None
+    window: float | None = None
     worst: Worst | None = None
     exceeded: tuple[str, ...] = ()
     robustness: Robustness | None = None
@@ -75,7 +78,10 @@ def judge(
     candidate = moved if isinstance(moved, Candidate) else moved.candidate
     nominal = Candidate(task.certain, candidate.path)
     own = Judged(
-        name, nominal.motion, exceeded=tuple(nominal.motion.exceeded(task.limits, OVERRUN))
+        name,
+        nominal.motion,
+        float(task.residual_window),
+        exceeded=tuple(nominal.motion.exceeded(task.limits, OVERRUN)),
     )
     if isinstance(moved, Plan):
         uncertain = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)
@@ -94,7 +100,7 @@ def judge(
 
 
 def refuse_other_moves(tasks: Mapping[str, PointToPoint]) -> None:
-    """ValueError unless tasks are one move; their limits and parameter errors may differ."""
+    """ValueError unless tasks are one move; limits, errors and residual windows may differ."""
     (first, wanted), *others = ((name, _bare(task)) for name, task in tasks.items())
     for name, task in others:
         if difference := task_difference(task, wanted):
@@ -106,7 +112,7 @@ def refuse_other_moves(tasks: Mapping[str, PointToPoint]) -> None:
 
 def _bare(task: PointToPoint) -> PointToPoint:
     limits = [quantity.limit for quantity in QUANTITIES.values()]
-    without = dict.fromkeys([*limits, "torque_speed"])
+    without = dict.fromkeys([*limits, "torque_speed", "residual_window"])
     return replace(task.certain, **without)  # pyright: ignore[reportArgumentType]
 
 

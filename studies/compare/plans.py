@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import pandas as pd
@@ -20,11 +21,12 @@ from quietarm.studies.compare.judged import (
     refuse_other_moves,
 )
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import title_of
+from quietarm.studies.report.words import title_of, window_words
 from quietarm.studies.tips import tip_scale
 
 _WHY = "why there is none"
 """Column of a table for files; a page lists the reasons below."""
+_WINDOW = "residual window [s]"
 _TURNED = 1e-4
 """A joint that goes back by more [rad] is said to."""
 
@@ -44,7 +46,7 @@ def compare_plans(
     ----------
     plans : mapping of str to Plan
         Plans by their names in tables. Baselines have the move and limits of the first plan, and
-        all are checked against its limits.
+        all are checked against its limits; residuals are within the longest window of all plans.
     baselines : sequence of str
         Names of `BASELINES`, or "all".
     ranges : mapping of str to float, optional
@@ -67,7 +69,9 @@ def compare_plans(
     names, tasks = choose_baselines(baselines), {"the move": task} if task else {}
     tasks |= {name: plan.task for name, plan in plans.items()}
     refuse_other_moves(tasks)
-    task, ranges = next(iter(tasks.values())), ranges or merged_ranges(tasks.values())
+    window = max(one.residual_window for one in tasks.values())
+    task = replace(next(iter(tasks.values())), residual_window=window)
+    ranges = ranges or merged_ranges(tasks.values())
     judged = [judge(name, plan, ranges, task, samples) for name, plan in plans.items()]
     for name in names:
         try:
@@ -95,6 +99,7 @@ def _cells(one: Judged, tip_unit: str) -> Iterator[tuple[str, float | str | None
     yield "energy [J]", motion.energy
     shown, scale = tip_scale(tip_unit)
     yield f"residual [{shown}]", scale * motion.residual
+    yield _WINDOW, one.window
     if one.worst is not None:
         yield f"worst case [{shown}]", scale * one.worst.residual
         errors = (f"{name} {100 * error:+.3g} %" for name, error in one.worst.errors.items())
@@ -118,7 +123,8 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     short = {"peak ": "", "acceleration [rad": "accel. [1", "acceleration": "accel."}
     for long, word in short.items():
         rounded.columns = rounded.columns.str.replace(long, word, regex=False)
-    return rounded.drop(columns=["parameters", "time [s]", _WHY], errors="ignore")
+    files_alone = ["parameters", "time [s]", _WHY, _WINDOW]
+    return rounded.drop(columns=files_alone, errors="ignore")
 
 
 def remarks(motions: Sequence[Judged], unit: str = "rad") -> list[str]:
@@ -149,6 +155,9 @@ def plans_report(task: PointToPoint, motions: Sequence[Judged]) -> Report:
             "shown": shown(table),
             "remarks": remarks(motions, joint_unit("rad", joint)),
             "errors": list(ranges),
+            "window": window_words(
+                next((one.window for one in motions if one.window), task.residual_window)
+            ),
             "robust": robust,
             "tolerated": f"{100 * TOLERATED:g} %",
             "ruckig": any("ruckig" in one.name for one in motions),

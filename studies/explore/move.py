@@ -15,6 +15,7 @@ from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import Front, Plan, PointToPoint, epsilon_front, evaluate_coefficients, plan_move
 from quietarm.ocp.front.curve import Report, no_report
 from quietarm.ocp.limits import QUANTITIES, quantities_of
+from quietarm.ocp.window import default_window
 from quietarm.studies.export.formats import export_plan
 from quietarm.studies.reading.profiles import FAMILIES, profile_of
 from quietarm.studies.report.words import moved
@@ -161,8 +162,15 @@ class Explored:
         return self._moved(self.task, self.plan.profile.plain)
 
     def choose_plant(self, plant: Plant) -> Explored:
-        """The same move and motion of another plant, which begins at rest."""
-        task = replace(self.task, plant=plant, initial=None, final=None)
+        """The same move and motion of another plant, which begins at rest.
+
+        The residual window is the plant's, too, unless it was given; in a file both are numbers.
+        """
+        task, window = self.task, self.task.residual_window
+        by_default = default_window([(task.plant, task.target)])
+        if window == by_default:
+            window = by_default
+        task = replace(task, plant=plant, initial=None, final=None, residual_window=window)
         return self._moved(task, self.plan.coefficients, library=None, front=None)
 
     def choose_profile(self, name: str, terms: int | None = None) -> Explored:

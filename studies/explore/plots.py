@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
+from quietarm.studies.figures.axes import residual_label
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
 from quietarm.studies.figures.structure import INK, structures_of
@@ -58,7 +59,7 @@ class Plots:
             "robustness": (f"residual over the frequency error [{shown}]", "frequency error [%]"),
             **{name: (heading(name, plant.joint, plant.tip_unit), below) for name in PANELS},
         }
-        self._front = self._tradeoff(pick, shown)
+        self._front = self._tradeoff(pick)
         panels = [self._panel(name, *words) for name, words in titles.items()]
         self.roots = [self._stage(document), self._front, *panels]
 
@@ -67,6 +68,9 @@ class Plots:
         self._sources["points"].selected.indices = []  # so that one can be clicked again
         self._front.title.text = "front (cross: this motion)" if explored.front else _NO_FRONT
         self._front.axis.visible = bool(explored.front)
+        self._front.xaxis.axis_label = residual_label(
+            explored.task.plant.tip_unit, explored.task.residual_window
+        )
         for name, rows in _drawn(explored).items():
             table = pd.DataFrame(rows, columns=_COLUMNS[name])
             self._sources[name].data = table.to_dict("list")
@@ -90,12 +94,10 @@ class Plots:
         plot.tags = [play["film"]]  # else it would be no part of the document
         return plot
 
-    def _tradeoff(self, pick: Callable[[int], None], shown: str) -> Any:
+    def _tradeoff(self, pick: Callable[[int], None]) -> Any:
         """The front, and where the motion in hand lies."""
-        plot: Any = figure(
-            name="front", tools="tap", x_axis_label=f"residual F1 [{shown}]",
-            y_axis_label="energy F2 [J]",
-        )  # fmt: skip
+        plot: Any = figure(name="front", tools="tap", x_axis_label=" ",
+                           y_axis_label="energy F2 [J]")  # fmt: skip
         points, here = self._sources["points"], self._sources["here"]
         points.selected.on_change("indices", lambda _, old, new: pick(new[0]) if new else None)
         plot.line(*_POINT, source=points, color=BLUE)

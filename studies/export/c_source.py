@@ -11,7 +11,7 @@ from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.report.templates import templates
-from quietarm.studies.report.words import limit_words, move_of, moved
+from quietarm.studies.report.words import limit_words, move_of, moved, window_words
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.interpolation import ORDERS
 from quietarm.studies.sweep.library import MoveLibrary
@@ -33,12 +33,14 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         task, versions, between, axes = moves.task, moves.record.versions, None, ()
         title = f"{moved(task)}, {move_of(task)}"
         residual = tip_words(moves.residual, task.plant.tip_unit)
-        figures = f"energy {moves.energy:.4g} J, residual {residual}"
+        figures = f"energy {moves.energy:.4g} J, residual {residual} "
+        figures += window_words(task.residual_window)
         figures = ", ".join([figures, *limit_words(task)])
     else:
         task, versions = moves.grid.task, moves.store.note("versions")
         between, axes = moves.interpolation, moves.grid.axes
         title, figures = f"moves of {moved(task)}", moves.between().words
+        figures += f", residuals {window_words(task.residual_window)}"
     move = dict(zip(OF_MOVES, map(repr, task.move)))
     helpers, statements = _path_in_c(moves.profile)
     texts = templates(keep_trailing_newline=True)

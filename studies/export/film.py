@@ -24,7 +24,7 @@ from quietarm.studies.figures.axes import TITLE, new_figure
 from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
 from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.saving import as_written
-from quietarm.studies.report.words import move_of, moved, residual_words, title_of
+from quietarm.studies.report.words import move_of, moved, residual_words, title_of, window_words
 
 _MOST_MOTIONS, _MOST_FRAMES = 6, 500
 """More could not be seen side by side, or would take minutes."""
@@ -113,7 +113,8 @@ def animate(
 
     Every link bends in the shape of its mode (`Plant.structure`); dashed is the rigid link. After
     arrival the path of the tips is drawn. Below are the joint angle, the tip displacements and the
-    power, with a cursor. The film ends with the last residual window.
+    power, with a cursor. The film ends with the last residual window, or in it where it would have
+    too many frames.
 
     Parameters
     ----------
@@ -146,8 +147,13 @@ def animate(
     width = whole("width", width, *WIDTHS, "more pixels make a huge file")
     if deflection_scale is not None:
         positive("deflection scale", deflection_scale)
-    end = max(line.plan.task.duration + line.plan.task.residual_window for line in lines)
-    frames = end * rate / positive("speed", speed)
+    tasks = [line.plan.task for line in lines]
+    end = max(task.duration + task.residual_window for task in tasks)
+    a_second = rate / positive("speed", speed)
+    frames = end * a_second
+    if max(task.duration for task in tasks) * a_second < _MOST_FRAMES < frames:
+        frames = float(_MOST_FRAMES)
+        end = frames / a_second
     if not _LEAST_A_SECOND <= rate <= _MOST_A_SECOND or frames > _MOST_FRAMES:
         raise ValueError(
             f"{end:g} s at {rate:g} frames per second and speed {speed:g} make {frames:.0f} "
@@ -227,7 +233,7 @@ def _title(one: Structure, same: bool, room: int) -> list[str]:
     lines = [
         f"{one.line.label}, {one.scale_words}",
         *([] if same else [f"{moved(task)}, {move_of(task)}"]),
-        f"energy {plan.energy:.3g} J, residual {residual}",
+        f"energy {plan.energy:.3g} J, residual {residual} {window_words(task.residual_window)}",
     ]
     return [part for line in lines for part in wrap(line, room)]
 

@@ -22,6 +22,7 @@ from quietarm.studies.figures.axes import (
     logarithmic,
     name_objectives,
     new_figure,
+    residual_label,
 )
 from quietarm.studies.figures.looks import Look, look
 from quietarm.studies.report.words import title_of
@@ -146,7 +147,7 @@ def draw_comparison(
         ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
     highest = max([_TALLEST * comparison.best_front[0, 1], *(1.05 * one.energy for one in known)])
     ax.set_ylim(top=min(ax.get_ylim()[1], highest))
-    name_objectives(ax, tip_unit)
+    name_objectives(ax, tip_unit, comparison.task.residual_window)
     ax.set_title("small residuals" if small else "the whole fronts", **TITLE)
     if small:
         _logarithmic(ax, comparison, right)
@@ -201,9 +202,10 @@ def _right(comparison: Comparison) -> float:
 def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
     left = _left(comparison)
     logarithmic(ax, [left, right])
-    shown, scale = tip_scale(comparison.task.plant.tip_unit)
+    tip_unit = comparison.task.plant.tip_unit
+    scale = tip_scale(tip_unit)[1]
     ax.set_xlim(left * scale, right * scale)
-    ax.set_xlabel(f"residual F1 [{shown}], logarithmic")
+    ax.set_xlabel(f"{residual_label(tip_unit, comparison.task.residual_window)}, logarithmic")
     for level in comparison.levels:
         if left <= level <= right:
             ax.axvline(level * scale, color="0.75", linewidth=0.8, zorder=0)

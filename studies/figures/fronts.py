@@ -19,6 +19,7 @@ from quietarm.studies.figures.axes import (
     draw_front,
     logarithmic,
     name_objectives,
+    residual_label,
     side_by_side,
 )
 from quietarm.studies.figures.looks import BLUE, RED, look
@@ -212,9 +213,10 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     title = f"{label_of(method)}: {title_of(fronts[0].task)}"
     figure, axes = side_by_side(panels, title, width=4.2 if panels > 1 else 6.4)
     draw_fronts(fronts, axes[0], linear=gradient)
+    tip_unit = fronts[0].task.plant.tip_unit
+    name_objectives(axes[0], tip_unit, fronts[0].task.residual_window)
     if len(fronts) == 1 and len(fronts[0].points) > 2:
         knee = fronts[0].knee()
-        tip_unit = _tip_unit(fronts)
         label = f"knee: {knee.energy:.4g} J at {tip_words(knee.residual, tip_unit)}"
         left = tip_scale(tip_unit)[1] * max(knee.residual, REST)
         axes[0].plot(left, knee.energy, "o", color=BLUE,
@@ -231,13 +233,14 @@ def polish_figure(before: Front, polish: Polish) -> Figure:
     name = label_of(polish.front.record.method)
     figure, (ax, saved) = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
     draw_fronts([before, polish.front], ax, ("before", "after"))
+    tip_unit = before.task.plant.tip_unit
+    name_objectives(ax, tip_unit, before.task.residual_window)
     residuals = [max(gain.residual, REST) for gain in polish.gains]
-    shown, scale = tip_scale(before.task.plant.tip_unit)
-    axes_or_new(saved).plot(
-        np.multiply(scale, residuals), [100 * gain.share for gain in polish.gains], "o", color=BLUE,
-        markersize=3,
-    )  # fmt: skip
-    saved.set(xlabel=f"residual F1 [{shown}]", ylabel="energy saved [%]")
+    left = np.multiply(tip_scale(tip_unit)[1], residuals)
+    shares = [100 * gain.share for gain in polish.gains]
+    axes_or_new(saved).plot(left, shares, "o", color=BLUE, markersize=3)
+    label = residual_label(tip_unit, before.task.residual_window)
+    saved.set(xlabel=label, ylabel="energy saved [%]")
     saved.set_ylim(bottom=0)
     logarithmic(saved, residuals, least_span=_LOGARITHMIC_FROM)
     return figure

@@ -9,7 +9,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 from quietarm.ocp.record import REST
-from quietarm.studies.figures.axes import logarithmic, name_objectives, new_figure
+from quietarm.studies.figures.axes import (
+    logarithmic,
+    name_objectives,
+    new_figure,
+    residual_label,
+)
 from quietarm.studies.figures.looks import look
 from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.grid import Axis
@@ -78,7 +83,7 @@ def fronts_figure(store: Store) -> Figure:
             left = tip_scale(tip_unit)[1] * residual[(*place, k)]
             ax.plot(left, energy[(*place, k)], color=colours.to_rgba(value))
         ax.set_title(_words(axes, place), loc="left", fontsize=9)
-        name_objectives(ax, tip_unit)
+        name_objectives(ax, tip_unit, store.definition.grid.task.residual_window)
         ax.grid(alpha=0.25)
         logarithmic(ax, energy.ravel(), "y")
     figure.colorbar(colours, ax=list(panels), label=name)
@@ -105,10 +110,12 @@ def _over_one(store: Store, axis: Axis) -> Figure:
 
 def _variables(store: Store) -> list[tuple[str, Array, float]]:
     """What is shown and known: labels, values that are no less than the least, the least."""
-    shown, scale = tip_scale(store.definition.grid.task.plant.tip_unit)
+    task = store.definition.grid.task
+    shown, scale = tip_scale(task.plant.tip_unit)
+    residual = residual_label(task.plant.tip_unit, task.residual_window)
     variables = {
         "energy": ("energy F2 [J]", 1.0, 0.0),
-        "residual": (f"residual F1 [{shown}]", scale, REST * scale),
+        "residual": (residual, scale, REST * scale),
         "price_residual": (f"shadow price [J/{shown}]", 1 / scale, _LEAST_PRICE / scale),
     }
     every = [

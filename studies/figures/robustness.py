@@ -15,6 +15,7 @@ from quietarm.studies.figures.axes import (
     legend_of,
     logarithmic,
     name_objectives,
+    residual_label,
     side_by_side,
 )
 from quietarm.studies.figures.looks import look
@@ -92,8 +93,13 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None, tip_unit: st
         ax.plot(ends, [energy] * 2, linestyle=how.dash, linewidth=1, label=judged.name,
                 markevery=[1], **line)  # fmt: skip
     logarithmic(ax, [REST, 1.0])
-    name_objectives(ax, tip_unit)
+    name_objectives(ax, tip_unit, _window(motions))
     return ax
+
+
+def _window(motions: Sequence[Judged]) -> float | None:
+    """The residual window of motions that are judged together [s]."""
+    return next((judged.window for judged in motions if judged.window is not None), None)
 
 
 def motions_figure(motions: Sequence[Judged], title: str, tip_unit: str = "m") -> Figure:
@@ -103,8 +109,8 @@ def motions_figure(motions: Sequence[Judged], title: str, tip_unit: str = "m") -
     figure, axes = side_by_side(1 + len(names), title, width=6.0)
     draw_motions(motions, axes[0], tip_unit)
     if any(judged.worst for judged in motions):
-        shown = tip_scale(tip_unit)[0]
-        axes[0].set_xlabel(f"residual F1 [{shown}] (open: nominal plant, filled: worst case)")
+        label = residual_label(tip_unit, _window(motions))
+        axes[0].set_xlabel(f"{label} (open: nominal plant, filled: worst case)")
     for name, ax in zip(names, axes[1:]):
         draw_robustness(curves, name, ax)
     figure.legend(*legend_of(axes), loc="outside lower center", ncols=4, fontsize=8)

@@ -27,6 +27,8 @@ _CLAIMS = {
     "energy": (1, 1.0), "energy_j": (1, 1.0), "energy_mj": (1, 1e-3),
 }  # fmt: skip
 """Columns that state a figure: which of residual [m] and energy [J], and its unit in these."""
+_WINDOW = "residual_window_s"
+"""A column of `Front.save_csv`; motions are evaluated within the window of the task."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,7 @@ def read_found(path: Path) -> Found:
         claim = _CLAIMS.get(name) or _CLAIMS.get(name.removesuffix(":1"))
         if claim and len(column.values) == len(claims):
             claims[:, claim[0]] = column.values * claim[1]
-        elif k not in of_motions:
+        elif k not in of_motions and name != _WINDOW:
             ignored[column.name.partition(":")[0][:30] or "a column without a name"] = None
     return Found(coefficients, claims, tuple(ignored))
 

@@ -12,7 +12,7 @@ from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant
 from quietarm.ocp.checks import spelling, unknown
 from quietarm.studies.report.methods import GRADIENT_LABELS, label_of
-from quietarm.studies.report.words import error_words
+from quietarm.studies.report.words import error_words, window_words
 
 Row = tuple[str, str]
 KINDS = ("plants", "problems", "methods")
@@ -85,4 +85,5 @@ def _problem(problem: NamedProblem) -> str:
         *([f"limits {limits}"] if limits else []),
         *([f"third objective peak {problem.peak}"] if problem.peak else []),
         *([f"the largest residual with {errors}"] if errors else []),
+        f"residuals {window_words(problem.task.residual_window)}",
     ])  # fmt: skip

@@ -7,12 +7,18 @@ from math import isfinite
 
 import numpy as np
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
-from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain
+from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness import worst_of
 from quietarm.studies.report.moves import worst_in_words
-from quietarm.studies.report.words import counted, energy_words, residual_words, spread_words
+from quietarm.studies.report.words import (
+    counted,
+    energy_words,
+    residual_place,
+    residual_words,
+    spread_words,
+)
 from quietarm.studies.tips import tip_words
 
 _ROWS = 10
@@ -33,11 +39,8 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
             f"{f'{energy:.4g} J' if isfinite(energy) else 'none'}"
             for level, energy in levels.items()
         ),
-        *(
-            [f"residuals are the largest of {len(front.task.scenarios)} scenarios; between them "
-             "more may remain, as quietarm plan says"]
-            if front.task.uncertainty else []
-        ),
+        _residual_line(front.task)
+        + "; between them more may remain, as quietarm plan says" * bool(front.task.ranges),
         *([] if check is None else [_check_line(check)]),
         *failure_lines(front, asked_for),
         *(
@@ -60,6 +63,7 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
             f"{front.failed} failed",
             *_chosen_points(front),
         ]
+    lines.append(_residual_line(fronts[0].task))
     if len(fronts) > 1:
         energies, level = energies_at(fronts), tip_words(SEARCH_RESIDUAL, tip_unit)
         corner = fronts[0].reference
@@ -88,6 +92,7 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
             f"{f'{gain.after:.4g} J':>12}{f'{gain.share:.2%}':>9}"
             for gain in (gains[i] for i in shown)
         ),
+        _residual_line(polished.task),
         f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}",
         *([f"{counted(dominated, 'point')} dropped, dominated by another now"] * (dominated > 0)),
         *failure_lines(polished, len(given.points)),
@@ -105,6 +110,11 @@ def failure_lines(front: Front, asked_for: int) -> list[str]:
         f"{len(front.failures)} of {asked_for} points could not be found:",
         *(f"  {', '.join(asked)}: {reason}" for reason, asked in reasons.items()),
     ]
+
+
+def _residual_line(task: PointToPoint) -> str:
+    """Where and when the residuals of fronts are measured."""
+    return f"residuals are {residual_place(task)}"
 
 
 def _chosen_points(front: Front) -> list[str]:

@@ -24,7 +24,7 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
 from quietarm.ocp.planning.plan_move import EXCESS
 from quietarm.ocp.record import AGREEMENT, REST
-from quietarm.studies.report.words import move_of, moved, state_words
+from quietarm.studies.report.words import move_of, moved, residual_place, state_words
 from quietarm.studies.tips import tip_words
 
 if TYPE_CHECKING:
@@ -211,7 +211,7 @@ def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]
     known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
-        ("residual (F1)", f"{residual} at the {_tip(task)} within {task.residual_window:g} s"),
+        ("residual (F1)", f"{residual} {residual_place(task)}"),
         *((_peak_name(name, task), _peak(name, task, motion, remedies)) for name in known),
         ("overshoot", _way(motion.overshoot, task) if motion.overshoot > _ROUNDING else "none"),
     ]
@@ -280,12 +280,6 @@ def _choice(plan: Plan) -> Row:
     if not isinstance(plan.profile, CycloidPolynomial):
         return "profile", f"{plan.profile.label}: {coefficients}"
     return "coefficients", coefficients or "none: the plain cycloid"
-
-
-def _tip(task: PointToPoint) -> str:
-    tips, scenarios = task.plant.tips, len(task.scenarios)
-    words = "tip" if tips == 1 else f"worst of {tips} tips"
-    return words if scenarios == 1 else f"{words}, worst of {scenarios} scenarios"
 
 
 def _terms_rows(plan: Plan) -> list[Row]:

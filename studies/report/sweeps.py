@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from quietarm.ocp import SolveStatus
 from quietarm.ocp.record import REST
-from quietarm.studies.report.words import moved
+from quietarm.studies.report.words import moved, residual_place
 from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
 from quietarm.studies.tips import tip_scale, tip_words
@@ -37,7 +37,8 @@ def sweep_rows(store: Store) -> list[tuple[str, str]]:
         largest, tip_unit = store.read("residual")[known].max(), grid.task.plant.tip_unit
         rows += [
             ("energy", f"{energy[known].min():.4g} to {energy[known].max():.4g} J"),
-            ("residual", f"{tip_words(largest, tip_unit)} at most, by CVODES"),
+            ("residual", f"{tip_words(largest, tip_unit)} at most {residual_place(grid.task)}, "
+             "by CVODES"),
             ("from cold starts", f"at most {max(excess[checked].max(), 0):.1g} of the energy less, "
              f"in {checked.sum()} cells"),
         ]  # fmt: skip

@@ -64,6 +64,19 @@ def residual_words(residual: float, tip_unit: str) -> str:
     return "rest" if residual < REST else tip_words(residual, tip_unit)
 
 
+def window_words(window: float) -> str:
+    """A residual window [s], as "within 1.205 s" of the arrival."""
+    return f"within {window:.4g} s"
+
+
+def residual_place(task: PointToPoint) -> str:
+    """Where and when a residual is measured: "at the tip within 1 s"."""
+    tips, scenarios = task.plant.tips, len(task.scenarios)
+    words = "tip" if tips == 1 else f"worst of {tips} tips"
+    words = words if scenarios == 1 else f"{words}, worst of {scenarios} scenarios"
+    return f"at the {words} {window_words(task.residual_window)}"
+
+
 def plant_words(plant: Plant) -> str:
     """A plant's name, with the parameters that differ from those of its class, of its own."""
     changed: list[str] = []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from math import pi
@@ -14,6 +14,7 @@ from quietarm.metaheuristics import PAPER_BOX, PRESETS
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients, task_difference
+from quietarm.ocp.window import EQ_11
 from quietarm.studies.figures import KnownPoint
 
 _PLANTS = {one.name: one for one in (SingleLinkManipulator(), ArmOnFlexibleLink())}
@@ -64,7 +65,8 @@ class Row:
 @cache
 def _case(plant: str, start: str, target: str, duration: str) -> Case:
     """A driving condition: start and target as pi/6, duration [s]."""
-    task = PointToPoint(_PLANTS[plant], _angle(target), float(duration), _angle(start))
+    move = _angle(target), float(duration), _angle(start)
+    task = PointToPoint(_PLANTS[plant], *move, residual_window=EQ_11)
     return Case(task, f"{start} to {target}, {duration} s", *_OF_PLANT[plant])
 
 
@@ -105,12 +107,13 @@ exponent of a_5 mended: only this reproduces Table 5's 0.149 J."""
 
 
 def condition_of(task: PointToPoint) -> Case | None:
-    """The condition of the paper that a task is; None where it is none of them."""
+    """The condition of the paper that a task is, within any window; None where it is none."""
+    task = replace(task, residual_window=EQ_11)
     return next((c for c in CONDITIONS if not task_difference(task, c.task)), None)
 
 
 def paper_points(task: PointToPoint, terms: Collection[int]) -> list[KnownPoint]:
-    """The paper's own points for a task."""
+    """The paper's own points for a task, within its residual window."""
     condition = condition_of(task)
     printed = {row.terms: row for row in ROWS if row.condition is condition}
     points = list[KnownPoint]()
@@ -118,7 +121,7 @@ def paper_points(task: PointToPoint, terms: Collection[int]) -> list[KnownPoint]
         plan, name = paper_plan(printed[number].condition, number), f"paper, N = {number}"
         points.append(
             KnownPoint(f"{name}: energy as printed", None, printed[number].energy)
-            if plan is None else KnownPoint(name, plan.residual, plan.energy)
+            if plan is None else KnownPoint(name, plan.on(task).residual, plan.energy)
         )  # fmt: skip
     return points
 

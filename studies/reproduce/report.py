@@ -8,6 +8,7 @@ from statistics import median
 import pandas as pd
 from matplotlib.figure import Figure
 from quietarm.ocp import Plan
+from quietarm.ocp.window import EQ_11
 from quietarm.studies.compare.plans import motions_table, remarks, shown
 from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
 from quietarm.studies.figures.looks import ORANGE, PINK, WINE
@@ -103,6 +104,7 @@ def reproduction_report(result: Reproduction) -> Report:
             for case, every in result.systems.items()
         ],
         "pictures": list(figures),
+        "window": EQ_11,
     }  # fmt: skip
     return Report("reproduce/report.md", values, tables, figures)
 

@@ -119,21 +119,25 @@ class Definition:
             "flag_masks": [1 << k for k in range(len(nexts))],
             "flag_meanings": " ".join(nexts),
         }
+        window = {"residual_window_s": task.residual_window}
         variables = {name: Variable(unit) for name, unit in units.items()}
+        variables["residual"] = Variable(tip, attributes=window)
         variables[COEFFICIENTS] = Variable("1", size)
         variables[STATUS] = Variable("1", {}, np.int8(0), states)
         variables[JUMP] = Variable("1", {}, np.int32(0), jumps)
         if self.front:
             point = {"point": self.front}
-            variables["front_residual"] = Variable(tip, point)
+            variables["front_residual"] = Variable(tip, point, attributes=window)
             variables["front_energy"] = Variable("J", point)
             variables["front_coefficients"] = Variable("1", point | size)
         return variables
 
     def difference(self, other: Definition) -> str:
-        """Names of all in which two sweeps differ."""
+        """Names of all in which two sweeps differ, and the residual window of the other."""
         mine, others = self._entries(), other._entries()
-        return ", ".join(name for name in mine | others if mine.get(name) != others.get(name))
+        names = [name for name in mine | others if mine.get(name) != others.get(name)]
+        there = {"residual_window": f" ({other.grid.task.residual_window:.10g} s there)"}
+        return ", ".join(f"{name}{there.get(name, '')}" for name in names)
 
     def _entries(self) -> dict[str, Any]:
         of = self, self.settings, self.grid.task

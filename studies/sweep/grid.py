@@ -9,9 +9,11 @@ from itertools import groupby, product
 from typing import Any
 
 import numpy as np
+from quietarm.models import Plant
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.checks import finite, has_no
+from quietarm.ocp.window import DefaultWindow, default_window
 
 _SECONDS_OF_CELL = 0.005
 """Of six terms, without ranges of errors."""
@@ -20,6 +22,10 @@ OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
 _WHOLE_STEPS = 1e-6
 MOST_VALUES, MOST_CELLS = 100_000, 5_000_000
 """Of an axis and of a grid; so many cells take some 7 hours on a core, and as dataset 1.5 GB."""
+
+
+_MOST_OF_FEW_AXES, _MOST_OF_MANY_AXES = 41, 7
+"""Values of each axis at which a grid's residual window is worked out, the ends among them."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +81,7 @@ class Grid:
     """The moves of several axes, in C order.
 
     Parameters of the plant come before the quantities of the move: chunks then have few plants.
+    All moves have one residual window, the task's; where nobody gave it, the longest of their own.
     """
 
     task: PointToPoint
@@ -104,6 +111,9 @@ class Grid:
                 f"start and target are both {same:g} {joint_unit('rad', self.task.plant.joint)} in "
                 "some cells: there is no move; leave that value out of one axis"
             )
+        if self.axes and isinstance(self.task.residual_window, DefaultWindow):
+            window = float(default_window(self._plants_and_targets()))
+            object.__setattr__(self, "task", replace(self.task, residual_window=window))
 
     @property
     def names(self) -> list[str]:
@@ -134,9 +144,26 @@ class Grid:
     def task_at(self, at: Mapping[str, float]) -> PointToPoint:
         """The move of a value of every axis."""
         move = {name: at[name] for name in OF_MOVES if name in at}
+        return replace(self.task, plant=self._plant_at(at), **move)
+
+    def _plant_at(self, at: Mapping[str, float]) -> Plant:
+        """The plant of a value of every axis; those over the move do not count."""
         plant: Any = self.task.plant
-        given = {name: value for name, value in at.items() if name not in move}
-        return replace(self.task, plant=replace(plant, **given), **move)
+        return replace(plant, **{name: at[name] for name in at if name not in OF_MOVES})
+
+    def _plants_and_targets(self) -> Iterator[tuple[Plant, float]]:
+        """Where the moves end, by what decides how slowly the plant swings there."""
+        axes = [axis for axis in self.axes if axis.name not in ("start", "duration")]
+        most = _MOST_OF_FEW_AXES if len(axes) <= 2 else _MOST_OF_MANY_AXES
+        for values in product(*(_thinned(axis.values, most) for axis in axes)):
+            at = dict(zip([axis.name for axis in axes], values))
+            yield self._plant_at(at), at.get("target", self.task.target)
+
+
+def _thinned(values: tuple[float, ...], most: int) -> tuple[float, ...]:
+    """At most so many of the values, spread evenly with both ends."""
+    places = np.unique(np.linspace(0, len(values) - 1, min(most, len(values))).round().astype(int))
+    return tuple(values[place] for place in places)
 
 
 def by_plant(tasks: Iterable[PointToPoint]) -> Iterator[list[PointToPoint]]:

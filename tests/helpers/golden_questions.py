@@ -52,15 +52,20 @@ class Question:
         return self.peaks if name.startswith("peak_") else self.relative, 0.0
 
 
+def paper_move(plant: Any, *move: float, **options: Any) -> qa.PointToPoint:
+    """A move with the residual window of the paper, equation (11)."""
+    return qa.PointToPoint(plant, *move, residual_window=1.0, **options)
+
+
 LINK, ARM, DUAL = qa.SingleLinkManipulator(), qa.ArmOnFlexibleLink(), qa.DualLinkManipulator()
 BEAM = qa.FlexibleBeam()
 PAPER = {
-    "link pi/6 0.8": (qa.PointToPoint(LINK, math.pi / 6, 0.8), 0.2),
-    "link pi/2 1.0": (qa.PointToPoint(LINK, math.pi / 2, 1.0), 0.2),
-    "link pi/2 1.1": (qa.PointToPoint(LINK, math.pi / 2, 1.1), 0.2),
-    "arm pi/2 0.8": (qa.PointToPoint(ARM, math.pi / 2, 0.8), 0.5),
-    "arm 3pi/4 1.0": (qa.PointToPoint(ARM, math.pi / 4, 1.0, -math.pi / 2), 0.5),
-    "arm pi 1.2": (qa.PointToPoint(ARM, math.pi / 2, 1.2, -math.pi / 2), 0.5),
+    "link pi/6 0.8": (paper_move(LINK, math.pi / 6, 0.8), 0.2),
+    "link pi/2 1.0": (paper_move(LINK, math.pi / 2, 1.0), 0.2),
+    "link pi/2 1.1": (paper_move(LINK, math.pi / 2, 1.1), 0.2),
+    "arm pi/2 0.8": (paper_move(ARM, math.pi / 2, 0.8), 0.5),
+    "arm 3pi/4 1.0": (paper_move(ARM, math.pi / 4, 1.0, -math.pi / 2), 0.5),
+    "arm pi 1.2": (paper_move(ARM, math.pi / 2, 1.2, -math.pi / 2), 0.5),
 }
 """The paper's driving conditions with its boxes: sections 3.1 and 3.2."""
 PRINTED = {
@@ -73,17 +78,17 @@ SIXTH, HALF = PAPER["link pi/6 0.8"][0], PAPER["arm pi/2 0.8"][0]
 
 def link(**options: Any) -> qa.PointToPoint:
     """The link's first condition with limits, an energy or an initial state."""
-    return qa.PointToPoint(LINK, math.pi / 6, 0.8, **options)
+    return paper_move(LINK, math.pi / 6, 0.8, **options)
 
 
 def arm(**options: Any) -> qa.PointToPoint:
     """The same of the arm."""
-    return qa.PointToPoint(ARM, math.pi / 2, 0.8, **options)
+    return paper_move(ARM, math.pi / 2, 0.8, **options)
 
 
 def uncertain(plant: Any, target: float, duration: float, **ranges: float) -> qa.PointToPoint:
     """A move of a plant whose parameters are known within ranges."""
-    return qa.PointToPoint(plant, target, duration, uncertainty=qa.Uncertainty(ranges))
+    return paper_move(plant, target, duration, uncertainty=qa.Uncertainty(ranges))
 
 
 def figures(plan: Any) -> Answer:
@@ -147,7 +152,7 @@ def many(plant: Any) -> Answer:
     """Energies of twenty moves at once."""
     random = np.random.default_rng(1)
     given = zip(random.uniform(0.4, 1.5, 20), random.uniform(0.8, 1.2, 20), strict=True)
-    found = qa.plan_moves([qa.PointToPoint(plant, *move) for move in given])
+    found = qa.plan_moves([paper_move(plant, *move) for move in given])
     return {"energy": found.energy.tolist(), "residual": found.residual.tolist()}
 
 
@@ -181,8 +186,8 @@ def _plans() -> dict[str, Question]:
         asked[f"plan {name} in its box"] = partial(plan, task, bound=bound)
         asked[f"plan {name}"] = partial(plan, task)
     asked |= {
-        "plan dual link": partial(plan, qa.PointToPoint(DUAL, math.pi / 2, 0.9), bound=0.5),
-        "plan beam": partial(plan, qa.PointToPoint(BEAM, math.pi / 4, 0.9)),
+        "plan dual link": partial(plan, paper_move(DUAL, math.pi / 2, 0.9), bound=0.5),
+        "plan beam": partial(plan, paper_move(BEAM, math.pi / 4, 0.9)),
         "plan torque": partial(plan, arm(torque_limit=0.3)),
         "plan speed": partial(plan, link(speed_limit=1.2)),
         "plan acceleration": partial(plan, link(acceleration_limit=20.0)),
@@ -250,7 +255,7 @@ def _evaluations() -> dict[str, Question]:
     for name, coefficients in PRINTED.items():
         asked[f"printed {name}"] = partial(evaluated, PAPER[name][0], coefficients)
     asked |= {
-        "cycloid of the dual link": partial(evaluated, qa.PointToPoint(DUAL, math.pi / 2, 0.9), []),
+        "cycloid of the dual link": partial(evaluated, paper_move(DUAL, math.pi / 2, 0.9), []),
         "zvd link": partial(shaped, PAPER["link pi/2 1.0"][0], "zvd"),
         "zv arm": partial(shaped, PAPER["arm pi 1.2"][0], "zv"),
         "printed on uncertain link": partial(

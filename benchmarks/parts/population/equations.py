@@ -18,7 +18,7 @@ from quietarm.ocp import CycloidPolynomial, PointToPoint
 from quietarm.ocp.simulation.collocation import modal_system
 
 PLANT, PROFILE = ArmOnFlexibleLink(), CycloidPolynomial(6)
-TASK = PointToPoint(PLANT, target=pi / 2, duration=0.8)
+TASK = PointToPoint(PLANT, target=pi / 2, duration=0.8, residual_window=1.0)
 
 Values = NDArray[np.float64]
 """A row a candidate: F1 [m], F2 [J], W at arrival [m]."""

@@ -70,4 +70,5 @@ def test_a_front_is_saved_as_a_table_with_every_digit(given, tmp_path):
         header, *rows = csv.reader(file)
     assert header == list(given.columns())
     found = [[float(cell) for cell in row] for row in rows]
-    assert found == [[p.residual, p.energy, *p.coefficients] for p in given.points]
+    window = given.task.residual_window
+    assert found == [[p.residual, p.energy, *p.coefficients, window] for p in given.points]

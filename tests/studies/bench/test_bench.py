@@ -210,6 +210,7 @@ def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
     assert "5 runs of each of 4 methods (6 pairs)" in text
     assert "Ranks are over 1 independent move." in text
     assert '"To 10 %" is the expected' in text
+    assert "the largest displacements within 1 s after arrival" in text  # the problem's, eq (11)
     # of the least energy is the gradient, which repeats itself
     assert "By energy within 1 mm: no verdict: with 5 runs of each of 4 methods" in text
     pairs = pd.read_csv(tmp_path / "pairs.csv")

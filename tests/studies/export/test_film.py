@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from PIL import Image
-from quietarm.models import ArmOnFlexibleLink
+from quietarm.models import ArmOnFlexibleLink, LinearAxis
 from quietarm.ocp import PointToPoint, energy_floor, evaluate_coefficients
 from quietarm.studies.export import animate
 from quietarm.studies.figures import Line
@@ -18,8 +18,8 @@ def test_frames_differ_while_the_structure_moves_and_where_it_does(plan, cycloid
     film = animate([Line(cycloid, "plain cycloid"), Line(plan, "plan")], width=240, rate=10)
     film.save(tmp_path / "film.gif")
     with Image.open(tmp_path / "film.gif") as image:
-        # 0.8 s and a second after it, 10 frames a second, the first one
-        assert (image.n_frames, image.width, film.frames) == (19, 240, 19)
+        # 0.8 s and two periods of 10.43 rad/s after it, 10 frames a second, the first one
+        assert (image.n_frames, image.width, film.frames) == (21, 240, 21)
         assert (image.info["loop"], image.info["duration"]) == (0, 100)  # for ever, [ms]
         frames = []
         for number in range(image.n_frames):
@@ -59,6 +59,18 @@ def test_small_deflections_are_drawn_larger_and_those_of_one_plant_alike(plan, c
     # arm's 15 mm of a drawing of 550 mm are not at five times
     assert (single.scale, same.scale, other.scale) == (1, 1, 5)
     assert np.abs(other.tips).max() * 5 <= 0.2 * 0.55 < np.abs(other.tips).max() * 10
+
+
+def test_a_film_of_a_slow_swing_has_the_whole_move_and_ends_where_it_has_too_many_frames():
+    # 16 s and two periods of 10 s are 900 frames at 25 a second, where 500 are the most
+    crane = PointToPoint(LinearAxis(omega1=0.2 * math.pi), 8.0, 16.0)
+    line = Line(evaluate_coefficients(crane, []), "crane")
+    film = animate([line], rate=25)
+    assert (film.frames, film.end) == (501, pytest.approx(20.0))
+    with pytest.raises(ValueError, match="make 1800 frames, where 500 are the most"):
+        animate([line], rate=50)
+    whole = animate([line], rate=10)
+    assert (whole.frames, whole.end) == (361, pytest.approx(36.0))
 
 
 def test_moves_of_different_durations_share_a_clock(plan, task):

@@ -172,6 +172,11 @@ def report(reproduction):
     return reproduction_report(reproduction)
 
 
+def test_the_report_says_within_what_time_residuals_are(report, reproduction):
+    assert {case.task.residual_window for case in CONDITIONS} == {1.0}  # eq (11)
+    assert "residuals are within 1 s after arrival" in report.markdown()
+
+
 @pytest.mark.parametrize("number", TITLES)
 def test_tables_hold_printed_and_recomputed_energies(report, reproduction, number):
     table = report.tables[f"table_{number}"]

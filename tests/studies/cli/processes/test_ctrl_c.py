@@ -25,7 +25,7 @@ def begin(process, words):
         (f"{SEARCH} --output f.json", "generation ", signal.SIGTERM),
         # the ends of the front are found
         (f"{FRONT} --output f.json --output f.png", r"([2-9]|\d\d+) of ", signal.SIGINT),
-        (FILM, r"\d+ of 451 frames", signal.SIGINT),
+        (FILM, r"\d+ of 501 frames", signal.SIGINT),
     ],
 )
 def test_what_is_stopped_writes_nothing(at_a_terminal, stop, folder, plan, line, words, number):

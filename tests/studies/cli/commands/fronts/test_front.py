@@ -39,7 +39,8 @@ def test_an_epsilon_front_is_shown_and_written(call):
     assert lines[0].startswith(f"epsilon: 9 points, {iterations} iterations of the solver ")
     assert lines[1].endswith(f"{found.smallest_residual().energy:.4g} J at rest")
     assert lines[5].split() == ["within", "1", "mm", f"{found.cheapest(1e-3).energy:.4g}", "J"]
-    assert lines[7:] == ["wrote f.json", "wrote f.svg"]
+    assert lines[7] == "residuals are at the tip within 1.717 s"  # two periods at the target
+    assert lines[8:] == ["wrote f.json", "wrote f.svg"]
     assert err.splitlines()[-1] == "9 of 9 points"  # 0.1, 1 and 5 mm as well
 
 

@@ -5,8 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from quietarm.models import load_plant_file
 from quietarm.ocp import Front, Plan
+from quietarm.studies.compare import compare_plans
+from quietarm.studies.figures import draw_motions, front_figure
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
@@ -104,3 +107,27 @@ def test_plans_and_fronts_are_compared_in_rad(done):
     assert not LENGTH.search(out)
     with pytest.raises(ValueError, match="residual of 0 rad or less; give at least the"):
         front.cheapest(0.0)
+
+
+@pytest.mark.usefixtures("drive")
+def test_a_residual_in_rad_has_its_window(done):
+    window = "--residual-window 3s --quiet"
+    out = done(f"evaluate {MOVE} --coefficients 0 {window} --output plan.json")
+    plan = Plan.load("plan.json")
+    assert f"{plan.residual:.3g} rad at the tip within 3 s" in out
+    done("export plan.json --output move.c")
+    assert f"residual {plan.residual:.3g} rad within 3 s" in Path("move.h").read_text()
+    done(f"front {MOVE} --terms 3 --points 4 {window} --output f.json --output f.csv")
+    header, *rows = Path("f.csv").read_text().splitlines()
+    assert header == "residual_rad,energy_J,a_1,a_2,a_3,residual_window_s"
+    assert {row.split(",")[-1] for row in rows} == {"3.0"}
+    front = Front.load("f.json")
+    label = "residual F1 within 3 s [rad]"
+    assert front_figure([front]).axes[0].get_xlabel() == label
+    assert label in front._repr_html_()
+    motions = compare_plans({"mine": plan})
+    assert draw_motions(motions, tip_unit="rad").get_xlabel() == label
+    done(f"sweep {MOVE},0.5s --terms 3 {window} --output moves.zarr --output moves.png")
+    dataset = xr.open_zarr("moves.zarr", consolidated=False)
+    assert dataset.residual.attrs["units"] == "rad"
+    assert dataset.residual.attrs["residual_window_s"] == 3.0
