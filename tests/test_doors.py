@@ -163,7 +163,7 @@ def test_numbers_stand_in_lists_and_by_names(make, told):
         (lambda task: qa.motion_figure("plan.json"), "give Plan.load('plan.json')"),
         (lambda task: qa.motion_figure(6), "give a plan, as Plan.load('plan.json')"),
         (lambda task: qa.draw_quantity([], "sped"), "did you mean 'speed'?"),
-        (lambda task: qa.plan_move(task, guess="a"), "coefficients are 'a'; give 6 numbers"),
+        (lambda task: qa.plan_move(task, guess="a"), "coefficients are 'a'; give 1 number"),
         (lambda task: qa.epsilon_front(task, at=0.1), "at is 0.1; give a list of residuals"),
         (lambda task: qa.weighted_front(task, weights=0.3), "give pairs of residual and energy"),
         (lambda task: qa.perturb_plant(task.plant, 0.1), "by name, as {'frequency': 0.1}"),

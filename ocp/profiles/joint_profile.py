@@ -187,16 +187,16 @@ class JointProfile(ABC):
                 f"duration is {duration:g} s, too short for the {self.label}; give "
                 f"{math.ceil(1e4 * self.least_duration) / 1e4:g} s or more"
             )
+        counted = f"{self.size} number{'s' if self.size != 1 else ''}"
         try:
             values = np.atleast_1d(np.asarray(coefficients, dtype=float))
         except (TypeError, ValueError):
             raise ValueError(
-                f"coefficients are {reprlib.repr(coefficients)}; give {self.size} numbers"
+                f"coefficients are {reprlib.repr(coefficients)}; give {counted}"
             ) from None
         if values.shape != (self.size,):
             raise ValueError(
-                f"got {values.size} coefficients for a profile of {self.size}; "
-                f"give {self.size} numbers"
+                f"got {values.size} coefficients for a profile of {self.size}; give {counted}"
             )
         return tuple(finite(f"coefficient {i}", value) for i, value in enumerate(values, 1))
 
