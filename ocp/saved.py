@@ -51,6 +51,8 @@ def plain(value: Any) -> Any:
             return {name: plain(entry) for name, entry in value.items()}
         case np.ndarray() | np.generic():
             return value.tolist()
+        case float():
+            return float(value)  # also of a class of its own, as a default window
         case list() | tuple():
             return [plain(entry) for entry in value]
         case _ if dataclasses.is_dataclass(value):
