@@ -87,7 +87,8 @@ def search(
         pymoo's. Or any multi-objective algorithm of pymoo that was not run yet; it is copied, so
         the one given stays as it is.
     profile : JointProfile, optional
-        How the joint moves; the cycloid of a polynomial of six terms by default.
+        How the joint moves; by default the polynomial that `plan_move` takes for the task: of six
+        terms without limits, of 18 or 24 within.
     bound : float
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
     population, generations : int, optional

@@ -33,6 +33,8 @@ _STEPS, _SMOOTH_STEPS = 500, 250
 """Least number of steps of the quadrature, in all and where nothing breaks: its nodes are at most a
 thousandth of the move apart, or two. On the paper's conditions energies with 250 are those with
 2000 within 1e-10."""
+_STEPS_OF_A_PART = 2
+"""Of the shortest part between two breaks: there a spline may turn its acceleration."""
 _STEPS_A_RADIAN = 10
 """Steps for each radian of the plant's fastest mode, where this gives more."""
 _LEAST_STEPS_OF_A_PIECE = 2
@@ -215,6 +217,7 @@ class Candidate(Ranged):
         fastest = fastest_along(self.task.plant, self.task.start, self.task.target)
         blocks = math.ceil(_STEPS_A_RADIAN * fastest * self.task.duration / least)
         of_a_piece = math.ceil(least * max(1, blocks) / self.path.given.shape[1])
+        of_a_piece = max(of_a_piece, math.ceil(_STEPS_OF_A_PART / self.path.shortest))
         return Grid(max(of_a_piece, _LEAST_STEPS_OF_A_PIECE))
 
     @cached_property

@@ -8,12 +8,15 @@ from codecs import BOM_UTF8
 from collections.abc import Iterable, Mapping
 from enum import Enum
 from html import escape
+from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any, ClassVar, Self, TypeVar
 
 import msgspec
 import numpy as np
 from quietarm.models import Plant, file_of_plant, known_plants
+from quietarm.ocp import profiles
 from quietarm.ocp.checks import known
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.errors import FileFormatError
@@ -66,7 +69,13 @@ def _entries(value: Any) -> dict[str, Any]:
 
 
 def _known_of(family: type[Any]) -> Mapping[str, type[Any]]:
-    return known_plants() if family is Plant else known(family)
+    """The classes by name; quietarm's own profiles are loaded for it."""
+    if family is Plant:
+        return known_plants()
+    if family is JointProfile:
+        for module in iter_modules(profiles.__path__):
+            import_module(f"{profiles.__name__}.{module.name}")
+    return known(family)
 
 
 def _named(value: Any) -> dict[str, Any]:

@@ -28,7 +28,7 @@ class MoveFunction:
     task : PointToPoint
         The move; its limits become constraints.
     profile : JointProfile, optional
-        How the joint moves; the cycloid of a polynomial of six terms by default.
+        How the joint moves; by default the polynomial that `plan_move` takes for the task.
     bound : float, optional
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
     peaks : sequence of str

@@ -83,17 +83,20 @@ def best_of_starts(
 
 
 def solve_from_starts(
-    problem: Problem, starts: Sequence[Array], solver: Solver
+    problem: Problem, starts: Sequence[Array], solver: Solver, *, quick: bool = False
 ) -> tuple[Solution, list[Solution]]:
     """The best solution from several starts, and all, the best first.
 
     Where none of them leads to a solution, motions of least peaks are tried as starts, then IPOPT.
-    InfeasibleTaskError says what would be feasible; SolverFailedError has another reason.
+    InfeasibleTaskError says what would be feasible; SolverFailedError has another reason. A quick
+    solve ends with its starts, and says nothing of that.
     """
     tried, least = list[Solution](), dict[str, Solution]()
 
     def attempts() -> Iterator[tuple[Solver, Sequence[Array]]]:
         yield solver, starts
+        if quick:
+            return
         if problem.scalarization.limits:
             least.update(least_peaks_of(problem, starts[:2]))
             yield solver, [one.coefficients for one in least.values()]
@@ -110,6 +113,8 @@ def solve_from_starts(
         (one for one in tried if one.status.solved),
         key=lambda one: objective_of(one, problem.scalarization),
     )
+    if not solved and quick:
+        raise InfeasibleTaskError(f"no start was solved: {tried[0].reason}")
     if not solved:
         raise explain(problem, tried, least)
     return replace(solved[0], iterations=sum(one.iterations for one in tried)), solved

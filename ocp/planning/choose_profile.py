@@ -12,8 +12,9 @@ it refuses the task.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
@@ -36,7 +37,20 @@ _LONGER = (0.01, 0.05)
 """Shares by which a duration that is offered is longer than the least time."""
 _LEAST_TIME_TO = 2e-3
 
-PlanOf = Callable[[PointToPoint, JointProfile, SolveSettings], Plan]
+
+class PlanOf(Protocol):
+    """The plan of a task along a profile; a quick one fails without a remedy."""
+
+    def __call__(
+        self,
+        task: PointToPoint,
+        profile: JointProfile,
+        settings: SolveSettings,
+        *,
+        quick: bool = False,
+    ) -> Plan:
+        """See `plan_move.plan_within`."""
+        ...
 
 
 def choose_profile(task: PointToPoint) -> CycloidPolynomial:
@@ -60,36 +74,58 @@ def plan_on_chosen_profile(
     The residual limit is that of the worst case. InfeasibleTaskError, where no profile does, has
     the duration that would do.
     """
+    best = _plan_quickly(task, settings, plan)
+    if best is not None and (best.residual_limit or 0.0) <= residual_limit:
+        return best
+    # no motion was found, or the default residual limit was out of reach
+    on_spline = _plan_on_spline(task, settings, residual_limit, plan)
+    if on_spline is not None and (best is None or _left(on_spline) < _left(best)):
+        return on_spline
+    if best is not None:
+        return best
     try:
-        return _plan_on_polynomial(task, settings, plan)
-    except SolverFailedError as error:
-        refusal = error
-    if settings.bound is None:
-        fitted = fitting_spline(task, residual_limit, None) if task.limits else None
-        if fitted is not None:
-            spline, coefficients = fitted
-            try:
-                return plan(
-                    task, spline, replace(settings, starts=1, guess=tuple(coefficients.tolist()))
-                )
-            except SolverFailedError:
-                pass
-    if not isinstance(refusal, InfeasibleTaskError):
-        raise refusal
-    duration = _feasible_duration(task, settings, residual_limit, plan)
-    raise InfeasibleTaskError(
-        refusal.what, f"a duration of {duration:g} s will also do" if duration else ""
-    ) from None
+        return _stating_terms(plan(task, more_terms(task), replace(settings, starts=1)))
+    except InfeasibleTaskError as error:
+        duration = _feasible_duration(task, settings, residual_limit, plan)
+        remedy = f"a duration of {duration:g} s will also do" if duration else ""
+        what = error.what
+        if task.limits and settings.bound is None:
+            amount = more_terms(task).amount
+            what = what.replace(f"motion of {amount}", f"motion of {amount} or on a spline", 1)
+        raise InfeasibleTaskError(what, remedy) from None
 
 
-def _plan_on_polynomial(task: PointToPoint, settings: SolveSettings, plan: PlanOf) -> Plan:
+def _plan_quickly(task: PointToPoint, settings: SolveSettings, plan: PlanOf) -> Plan | None:
     """Six terms without limits, and more where these find no motion; within limits more."""
-    if not task.limits:
-        try:
+    with suppress(SolverFailedError):
+        if task.limits:
+            return _plan_with_more_terms(task, settings, plan)
+        with suppress(SolverFailedError):
             return plan(task, SIX, settings)
-        except SolverFailedError:
-            return _stating_terms(plan(task, more_terms(task), settings))
-    return _plan_with_more_terms(task, settings, plan)
+        return _stating_terms(plan(task, more_terms(task), settings, quick=True))
+    return None
+
+
+def _plan_on_spline(
+    task: PointToPoint, settings: SolveSettings, residual_limit: float, plan: PlanOf
+) -> Plan | None:
+    """The plan on a spline that keeps the limits; None where none was found."""
+    if not task.limits or settings.bound is not None:
+        return None
+    fitted = fitting_spline(task, residual_limit, None)
+    if fitted is None:
+        return None
+    spline, coefficients = fitted
+    from_fit = replace(settings, starts=1, guess=tuple(coefficients.tolist()))
+    try:
+        return plan(task, spline, from_fit, quick=True)
+    except SolverFailedError:
+        return None
+
+
+def _left(plan: Plan) -> float:
+    """What a plan leaves in the worst case [m]."""
+    return plan.residual if plan.worst is None else plan.worst.residual
 
 
 def _plan_with_more_terms(task: PointToPoint, settings: SolveSettings, plan: PlanOf) -> Plan:
@@ -104,11 +140,11 @@ def _plan_with_more_terms(task: PointToPoint, settings: SolveSettings, plan: Pla
     padded = np.pad(six.coefficients, (0, profile.size - SIX.size)).tolist()
     from_six = replace(from_cycloid, guess=tuple(padded))
     try:
-        best = plan(task, profile, from_cycloid)
+        best = plan(task, profile, from_cycloid, quick=True)
     except SolverFailedError:
         if not six.status.solved:
             raise
-        best = plan(task, profile, from_six)
+        best = plan(task, profile, from_six, quick=True)
     else:
         if six.status.solved and task.uncertainty is None and six.energy < best.energy:
             best = _cheaper(best, task, profile, from_six, plan)
@@ -125,7 +161,7 @@ def _cheaper(
 ) -> Plan:
     """The plan from other settings where that is cheaper."""
     try:
-        other = plan(task, profile, settings)
+        other = plan(task, profile, settings, quick=True)
     except SolverFailedError:
         return best
     return other if other.energy < best.energy else best
@@ -174,6 +210,7 @@ def _feasible_duration(
                 replace(task, duration=duration),
                 least.profile,
                 replace(settings, starts=1, guess=guess),
+                quick=True,
             )
         except SolverFailedError:
             continue

@@ -17,10 +17,11 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.least_time import LeastTime, least_time, rigid_duration
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.plan_move import limit_of, plan_move
+from quietarm.ocp.planning.plan_move import limit_of, plan_move, plan_within
 from quietarm.ocp.planning.rigid_motion import assumed_bounds, largest_deflection, rigid_motion
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
+from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
@@ -146,15 +147,19 @@ def _fastest_on_spline(task: PointToPoint, tolerance: float, settings: dict[str,
     except ValueError as error:
         raise InfeasibleTaskError(f"no duration was found: {error}") from None
     failed = {least.too_short: _why_too_short(task, least)}
+    from_least = SolveSettings(
+        **{**settings, "residual_limit": limit, "guess": tuple(least.coefficients.tolist())}
+    )
     shortest = _LONGER[0] if task.uncertainty is None else _LONGER_IF_UNCERTAIN
     for longer in (share for share in _LONGER if share >= shortest):
         duration = (1 + longer) * least.duration
         try:
-            plan = plan_move(
+            plan = plan_within(
                 replace(task, duration=duration),
                 least.profile,
-                guess=least.coefficients,
-                **settings,
+                from_least,
+                settings["residual_limit"],
+                quick=True,
             )
         except SolverFailedError as error:
             failed[duration] = str(error)

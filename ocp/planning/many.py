@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +19,7 @@ from quietarm.ocp.planning.best_of_starts import (
     solver_of,
     start_coefficients,
 )
-from quietarm.ocp.planning.certify import certify, finer_peaks
+from quietarm.ocp.planning.certify import Certified, certify, certify_one, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
@@ -129,7 +130,7 @@ def plan_moves(
         for i, one in zip(unsolved, found):
             if one.status.solved:
                 best[i] = one
-    return _moves_of(problems, best, chosen)
+    return _moves_of(problems, best, chosen, [*first[:1], *random])
 
 
 def _from_neighbours(
@@ -157,11 +158,38 @@ def _steps(tasks: Sequence[PointToPoint], profile: JointProfile) -> int:
     return first_steps(tasks[int(np.argmax(radians))], profile)
 
 
-def _moves_of(problems: Sequence[Problem], found: Sequence[Solution], solver: Solver) -> Moves:
-    """The solutions certified, as arrays; without figures where there is none."""
+def _certify_from_another_start(
+    problem: Problem, starts: Sequence[Array], solver: Solver
+) -> Certified | None:
+    """The first solution that CVODES confirms, of a move whose own it does not; None if none."""
+    for start in starts:
+        (solution,) = solver.solve([problem], [start])
+        if not solution.status.solved:
+            continue
+        with suppress(SolverFailedError):
+            return certify_one(problem, solution, solver)
+    return None
+
+
+def _moves_of(
+    problems: Sequence[Problem],
+    found: Sequence[Solution],
+    solver: Solver,
+    starts: Sequence[Array],
+) -> Moves:
+    """The solutions certified, as arrays; without figures where there is none.
+
+    Those that are not confirmed are looked for again from other starts.
+    """
     count, profile = len(found), problems[0].transcription.profile
     solved = [i for i, one in enumerate(found) if one.status.solved]
     outcomes = certify([problems[i] for i in solved], [found[i] for i in solved], solver)
+    outcomes = [
+        _certify_from_another_start(problems[i], starts, solver) or outcome
+        if isinstance(outcome, SolverFailedError)
+        else outcome
+        for i, outcome in zip(solved, outcomes)
+    ]
     ended, figures, of_moves = list(found), np.full((count, 2), np.nan), np.zeros(count, dtype=bool)
     coefficients = np.full((count, profile.size), np.nan)
     peaks = {name: np.full(count, np.nan) for name in QUANTITIES}

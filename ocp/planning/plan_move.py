@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -86,6 +87,9 @@ def plan_move(
 ) -> Plan:
     """Find the motion of least energy whose residual vibration is within a limit.
 
+    Without a profile that is named a task is refused only if, within its limits, a `JointSpline`
+    finds no motion either, or without limits 18 or 24 terms.
+
     Parameters
     ----------
     task : PointToPoint
@@ -93,8 +97,8 @@ def plan_move(
     profile : JointProfile, optional
         How the joint moves; by default the cycloid of a polynomial, of six terms without limits,
         and of 18 or 24 with limits (`choose_profile`); the plan's record then has the energy of
-        six. Where these find no motion, more terms are tried, and a `JointSpline`. The only motion
-        of a profile without coefficients, such as `shaped_cycloid`, is evaluated, not optimised.
+        six. The only motion of a profile without coefficients, such as `shaped_cycloid`, is
+        evaluated, not optimised.
     residual_limit : float, optional
         Largest F1 [m]; 0, the default, requires rest on arrival, or the task's `final` state. For
         an uncertain task, where rest in all scenarios is infeasible, the default is 5 % of the
@@ -139,29 +143,35 @@ def plan_move(
     least = 0.0 if residual_limit is None else residual_limit
     settings = SolveSettings(least, bound, starts, seed, steps, None, solver, log)
 
-    def plan(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Plan:
-        return _plan_within(task, profile, settings, residual_limit)
-
     if profile is None:
         if guess is None:
+            plan = partial(plan_within, residual_limit=residual_limit)
             return plan_on_chosen_profile(task, settings, limit_of(task, residual_limit), plan)
         profile = CycloidPolynomial.of_size(np.size(guess))
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
     if guess is not None:
         settings = replace(settings, guess=profile.checked(guess))
-    return plan(task, profile, settings)
+    return plan_within(task, profile, settings, residual_limit)
 
 
-def _plan_within(
-    task: PointToPoint, profile: JointProfile, settings: SolveSettings, residual_limit: float | None
+def plan_within(
+    task: PointToPoint,
+    profile: JointProfile,
+    settings: SolveSettings,
+    residual_limit: float | None,
+    *,
+    quick: bool = False,
 ) -> Plan:
-    """The plan within a residual limit, or within the default one of a task."""
+    """The plan within a residual limit, or within the default one of a task.
+
+    A quick one fails without saying what would be feasible.
+    """
     began, largest = time.perf_counter(), limit_of(task, residual_limit)
     if task.uncertainty is not None and residual_limit is None:
         plan = _hold_default(task, profile, settings, largest)
     else:
-        plan = _hold(task, profile, replace(settings, residual_limit=largest))
+        plan = _hold(task, profile, replace(settings, residual_limit=largest), quick=quick)
         if plan.worst is not None and (plan.excess or 0.0) > OVERRUN:
             unit = task.plant.tip_unit
             raise SolverFailedError(
@@ -215,6 +225,8 @@ def _hold(
     profile: JointProfile,
     settings: SolveSettings,
     starts: Sequence[Array] | None = None,
+    *,
+    quick: bool = False,
 ) -> Plan:
     """The plan whose residual limit holds between the scenarios as well, if that can be had.
 
@@ -222,7 +234,7 @@ def _hold(
     scenarios, and the motions that were found are the next starts. The remaining excess is
     then subtracted from the limit; where that does not settle it, they become scenarios as well.
     """
-    plan, others = plan_from_starts(task, profile, settings, starts)
+    plan, others = plan_from_starts(task, profile, settings, starts, quick=quick)
     if task.uncertainty is None:
         return plan
     limit = settings.residual_limit
@@ -252,7 +264,9 @@ def _hold(
         else:
             break
         try:
-            plan, others = plan_from_starts(task, profile, next_settings, starts)
+            plan, others = plan_from_starts(
+                task, profile, next_settings, starts, quick=quick or tightenings > 0
+            )
         except SolverFailedError:
             if not tightenings:
                 raise
@@ -267,6 +281,8 @@ def plan_from_starts(
     profile: JointProfile,
     settings: SolveSettings,
     starts: Sequence[NDArray[np.float64]] | None = None,
+    *,
+    quick: bool = False,
 ) -> tuple[Plan, list[NDArray[np.float64]]]:
     """The plan from starts, by default those of the settings, whose limit holds in all scenarios.
 
@@ -277,7 +293,7 @@ def plan_from_starts(
     starts = start_coefficients(profile, settings) if starts is None else starts
     transcription = Transcription.of(task, profile, settings.steps)
     problem = Problem.of(transcription, settings.residual_limit, settings.bound)
-    best, solved = solve_from_starts(problem, starts, solver)
+    best, solved = solve_from_starts(problem, starts, solver, quick=quick)
     certified = certify_one(problem, best, solver)
     assert isinstance(certified.checked, Candidate)  # one alone is judged by CVODES
     solution, motion = certified.solution, certified.checked.motion

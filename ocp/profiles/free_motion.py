@@ -135,6 +135,8 @@ class PiecewiseMotion:
     has_jerk: bool
     smooth: bool
     remedy: str
+    shortest: float = 1.0
+    """Of the parts between breaks, as a share of a piece."""
 
     @classmethod
     def of_profile(
@@ -149,6 +151,7 @@ class PiecewiseMotion:
             not (profile.sharp or profile.breaks(task.duration)),
             "; is a coefficient or a parameter of the plant far out of scale? (the largest "
             f"coefficient is {max(map(abs, checked), default=0.0):g})",
+            float(np.diff([0.0, *profile.breaks(task.duration), 1.0]).min()),
         )
 
     @classmethod

@@ -151,6 +151,7 @@ def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.
     )
     none = {} if others else {name: no_front.format(name) for name in SHAPERS}
     sizes = ", ".join(f"{family().terms} for {name}" for name, family in FAMILIES.items())
+    sizes += "; of a polynomial within limits 18, or 24 where the plant has several modes"
     return (
         option("--profile", type=Named("profile", [*FAMILIES, *others], none), default=POLYNOMIAL,
                help="How the joint moves: a cycloid of a polynomial, of Gaussians, of a neural "

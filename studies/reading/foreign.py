@@ -28,16 +28,20 @@ _CLAIMS = {
 }  # fmt: skip
 """Columns that state a figure: which of residual [m] and energy [J], and its unit in these."""
 _WINDOW = "residual_window_s"
-"""A column of `Front.save_csv`; motions are evaluated within the window of the task."""
+"""A column of `Front.save_csv`: the window [s] of the residuals that the file states."""
 
 
 @dataclass(frozen=True)
 class Found:
-    """What a file holds: coefficients, what it claims of each motion, columns of no use."""
+    """What a file holds: coefficients, what it claims of each motion, columns of no use.
+
+    And the residual window [s] of what it claims, where it says so.
+    """
 
     coefficients: Array
     claims: Array
     ignored: tuple[str, ...] = ()
+    window: float | None = None
 
 
 def read_found(path: Path) -> Found:
@@ -59,14 +63,17 @@ def read_found(path: Path) -> Found:
         raise FileFormatError(empty)
     claims, ignored = np.full((len(coefficients), 2), np.nan), dict[str, None]()
     of_motions = set(chosen)
+    window = None
     for k, column in enumerate(columns):
         name = column.name.lower().replace(" ", "_")
         claim = _CLAIMS.get(name) or _CLAIMS.get(name.removesuffix(":1"))
         if claim and len(column.values) == len(claims):
             claims[:, claim[0]] = column.values * claim[1]
-        elif k not in of_motions and name != _WINDOW:
+        elif name == _WINDOW and len(set(column.values)) == 1:
+            window = float(column.values[0])
+        elif k not in of_motions:
             ignored[column.name.partition(":")[0][:30] or "a column without a name"] = None
-    return Found(coefficients, claims, tuple(ignored))
+    return Found(coefficients, claims, tuple(ignored), window)
 
 
 def _uncounted(columns: Sequence[Column], text: bool) -> Sequence[Column]:

@@ -35,7 +35,7 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
         f"{counted(record.iterations, 'iteration')} of the solver in {record.seconds:.1f} s",
         *_chosen_points(front),
         *(
-            f"  {f'within {tip_words(level, tip_unit)}':15}"
+            f"  {f'within {tip_words(level, tip_unit)}':14} "
             f"{f'{energy:.4g} J' if isfinite(energy) else 'none'}"
             for level, energy in levels.items()
         ),

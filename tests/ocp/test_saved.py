@@ -1,6 +1,8 @@
 """Answers come back from their files equal; what is no answer ends in one line that says why."""
 
 import json
+import subprocess
+import sys
 from dataclasses import replace
 
 import pytest
@@ -80,3 +82,20 @@ def test_what_is_not_whole_json_is_refused(saved, spoil):
 def test_a_wrong_entry_is_named(saved, place, value, word):
     edit(saved, place, value)
     assert word in refusal(saved)
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [qa.JointSpline((0.2, 0.4, 0.6, 0.8)), qa.CycloidGaussians(2), qa.CycloidNetwork(2)],
+    ids=lambda profile: profile.name,
+)
+def test_a_plan_of_any_profile_loads_in_a_process_of_its_own(profile, tmp_path):
+    # quietarm's own profiles are loaded with the first of their names that is asked for
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), 0.5, 0.8)
+    plan = qa.evaluate_coefficients(task, profile.plain, profile=profile)
+    plan.save(tmp_path / "plan.json")
+    program = f"import quietarm as qa; print(qa.Plan.load({str(tmp_path / 'plan.json')!r}).energy)"
+    printed = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert float(printed.stdout) == plan.energy
