@@ -217,7 +217,7 @@ class Candidate(Ranged):
         fastest = fastest_along(self.task.plant, self.task.start, self.task.target)
         blocks = math.ceil(_STEPS_A_RADIAN * fastest * self.task.duration / least)
         of_a_piece = math.ceil(least * max(1, blocks) / self.path.given.shape[1])
-        of_a_piece = max(of_a_piece, math.ceil(_STEPS_OF_A_PART / self.path.shortest))
+        of_a_piece = max(of_a_piece, math.ceil(_STEPS_OF_A_PART / self.path.shortest_part))
         return Grid(max(of_a_piece, _LEAST_STEPS_OF_A_PIECE))
 
     @cached_property

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,7 +18,7 @@ from quietarm.ocp.planning.best_of_starts import (
     solver_of,
     start_coefficients,
 )
-from quietarm.ocp.planning.certify import Certified, certify, certify_one, finer_peaks
+from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
@@ -166,8 +165,9 @@ def _certify_from_another_start(
         (solution,) = solver.solve([problem], [start])
         if not solution.status.solved:
             continue
-        with suppress(SolverFailedError):
-            return certify_one(problem, solution, solver)
+        (outcome,) = certify([problem], [solution], solver)
+        if isinstance(outcome, Certified):
+            return outcome
     return None
 
 

@@ -135,8 +135,8 @@ class PiecewiseMotion:
     has_jerk: bool
     smooth: bool
     remedy: str
-    shortest: float = 1.0
-    """Of the parts between breaks, as a share of a piece."""
+    shortest_part: float = 1.0
+    """Share of a piece within which the acceleration may turn."""
 
     @classmethod
     def of_profile(
@@ -151,7 +151,7 @@ class PiecewiseMotion:
             not (profile.sharp or profile.breaks(task.duration)),
             "; is a coefficient or a parameter of the plant far out of scale? (the largest "
             f"coefficient is {max(map(abs, checked), default=0.0):g})",
-            float(np.diff([0.0, *profile.breaks(task.duration), 1.0]).min()),
+            profile.shortest_part,
         )
 
     @classmethod

@@ -112,6 +112,11 @@ class JointProfile(ABC):
         """Where the gradient's random starts lie, as `box`, but finite."""
         return self.box(UNBOUNDED_SPREAD if bound is None else bound)
 
+    @property
+    def shortest_part(self) -> float:
+        """Share of the move within which its acceleration may turn; 1 where it takes longer."""
+        return 1.0
+
     def breaks(self, duration: float) -> tuple[float, ...]:
         """Fractions of the duration, rising between 0 and 1, at which the motion is not smooth."""
         return ()

@@ -70,6 +70,11 @@ class JointSpline(JointProfile):
         """One coefficient for each knot."""
         return len(self.knots)
 
+    @property
+    def shortest_part(self) -> float:
+        """Between two knots, or a knot and an end."""
+        return float(np.diff([0.0, *self.knots, 1.0]).min())
+
     def breaks(self, duration: float) -> tuple[float, ...]:
         """The knots."""
         return self.knots

@@ -201,7 +201,7 @@ def test_a_table_without_a_motion_that_keeps_the_limits(call):
 
 def test_a_fronts_own_table_is_right_within_the_window_that_it_states(done):
     line = "single-link --target 30deg --duration 0.8"
-    done(f"front {line} --points 6 --residual-window 1.0 --output front.csv")
+    done(f"front {line} --points 6 --residual-window 1.0 --output front.csv --quiet")
     out = done(f"evaluate {line} --coefficients front.csv")
     assert "the file's residual is right for all" in out
     assert "the file's energy is right for all" in out
