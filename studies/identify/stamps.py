@@ -27,15 +27,33 @@ def mended(arrays: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, dic
     steps, found = np.diff(time), dict(arrays)
     if len(time) < _LEAST or not (steps >= 0).all() or not (steps > 0).any():
         return found, {}
+    again = np.append(False, steps == 0)
+    if again.any() and _stand_twice(arrays, again):
+        return _without(arrays, again)
     even = _even(time, steps)
     if even is not None:
         found["time"], tick = even
         step = float(np.median(np.diff(found["time"])))
         return found, {"rounded": {"tick": f"{1e3 * tick:.3g}", "step": f"{1e3 * step:.6g}"}}
-    again = np.append(False, steps == 0)
-    count = int(np.count_nonzero(again))
-    if not count or count > _SOME * len(time):
+    if not again.any() or np.count_nonzero(again) > _SOME * len(time):
         return found, {}
+    return _without(arrays, again)
+
+
+def _stand_twice(arrays: Mapping[str, Array], again: NDArray[np.bool_]) -> bool:
+    """Whether every row with the stamp of the row before is that row in all else, too."""
+    places = np.flatnonzero(again)
+    return all(
+        np.array_equal(values[places], values[places - 1], equal_nan=True)
+        for values in arrays.values()
+    )
+
+
+def _without(
+    arrays: Mapping[str, Array], again: NDArray[np.bool_]
+) -> tuple[dict[str, Array], dict[str, dict[str, str]]]:
+    """The arrays without some rows, and how many these are."""
+    count = int(np.count_nonzero(again))
     rows = "1 row has" if count == 1 else f"{count} rows have"
     return {name: values[~again] for name, values in arrays.items()}, {"twice": {"rows": rows}}
 

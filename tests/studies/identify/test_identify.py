@@ -487,3 +487,20 @@ def test_filters_of_the_acceleration_are_the_collocation_of_the_plans(plant, acc
     assert filtered[..., 0] == pytest.approx(marched[..., 0], abs=1e-5 * size)
     for one, other in zip(by_p[..., 0], slopes[..., 0], strict=True):
         assert other == pytest.approx(one, abs=1e-5 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("share", [0.02, 1.0])
+def test_rows_that_stand_twice_are_read_once_however_many(share):
+    # 2 % of such rows were taken for rounded stamps: 6.07 Hz within 6.05 to 6.09 in place of 6
+    frequency, damping, released = 6.0, 0.1, 0.2
+    random = np.random.default_rng(3)
+    time = 0.01 * np.arange(200)
+    since = np.maximum(time - released, 0.0)
+    omega = 2 * np.pi * frequency
+    swing = np.exp(-damping * omega * since) * np.cos(omega * np.sqrt(1 - damping**2) * since)
+    tip = np.where(time < released, 9e-3, 9e-3 * swing) + random.normal(0, 3e-5, len(time))
+    twice = random.choice(len(time), round(share * len(time)), replace=False)
+    rows = np.sort(np.append(np.arange(len(time)), twice))
+    twice = beam(qa.Recording(time[rows], tip=tip[rows]))
+    assert twice.plant == beam(qa.Recording(time, tip=tip)).plant
+    assert "stands twice" in twice.warnings[0]
