@@ -25,10 +25,12 @@ def port():
     line = [sys.executable, "-m", "quietarm", "explore", "--no-browser"]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
-        yield int(re.search(r":(\d+)/", process.stdout.readline())[1])
+        port = int(re.search(r":(\d+)/", process.stdout.readline())[1])
+        # read here: communicate loses what readline has read ahead
+        assert process.stdout.readline() == "Ctrl-C ends it\n"
+        yield port
         process.send_signal(signal.SIGINT)
-        rest = "Ctrl-C ends it\n"
-        assert (*process.communicate(timeout=GUARD), process.returncode) == (rest, "", 0)
+        assert (*process.communicate(timeout=GUARD), process.returncode) == ("", "", 0)
     finally:
         process.kill()
         process.communicate()
