@@ -26,7 +26,7 @@ FIGURES = (("residual", "m", REST), ("energy", "J", 0.0))
 T = TypeVar("T", float, NDArray[np.float64])
 
 
-def agrees(stated: T, gives: T, least: float) -> Any:
+def agrees(stated: T, gives: T, least: float | NDArray[np.float64]) -> Any:
     """Whether a stated figure is what a motion gives, element by element; what is NaN is not."""
     return abs(stated - gives) <= AGREEMENT * abs(gives) + least
 

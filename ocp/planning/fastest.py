@@ -147,9 +147,9 @@ def _fastest_on_spline(task: PointToPoint, tolerance: float, settings: dict[str,
     except ValueError as error:
         raise InfeasibleTaskError(f"no duration was found: {error}") from None
     failed = {least.too_short: _why_too_short(task, least)}
-    from_least = SolveSettings(
-        **{**settings, "residual_limit": limit, "guess": tuple(least.coefficients.tolist())}
-    )
+    guess = tuple(least.coefficients.tolist())
+    given: dict[str, Any] = {**settings, "residual_limit": limit, "guess": guess}
+    from_least = SolveSettings(**given)
     shortest = _LONGER[0] if task.uncertainty is None else _LONGER_IF_UNCERTAIN
     for longer in (share for share in _LONGER if share >= shortest):
         duration = (1 + longer) * least.duration
