@@ -334,7 +334,10 @@ def finer_peaks(of: Sequence[Transcription], coefficients: Array) -> dict[str, A
 
 def _finer(one: Transcription, quantities: tuple[Quantity, ...] = ()) -> Batch:
     steps = max(default_steps(one.task), _FINER * one.steps)
-    return batch(one.task.plant, one.profile, steps, quantities, energy=one.task.energy)
+    breaks = one.profile.breaks(one.task.duration)
+    return batch(
+        one.task.plant, one.profile, steps, quantities, energy=one.task.energy, breaks=breaks
+    )
 
 
 def _values(finer: Batch, of: Sequence[Transcription], coefficients: Array) -> Values:

@@ -11,6 +11,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression
+from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import GAUSS_NODES
 from quietarm.ocp.simulation.free_vibration import fastest_along
 from quietarm.ocp.task import PointToPoint
@@ -19,8 +20,6 @@ MOST_STEPS = 20_000
 """Of any simulation by fixed steps: finer ones differ by rounding alone."""
 ROLLOUT_STEPS = 140
 """Steps that keep the energy of random coefficients in the paper's boxes within 1e-5 relative."""
-STEPS_OF_A_PIECE = 6
-"""Least steps between two breaks, of a motion that is no polynomial there: no step crosses one."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +34,7 @@ class Grid:
 
     steps: int
     breaks: tuple[float, ...] = ()
-    of_a_piece: int = STEPS_OF_A_PIECE
+    of_a_piece: int = JointProfile.steps_of_a_piece
 
     @cached_property
     def boundaries(self) -> NDArray[np.float64]:
