@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import tempfile
+import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from importlib import import_module
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 NEEDS = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
 _FORMAT = "quietarm-sweep"
+_DESCRIPTION = "zarr.json"
+"""The file in which an array of zarr describes itself."""
 
 
 class Store:
@@ -238,8 +241,31 @@ def _open(path: Path) -> xarray.Dataset:
     xr = _xarray()
     if not path.exists():
         raise FileFormatError(f"{path}: there is no such dataset; sweep it, or give another name")
+    if _stated_format(path) != _FORMAT:
+        raise FileFormatError(f"{path} is no dataset of a sweep; give another name")
+    _read_descriptions(path)
+    with _damage_told(path), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of what was changed, which `Store` finds and tells in a line
+        return xr.open_dataset(path, engine="zarr", consolidated=False, cache=False)
+
+
+def _stated_format(path: Path) -> object:
+    """The format that a folder states; None where it states none."""
+    import zarr
+
     with suppress(Exception):  # whatever zarr makes of another file or folder
-        dataset = xr.open_dataset(path, engine="zarr", consolidated=False, cache=False)
-        if dataset.attrs.get("format") == _FORMAT:
-            return dataset
-    raise FileFormatError(f"{path} is no dataset of a sweep; give another name")
+        return zarr.open_group(path, mode="r").attrs.get("format")
+    return None
+
+
+def _read_descriptions(path: Path) -> None:
+    """Read what each array says of itself, one after another; FileFormatError where one is changed.
+
+    xarray has zarr read all of them at once: where one fails, the rest is dropped unfinished, and
+    says so in many lines when the process ends.
+    """
+    import zarr
+
+    for description in sorted(path.glob(f"*/{_DESCRIPTION}")):
+        with _damage_told(description):
+            zarr.open_array(description.parent, mode="r")

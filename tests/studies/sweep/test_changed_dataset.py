@@ -3,9 +3,11 @@
 import json
 import math
 import shutil
+import subprocess
 
 import numpy as np
 import pytest
+from lines import COARSELY
 from quietarm.ocp import FileFormatError
 from quietarm.studies.sweep.definition import JUMP
 from quietarm.studies.sweep.library import MoveLibrary
@@ -129,3 +131,47 @@ def test_jumps_follow_from_the_rest_and_are_marked_anew(copied):
     store = Store(copied)
     store.mark_jumps()
     assert not store.read(JUMP).any()
+
+
+def _keys(document, before=()):
+    """Where every entry of a JSON document is, at any depth."""
+    yield before
+    entries = document.items() if isinstance(document, dict) else ()
+    for key, entry in entries:
+        yield from _keys(entry, (*before, key))
+
+
+def _with(document, place, value):
+    if not place:
+        return value
+    return {**document, place[0]: _with(document[place[0]], place[1:], value)}
+
+
+@pytest.mark.parametrize("name", [".", "coefficients", "target"])
+def test_any_entry_of_a_description_may_be_anything(copied, caplog, call, name):
+    path = copied / name / "zarr.json"
+    description = json.loads(path.read_text())
+    told = 0
+    for place in _keys(description):
+        for value in ([], 3, None):
+            path.write_text(json.dumps(_with(description, place, value)))
+            status, _, err = call(f"plan --from {copied} --target 40deg --duration 0.9")
+            if status != 0:  # of what plays no part, as a unit, nothing is said
+                assert (status, err.count("\n")) == (2, 1), place
+                assert str(copied) in err
+                assert "; " in err
+                told += 1
+    assert told > 10
+    assert not caplog.records  # what zarr does at once elsewhere says nothing either
+
+
+def test_nothing_is_said_of_what_zarr_leaves_unfinished(copied):
+    path = copied / "coefficients" / "zarr.json"
+    description = json.loads(path.read_text())
+    encoding = {"name": "default", "configuration": {"separator": []}}
+    path.write_text(json.dumps({**description, "chunk_key_encoding": encoding}))
+    line = ["plan", "--from", str(copied), "--target", "40deg", "--duration", "0.9"]
+    ended = subprocess.run([*COARSELY, *line], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr.count("\n")) == (2, 1)
+    assert f"{path} is damaged, changed or of another version" in ended.stderr
+    assert "remove the dataset and sweep it again" in ended.stderr
