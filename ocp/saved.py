@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
 from codecs import BOM_UTF8
 from collections.abc import Iterable, Mapping
@@ -39,6 +40,8 @@ _FAMILIES: Mapping[Any, str] = {Plant: "plant", JointProfile: "profile", Energy:
 """What is saved with its name, by which its class is found again."""
 PLANT_FILE = "plant_file"
 """Entry of a plant: the file it was loaded from."""
+CHECKSUM = "checksum"
+"""Entry of an answer's file: a digest of all the others."""
 _SHOWN = 12
 """Digits of a digest that a message shows."""
 
@@ -156,6 +159,7 @@ def _check_file(name: str, path: str, sha256: str) -> None:
 def content_of(path: str | Path, document: Any, name: str, version: int) -> dict[str, Any]:
     """What a document holds beside its format and version, which are checked."""
     content = dict(document) if isinstance(document, dict) else {}
+    content.pop(CHECKSUM, None)
     its_name, its_version = content.pop("format", None), content.pop("version", None)
     if its_name != f"quietarm-{name}":
         raise FileFormatError(
@@ -169,6 +173,46 @@ def content_of(path: str | Path, document: Any, name: str, version: int) -> dict
     return content
 
 
+def _document_of(path: str | Path, name: str) -> Any:
+    try:
+        return msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise FileFormatError(
+            f"{path} is not a {name}: it is not whole, valid JSON in UTF-8 ({error}); "
+            f"write the {name} again, or save it so"
+        ) from None
+
+
+def keeps_checksum(path: str | Path, name: str) -> bool | None:
+    """Whether a file says what `save` wrote, by its checksum; None where it has none.
+
+    It tells changes of what no evaluation tells: candidates, iterations, time, method. Whoever
+    computes the checksum again can write what they like.
+    """
+    document = _document_of(path, name)
+    stated = document.get(CHECKSUM)
+    return None if stated is None else stated == _checksum_of(document)
+
+
+def _checksum_of(document: Mapping[str, Any]) -> str:
+    """A digest of all entries but the checksum, however numbers and spaces are written."""
+    others = {name: entry for name, entry in document.items() if name != CHECKSUM}
+    text = json.dumps(_with_whole_numbers(others), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _with_whole_numbers(entry: Any) -> Any:
+    """An entry with 1 in the place of 1.0, as some programs write it that save a file again."""
+    match entry:
+        case float() if entry.is_integer():
+            return int(entry)
+        case dict():
+            return {name: _with_whole_numbers(value) for name, value in entry.items()}
+        case list():
+            return [_with_whole_numbers(value) for value in entry]
+    return entry
+
+
 class Saved:
     """An answer that has a file of its attributes: JSON, versioned, never executed."""
 
@@ -179,8 +223,10 @@ class Saved:
 
     def save(self, path: str | Path) -> None:
         """Write the answer as JSON, whole or not at all; ValueError where that cannot be."""
-        document = {"format": f"quietarm-{self.kind}", "version": self.version, **plain(self)}
-        write_whole(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
+        write_whole(path, json.dumps(self._document(), indent=2, allow_nan=False) + "\n")
+
+    def _document(self) -> dict[str, Any]:
+        return {"format": f"quietarm-{self.kind}", "version": self.version, **plain(self)}
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -191,14 +237,7 @@ class Saved:
         FileFormatError
             When the file holds something else, is not whole, or of another version.
         """
-        try:
-            document = msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
-        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-            raise FileFormatError(
-                f"{path} is not a {cls.kind}: it is not whole, valid JSON in UTF-8 ({error}); "
-                f"write the {cls.kind} again, or save it so"
-            ) from None
-        content = content_of(path, document, cls.kind, cls.version)
+        content = content_of(path, _document_of(path, cls.kind), cls.kind, cls.version)
         try:
             return typed(content, cls)
         except (
@@ -213,6 +252,10 @@ class Answer(Saved):
     """What a method found. A subclass is a dataclass with the entry below."""
 
     record: Record
+
+    def _document(self) -> dict[str, Any]:
+        document = super()._document()
+        return {**document, CHECKSUM: _checksum_of(document)}
 
     def restated(self, **changes: Any) -> Self:
         """The same answer with other entries of its record."""

@@ -32,8 +32,10 @@ ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
 _SAME_FRONT = 1e-5
 """Points of two fronts, scaled to the reference front, that differ by no more are the same: nearer
 the reference fronts are not known."""
-_COPIED = 1e-9
-"""Share of the bound by which coefficients of one motion may differ: decimals that a file lost."""
+_COPIED = 1e-5
+"""Share of the box by which a run's motion may differ from the reference motion that it copies:
+decimals that were cut, or a small shift. Neighbours on the reference fronts are 2e-4 to 9e-3 of it
+apart in the median, so that what a search finds between them is no copy."""
 
 
 @dataclass(frozen=True)
@@ -61,10 +63,13 @@ class Run:
     @property
     def copies_reference(self) -> bool:
         """Whether all its points are motions of the reference front: it searched for none."""
+        lower, upper = self.problem.profile.box(self.problem.bound)
         known = self.problem.reference().front.coefficients
-        points = self.front.coefficients
-        nearest = [np.abs(known - point).max(axis=1).min() for point in points]
-        return len(points) > 0 and max(nearest) <= _COPIED * self.problem.bound
+        distances = [
+            (np.abs(known - point) / (upper - lower)).max(axis=1).min()
+            for point in self.front.coefficients
+        ]
+        return len(distances) > 0 and max(distances) <= _COPIED
 
     @cached_property
     def history(self) -> History:

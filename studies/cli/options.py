@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -43,6 +44,10 @@ COMMON = (
 )  # fmt: skip
 
 
+_WITHOUT_ANSWER = ("explore",)
+"""Commands that show a page: what they say on standard output is not what they are for."""
+
+
 class Command(click.Command):
     """A command with the options that all have; its function takes what was `Given`."""
 
@@ -52,8 +57,9 @@ class Command(click.Command):
         return [*own, *COMMON, its_help]
 
     def invoke(self, ctx: click.Context) -> None:
-        """Run it, unless one file is named twice."""
+        """Run it, unless one file is named twice, or its answer would go nowhere."""
         _refuse_same_file(ctx.params.values())
+        _refuse_lost_answer(ctx)
         if self.callback is not None:
             self.callback(Given(ctx))
 
@@ -71,6 +77,15 @@ def _refuse_same_file(values: Iterable[object]) -> None:
     for path, place in zip(paths, places):
         if places.count(place) > 1:
             raise ValueError(f"{path} is given twice; give it once, or another name")
+
+
+def _refuse_lost_answer(ctx: click.Context) -> None:
+    """Refuse a line whose answer is for standard output alone, where that is closed."""
+    output = ctx.params.get("output") or STDOUT
+    files = output if isinstance(output, tuple) else (output,)
+    closed = getattr(sys.stdout, "name", "") == os.devnull
+    if closed and STDOUT in files and ctx.command.name not in _WITHOUT_ANSWER:
+        raise ValueError("standard output is closed; give the name of a file")
 
 
 def progress_console() -> Console:

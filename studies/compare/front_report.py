@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from pathlib import Path
 
 import pandas as pd
 from quietarm.metaheuristics.quality import BETWEEN
@@ -28,6 +29,8 @@ from quietarm.studies.tips import tip_scale, tip_words
 
 _INDICATORS = {"hypervolume": ".4f", "igd_plus": ".2g", "epsilon": ".2g"}
 _HEADINGS = {"hypervolume": "hypervolume", "igd_plus": "IGD+", "epsilon": "epsilon"}
+_WINDOW = "residual window [s]"
+"""Column of `methods.csv`."""
 
 
 def compare_by_task(
@@ -91,12 +94,18 @@ def _row(comparison: Comparison, group: Group) -> dict[str, object]:
         "seeds": len(group.runs),
         **energies,
         **measures,
+        _WINDOW: float(front.task.residual_window),
         "points": Spread.of([len(run.front.points) for run in group.runs]).median,
         "bound": front.record.bound,
         "candidates": group.spread("front.record.evaluations").median or None,
         "iterations": group.spread("front.record.iterations").median or None,
         "time [s]": group.spread("front.record.seconds").median,
     }
+
+
+def _shown(table: pd.DataFrame) -> pd.DataFrame:
+    """What a page has room for: the window stands below the table."""
+    return table.drop(columns=_WINDOW).dropna(axis=1, how="all")
 
 
 def runs_table(comparison: Comparison) -> pd.DataFrame:
@@ -125,9 +134,14 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
 
 
 def fronts_report(
-    comparisons: Sequence[Comparison], known: Sequence[Sequence[KnownPoint]]
+    comparisons: Sequence[Comparison],
+    known: Sequence[Sequence[KnownPoint]],
+    unsealed: Sequence[Path] = (),
 ) -> Report:
-    """Compared fronts of one task or several, with known points of each for its picture."""
+    """Compared fronts of one task or several, with known points of each for its picture.
+
+    Of `unsealed` files it says that nothing vouches for what they say of their effort.
+    """
     pictures = ["fronts.png"] if len(comparisons) == 1 else [
         f"fronts-{i}.png" for i in range(1, len(comparisons) + 1)
     ]  # fmt: skip
@@ -136,12 +150,13 @@ def fronts_report(
     return Report(
         "compare/fronts.md",
         {
-            "parts": list(zip(comparisons, tables, pictures)),
+            "parts": list(zip(comparisons, map(_shown, tables), pictures)),
             "title_of": title_of,
             "tip_words": tip_words,
             "residual_place": residual_place,
             "fill": BETWEEN if comparisons[0].fill else 0,
             "apart": _apart_by_window(comparisons),
+            "unsealed": unsealed,
             "several": any(len(g.runs) > 1 for one in comparisons for g in one.groups),
         },
         {

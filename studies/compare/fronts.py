@@ -11,6 +11,7 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.quality import CORNER, objectives, within
+from quietarm.metaheuristics.run_files import CHECKSUM
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
 from quietarm.ocp.checks import takes
@@ -274,6 +275,7 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
 def _settings(front: Front) -> dict[str, object]:
     profile = plain(front.profile)
     own = {"bound": front.record.bound, **front.record.settings}
+    own.pop(CHECKSUM, None)  # of a bench's run, and no setting of its method
     return {**own, "profile": profile.pop("name"), **profile}
 
 

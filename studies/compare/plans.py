@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 import pandas as pd
 from quietarm.models.joint_motion import ROTARY, joint_unit
@@ -120,7 +121,7 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     """What a page has room for; residuals in whole thousandths of a millimetre: 0 is rest."""
     lengths = [column for column in table if str(column).endswith("[mm]")]
     rounded = table.round(dict.fromkeys(lengths, 3))
-    short = {"peak ": "", "acceleration [rad": "accel. [1", "acceleration": "accel."}
+    short = {"peak ": "", "acceleration": "accel."}
     for long, word in short.items():
         rounded.columns = rounded.columns.str.replace(long, word, regex=False)
     files_alone = ["parameters", "time [s]", _WHY, _WINDOW]
@@ -142,8 +143,13 @@ def remarks(motions: Sequence[Judged], unit: str = "rad") -> list[str]:
     ]
 
 
-def plans_report(task: PointToPoint, motions: Sequence[Judged]) -> Report:
-    """Motions as a table, what to know of them, and a picture."""
+def plans_report(
+    task: PointToPoint, motions: Sequence[Judged], unsealed: Sequence[Path] = ()
+) -> Report:
+    """Motions as a table, what to know of them, and a picture.
+
+    Of `unsealed` files it says that nothing vouches for the time that they state.
+    """
     joint = task.plant.joint
     table = motions_table(motions, joint, task.plant.tip_unit)
     robust = next((one.robustness for one in motions if one.robustness), None)
@@ -153,6 +159,7 @@ def plans_report(task: PointToPoint, motions: Sequence[Judged]) -> Report:
         {
             "title": title_of(task),
             "shown": shown(table),
+            "unsealed": unsealed,
             "remarks": remarks(motions, joint_unit("rad", joint)),
             "errors": list(ranges),
             "window": window_words(

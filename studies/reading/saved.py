@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from codecs import BOM_UTF8
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -11,6 +11,7 @@ import msgspec
 from quietarm.metaheuristics.objective.claims import check_figures, check_plan
 from quietarm.ocp import FileFormatError, Front, Plan
 from quietarm.ocp.files import read_bytes
+from quietarm.ocp.saved import keeps_checksum
 
 
 def format_of(path: Path) -> str:
@@ -39,6 +40,7 @@ def load_front(path: Path) -> Front:
     if not front.points:
         raise ValueError(f"{path}: {front.why_empty()}")
     check_figures(front, str(path))
+    _refuse_changed(path, Front)
     return front
 
 
@@ -55,6 +57,7 @@ def load_runs(paths: Sequence[Path]) -> dict[Path, Front]:
     runs = {file: Front.load(file) for file in files}
     for file, run in runs.items():
         check_figures(run, str(file))
+        _refuse_changed(file, Front)
     return runs
 
 
@@ -70,4 +73,19 @@ def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
     plans = {name: Plan.load(path) for name, path in zip(names, paths)}
     for plan, path in zip(plans.values(), paths):
         check_plan(plan, str(path))
+        _refuse_changed(path, Plan)
     return plans
+
+
+def _refuse_changed(path: Path, answer: type[Front | Plan]) -> None:
+    """FileFormatError where what a file says of method and effort is not what was written."""
+    if keeps_checksum(path, answer.kind) is False:
+        raise FileFormatError(
+            f"{path} was changed since it was written, in what no evaluation tells: its checksum "
+            f"is of other entries; find the {answer.kind} again"
+        )
+
+
+def without_checksum(paths: Iterable[Path]) -> list[Path]:
+    """Files of answers whose method and effort nothing vouches for; older ones have no checksum."""
+    return [path for path in paths if keeps_checksum(path, "answer") is None]

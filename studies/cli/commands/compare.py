@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -67,6 +68,7 @@ def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
     """Plans and baselines; `measured` errors are those that the plans are made for."""
     from quietarm.studies.compare.judged import merged_ranges
     from quietarm.studies.compare.plans import compare_plans, plans_report
+    from quietarm.studies.reading.saved import without_checksum
 
     ranges = once(given.errors, "--error ")
     if ranges.pop(MEASURED, None) is not None:
@@ -78,19 +80,20 @@ def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
             )
         ranges = {**measured, **ranges}
     judged = compare_plans(plans, given.baselines or (), ranges, given.samples)
-    return plans_report(next(iter(plans.values())).task, judged)
+    first_task = next(iter(plans.values())).task
+    return plans_report(first_task, judged, without_checksum(given.files))
 
 
 def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
     from quietarm.studies.compare.front_report import compare_by_task, fronts_report
-    from quietarm.studies.reading.saved import load_front
+    from quietarm.studies.reading.saved import load_front, without_checksum
     from quietarm.studies.reproduce.paper import paper_points
 
     reference = None if given.reference is None else load_front(given.reference)
     found = compare_by_task(fronts, reference, str(given.reference))
     found = list(map(_with_floor, found)) if given.free else found
     known = [paper_points(one.task, {run.front.profile.size for run in one.runs}) for one in found]
-    return fronts_report(found, known)
+    return fronts_report(found, known, without_checksum(map(Path, fronts)))
 
 
 def _with_floor(comparison: Comparison) -> Comparison:

@@ -1,5 +1,6 @@
 """`quietarm compare`: fronts, plans, folders; what it shows, writes and refuses."""
 
+import json
 from dataclasses import replace
 
 import pandas as pd
@@ -25,6 +26,60 @@ def test_fronts_fill_a_folder(done, files):
     runs = pd.read_csv(files / "compared" / "runs.csv").set_index("name")
     assert runs.loc["good.json", "energy_J_at_5mm"] == 0.5
     assert "epsilon constraint" in out
+
+
+EFFORT = ("record/evaluations", "record/seconds", "record/method", "record/iterations")
+
+
+@pytest.mark.parametrize("place", EFFORT)
+def test_the_effort_of_a_front_is_what_was_written(refused, files, place):
+    edit("poor.json", place, lambda value: f"{value}x" if isinstance(value, str) else value + 1)
+    words = "poor.json was changed since it was written, in what no evaluation tells: its checksum"
+    assert words in refused("compare good.json poor.json --no-free-motion")
+    assert words in refused("compare good.json --reference poor.json")
+
+
+@pytest.mark.parametrize("place", ["record/seconds", "status", "verification/energy_difference"])
+def test_so_is_that_of_a_plan(refused, folder, plan, place):
+    plan.save("mine.json")
+    edit("mine.json", place, lambda value: "not optimised" if isinstance(value, str) else value + 1)
+    words = "mine.json was changed since it was written"
+    assert words in refused("compare mine.json")
+    assert words in refused("export mine.json --output mine.csv")
+
+
+def test_a_file_of_before_is_read_and_the_report_says_what_it_is_believed(done, files, plan):
+    assert "no checksum" not in done("compare good.json poor.json --no-free-motion")
+    plan.save("plan.json")
+    assert "no checksum" not in done("compare plan.json")
+    for name in ("poor.json", "plan.json"):
+        document = json.loads((files / name).read_text())
+        del document["checksum"]  # as a quietarm wrote it that knew none
+        (files / name).write_text(json.dumps(document))
+    out = " ".join(done("compare good.json poor.json --no-free-motion").split())
+    assert "1 of the files has no checksum (as poor.json)" in out
+    assert "candidates, iterations and time are as they state them" in out
+    assert "1 of the files has no checksum (as plan.json)" in " ".join(
+        done("compare plan.json").split()
+    )
+
+
+def test_a_file_that_another_program_saves_again_is_the_same(done, files):
+    text = json.dumps(json.loads((files / "good.json").read_text()), indent=None, sort_keys=True)
+    (files / "good.json").write_text(text.replace(".0,", ",").replace(".0}", "}"))
+    assert "no checksum" not in done("compare good.json --no-free-motion")
+
+
+def test_runs_of_a_bench_are_runs_of_one_method(done, files, front_of):
+    for seed in (0, 1):
+        front = front_of([(1 + seed, 0.9), (6, 0.6)], seed=seed)
+        settings = {**front.record.settings, "checksum": f"{seed}"}
+        front.restated(settings=settings).save(f"seed{seed}.json")
+    done("compare seed0.json seed1.json --no-free-motion --output compared")
+    methods = pd.read_csv(files / "compared" / "methods.csv")
+    assert methods["seeds"].tolist() == [2]
+    assert "checksum" not in methods["method"][0]
+    assert methods["residual window [s]"].tolist() == [front.task.residual_window]
 
 
 def test_a_folder_is_compared_move_by_move(call, files, front_of, task):
