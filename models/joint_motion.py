@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,6 +39,8 @@ def joint_label(label: str, joint: str) -> str:
 
 def deg(degrees: float) -> float:
     """An angle in degrees as radians: `PointToPoint(..., target=deg(30))`."""
+    if isinstance(degrees, bool) or not isinstance(degrees, Real):
+        raise TypeError(f"degrees are {degrees!r}; give a number, as deg(30)")
     return math.radians(degrees)
 
 

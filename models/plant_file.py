@@ -51,6 +51,8 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
     ValueError
         When it cannot be read or imported, or defines no plant that is complete.
     """
+    if not isinstance(path, str | Path):
+        raise TypeError(f"path is {path!r}; give the name of a Python file, as 'plants.py'")
     if Path(path).suffix != ".py":  # a data file may be valid Python, and is not run by mistake
         raise ValueError(f"plant file {path} is not called .py; give a Python file")
     try:

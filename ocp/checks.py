@@ -9,6 +9,7 @@ import operator
 import re
 import reprlib
 from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import is_dataclass
 from functools import wraps
 from os import PathLike
 from typing import Annotated, Any, ParamSpec, TypeVar
@@ -21,10 +22,10 @@ R = TypeVar("R")
 
 
 def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
-    """A finite number as a float."""
+    """A finite number as a float; text and truth values are none."""
     wanted = f"number in {unit}" if unit else "number"
     try:
-        number = float(value)
+        number = float(_no_text(_no_truth_value(value)))
     except (TypeError, ValueError):
         raise ValueError(f"{name} is {value!r}; give a {wanted}") from None
     if not math.isfinite(number):
@@ -32,6 +33,20 @@ def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: s
     if abs(number) > most:
         raise ValueError(f"{name} is {number:g}; give at most {most:g}{why and f' ({why})'}")
     return number
+
+
+def _no_truth_value(value: Any) -> Any:
+    """The value; TypeError for True and False, which count as 1 and 0 in Python."""
+    if isinstance(value, bool) or getattr(value, "dtype", None) == bool:
+        raise TypeError(f"{value!r} is no number")
+    return value
+
+
+def _no_text(value: Any) -> Any:
+    """The value; TypeError for text, of which Python makes a number as well."""
+    if isinstance(value, str | bytes):
+        raise TypeError(f"{value!r} is no number")
+    return value
 
 
 def positive(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
@@ -53,7 +68,7 @@ def not_negative(name: str, value: Any, unit: str = "") -> float:
 def whole(name: str, value: Any, least: int, most: int | None = None, because: str = "") -> int:
     """A whole number as an int."""
     try:
-        number = operator.index(value)
+        number = operator.index(_no_truth_value(value))
     except TypeError:
         number = least - 1
     if number < least:
@@ -77,6 +92,8 @@ def instance(name: str, value: Any, *kinds: type[T]) -> T:
     if isinstance(value, kinds):
         return value
     shown = value.__name__ if isinstance(value, type) else reprlib.repr(value)
+    if is_dataclass(value) and not isinstance(value, type):
+        shown = f"an object of {type(value).__name__}"  # all of its entries would say less
     raise TypeError(f"{name} is {shown}; give {_instead_of(value, kinds[0])}")
 
 
@@ -101,7 +118,9 @@ def _instead_of(value: Any, kind: type[Any]) -> str:
     meant = value if isinstance(value, type) and issubclass(value, kind) else None
     if isinstance(value, str):
         named = known(kind)
-        meant = named.get(_nearest(value, named))
+        complete = {name: each for name, each in named.items() if not _needed(each)}
+        # one that needs nothing works as it stands in the message
+        meant = complete.get(_nearest(value, complete)) or named.get(_nearest(value, named))
     if meant is not None:
         return f"an object, as {_construction(meant)}"
     if isinstance(value, str | PathLike) and hasattr(kind, "load"):
@@ -111,12 +130,19 @@ def _instead_of(value: Any, kind: type[Any]) -> str:
 
 def _construction(kind: type[Any]) -> str:
     """How an object of a class is made, with the arguments that it needs."""
-    needed = [
-        name
-        for name, parameter in inspect.signature(kind).parameters.items()
-        if parameter.default is parameter.empty
-    ]
-    return f"{kind.__name__}({', '.join(needed)})"
+    return f"{kind.__name__}({', '.join(_needed(kind))})"
+
+
+def _needed(kind: type[Any]) -> list[str]:
+    """Arguments without which no object of a class is made."""
+    parameters = inspect.signature(kind).parameters.items()
+    return [name for name, parameter in parameters if parameter.default is parameter.empty]
+
+
+def name_of_file(path: Any) -> None:
+    """Refuse what names no file; TypeError that says what to give."""
+    if not isinstance(path, str | PathLike):
+        raise TypeError(f"path is {reprlib.repr(path)}; give the name of a file, as 'plan.json'")
 
 
 Kind = type[Any] | list[type[Any]] | dict[type[str], type[Any]]

@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from uuid import uuid4
 
+from quietarm.ocp.checks import name_of_file
 from quietarm.ocp.errors import FileFormatError
 
 MOST_BYTES = 100_000_000
@@ -18,6 +19,7 @@ MOST_BYTES = 100_000_000
 
 def read_bytes(path: str | Path) -> bytes:
     """The content of an ordinary file; FileFormatError where it cannot be read, or is too large."""
+    name_of_file(path)
     place = Path(path)
     try:
         if place.exists() and not place.is_file():  # a pipe may never end, and does not come again
@@ -37,6 +39,7 @@ def read_bytes(path: str | Path) -> bytes:
 
 def check_writable(path: str | Path) -> Path:
     """Make sure that a file can be written, before a solve rather than after it."""
+    name_of_file(path)
     target = Path(path)
     try:
         if target.is_symlink():

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion
-from quietarm.ocp.checks import finite
+from quietarm.ocp.checks import finite, several
 from quietarm.ocp.profiles.b_splines import spline
 from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
@@ -54,7 +54,9 @@ class JointSpline(JointProfile):
     knots: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        knots = tuple(finite("knot", knot) for knot in self.knots)
+        knots = tuple(
+            finite("knot", knot) for knot in several("knots", self.knots, "fractions, as [0.3, 0.7]")
+        )
         if not 1 <= len(knots) <= MOST_KNOTS:
             raise ValueError(f"got {len(knots)} knots; give 1 to {MOST_KNOTS}")
         gaps = [after - before for before, after in pairwise((0.0, *knots, 1.0))]

@@ -32,6 +32,10 @@ _OTHERS = ("residual_window", "initial", "final", "energy")
 _MANY_HOURS = 10
 _MANY_COEFFICIENTS = 40
 """With so many a solve takes minutes; six to thirty take seconds."""
+_FEW_COEFFICIENTS, _SECONDS_OF_FEW = 6, 0.05
+"""A solve of so many takes this long; the time rises with a power of their number: of the square
+where they enter linearly (28 terms of a polynomial take 1 s), and faster where they do not (31
+coefficients of ten nodes take 18 s, of ten Gaussians 9 s; all by processor time)."""
 _NEEDED = {"target": "30deg", "duration": "0.8"}
 
 
@@ -79,6 +83,14 @@ class Given:
                 f"{number} {what} take some {hours:.3g} hours on a core; give fewer, or --yes"
             )
 
+    def _refuse_endless_solves(self, profile: JointProfile) -> None:
+        """Refuse hours of solves from all starts, for each point of a front, unless --yes."""
+        options = self._context.params
+        points = len(options.get("weights", ())) or options.get("points", 1)
+        power = 3.5 if profile.sharp else 2.0
+        seconds = _SECONDS_OF_FEW * max(1.0, profile.size / _FEW_COEFFICIENTS) ** power
+        self.refuse_endless(self.starts * points, "solves", seconds)
+
     def read_residual_limit(self, plant: Plant) -> float | None:
         """The residual limit in the unit of the plant's tips; None where none was typed."""
         return self.read_of_plant(RESIDUAL_LIMIT, plant)
@@ -100,6 +112,8 @@ class Given:
     def read_profile(self, task: PointToPoint) -> JointProfile:
         """The joint profile; where it has many coefficients, a word of how long that takes."""
         profile = profile_of(self.profile, task, self.terms)
+        if "starts" in self._context.params:
+            self._refuse_endless_solves(profile)
         by_gradient = self._context.command.name != "search"
         if profile.size > _MANY_COEFFICIENTS and by_gradient:
             print_lines(

@@ -302,9 +302,14 @@ def parse_rate(text: str) -> float:
 def parse_coefficients(text: str) -> list[float]:
     """Read numbers that are separated by commas."""
     try:
-        return [finite(f"coefficient {i}", one) for i, one in enumerate(text.split(","), start=1)]
+        return [_finite(f"coefficient {i}", one) for i, one in enumerate(text.split(","), start=1)]
     except ValueError as error:
         raise ValueError(f"{error}, and commas between several, or a file of rows") from None
+
+
+def _finite(name: str, text: str) -> float:
+    """Read a finite number."""
+    return finite(name, float(text) if is_number(text) else text)
 
 
 def parse_energy(text: str) -> Energy:
@@ -324,8 +329,8 @@ def _part_of_energy(text: str) -> Energy:
     if len(given) != len(wanted):
         form = f"{name}:{','.join(wanted)}" if wanted else name
         raise ValueError(f"{text!r} has {len(given)} numbers of {len(wanted)}; give {form}")
-    energy = energies[name](*map(finite, wanted, given))
-    return finite("weight", weight) * energy if times else energy
+    energy = energies[name](*map(_finite, wanted, given))
+    return _finite("weight", weight) * energy if times else energy
 
 
 def once(pairs: Iterable[tuple[str, T]], what: str) -> dict[str, T]:

@@ -233,7 +233,7 @@ def _title(one: Structure, same: bool, room: int) -> list[str]:
     lines = [
         f"{one.line.label}, {one.scale_words}",
         *([] if same else [f"{moved(task)}, {move_of(task)}"]),
-        f"energy {plan.energy:.3g} J, residual {residual} {window_words(task.residual_window)}",
+        f"energy {plan.energy:.3g} J, residual: {residual} {window_words(task.residual_window)}",
     ]
     return [part for line in lines for part in wrap(line, room)]
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from math import isnan
 
@@ -26,6 +27,8 @@ from rich.progress import (
 
 PLAIN_SECONDS = 2.0
 """Seconds between plain lines, where the pieces are too many for one line each."""
+SILENT_SECONDS = 30.0
+"""Seconds without a word where there is no terminal: most work is done by then."""
 WORDS = TextColumn("{task.description}", markup=False)
 
 
@@ -38,10 +41,35 @@ def bars(console: Console, *columns: ProgressColumn) -> Iterator[Progress]:
 
 
 @contextmanager
+def _said_after_a_while(what: str, console: Console) -> Iterator[None]:
+    """Say where there is no terminal that work goes on, after `SILENT_SECONDS`, twice that, ..."""
+    if console.quiet or console.is_terminal:
+        yield
+        return
+    ended = threading.Event()
+    begun = time.monotonic()
+
+    def say() -> None:
+        pause = SILENT_SECONDS
+        with suppress(OSError):  # nobody reads any more
+            while not ended.wait(pause):
+                print_lines(console, f"still {what} after {time.monotonic() - begun:.0f} s")
+                pause *= 2
+
+    thread = threading.Thread(target=say, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
+@contextmanager
 def working(what: str, console: Console) -> Iterator[None]:
     """Show that work goes on that has no measure of progress."""
     columns = SpinnerColumn(), TextColumn(what, markup=False), TimeElapsedColumn()
-    with bars(console, *columns) as shown:
+    with bars(console, *columns) as shown, _said_after_a_while(what, console):
         shown.add_task("", total=None)
         yield
 
@@ -69,7 +97,8 @@ def count(total: int, what: str, console: Console) -> Iterator[Callable[[int, in
     """Show how many of many small pieces are done."""
     lines = Lines(console)
     columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), WORDS
-    with bars(console, *columns) as shown:
+    working_on = f"working on {total} {what}"
+    with bars(console, *columns) as shown, _said_after_a_while(working_on, console):
         task = shown.add_task(what, total=total)
 
         def report(done: int, total: int) -> None:

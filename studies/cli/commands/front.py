@@ -16,6 +16,7 @@ from quietarm.studies.cli.options import (
     SOLVER,
     STARTS,
     TASK,
+    YES,
     busy,
     command,
     counting,
@@ -47,7 +48,7 @@ _CHECKED = 7
     option("--weights", type=Parsed("weights", parse_weights), multiple=True, metavar="R:E",
            help="weighted: weights of residual and energy, scaled to the ends of the front, as "
            "1:3; in place of --points."),
-    STARTS, SEED, SOLVER,
+    STARTS, SEED, SOLVER, YES,
     option("--check", is_flag=True, help="Solve seven points by the other solver as well, from the "
            "plain cycloid, and say by how much the two differ."),
     option("--polish", type=INPUT, metavar="FILE", help="Improve the points of this front, by any "
@@ -74,9 +75,10 @@ def front(given: Given) -> None:
         given.refuse(["points"], "is for weights that are chosen by the method")
         wanted = "weights"
     task, total = given.read_task(), len(given.weights) or given.points
+    profile = given.read_profile(task)
     with counting(total, wanted) as report:
         found = _METHODS[given.method](
-            task, profile=given.read_profile(task), report=report, **given.pick(wanted), **asked
+            task, profile=profile, report=report, **given.pick(wanted), **asked
         )
     # the ends come with weights, and epsilon has residuals of its own
     asked_for = max(total + 2 * bool(given.weights), len(found.points) + len(found.failures))

@@ -17,6 +17,7 @@ from quietarm.studies.cli.options import (
     SOLVER,
     STARTS,
     TASK,
+    YES,
     busy,
     command,
     option,
@@ -46,7 +47,7 @@ _OF_SOLVERS = ("starts", "seed")
     BOUND, RESIDUAL_LIMIT, STARTS, SEED, SOLVER,
     option("--from", "dataset", type=INPUT, help="Take the move from this dataset of quietarm "
            "sweep, between its cells, without solving."),
-    SENSITIVITIES,
+    SENSITIVITIES, YES,
     output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"}),
 )  # fmt: skip
 def plan(given: Given) -> None:
