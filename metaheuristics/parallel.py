@@ -132,6 +132,13 @@ class _Patience:
             raise LostWorkersError(f"all workers of the scheduler at {self._scheduler} are gone")
 
 
+def scheduler_address(text: str) -> str:
+    """The address of a dask scheduler; ValueError where there is none."""
+    if not text.strip():
+        raise ValueError("the scheduler's address is empty; give one, as tcp://host:8786")
+    return text
+
+
 def _threads_of(scheduler: str) -> int:
     """How many threads the workers of a scheduler have; any error where it does not answer."""
     from distributed.core import rpc
@@ -159,6 +166,7 @@ def _connect(scheduler: str) -> Iterator[Any]:
         from distributed.comm.addressing import get_address_host_port
     except ImportError:
         raise ValueError(f"a scheduler needs dask; {install('cluster')}") from None
+    scheduler_address(scheduler)
     # what a user has to know is said here
     logging.getLogger("distributed").setLevel(logging.CRITICAL + 1)
     try:

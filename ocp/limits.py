@@ -228,6 +228,11 @@ class Limit:
         return self.quantity.name
 
     @property
+    def label(self) -> str:
+        """What messages call it: as its option, torque-speed, or the quantity."""
+        return self.name.replace("_", "-")
+
+    @property
     def both_ways(self) -> bool:
         """Whether it is the same in both directions."""
         return self.lower == -self.upper
@@ -281,7 +286,8 @@ class Limit:
         """A peak in words: in its unit, or where no single number tells, in times of the limit."""
         if self.is_peak:
             return f"{peak:.4g} {self.quantity.unit}"
-        return f"{peak / self.size:.4g} times that"
+        whole = "the line" if self.name == TORQUE_SPEED else "that"
+        return f"{peak / self.size:.4g} times {whole}"
 
     @property
     def bounds(self) -> str:
@@ -292,4 +298,4 @@ class Limit:
         return f"{ends} {self.quantity.unit}"
 
     def __str__(self) -> str:
-        return f"{self.name} {self.bounds}"
+        return f"{self.label} {self.bounds}"

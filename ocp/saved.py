@@ -7,6 +7,7 @@ import hashlib
 import json
 from codecs import BOM_UTF8
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from enum import Enum
 from html import escape
 from importlib import import_module
@@ -42,6 +43,8 @@ PLANT_FILE = "plant_file"
 """Entry of a plant: the file it was loaded from."""
 CHECKSUM = "checksum"
 """Entry of an answer's file: a digest of all the others."""
+_NO_NUMBERS = ("NaN", "Infinity", "-Infinity")
+"""What Python's json writes of numbers that are none; JSON has no such words."""
 _SHOWN = 12
 """Digits of a digest that a message shows."""
 
@@ -177,10 +180,28 @@ def _document_of(path: str | Path, name: str) -> Any:
     try:
         return msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        if odd := _no_json_number(path):
+            raise FileFormatError(
+                f"{path} is not a valid {name}: {odd}, which is no number of JSON; write the "
+                f"{name} again"
+            ) from None
         raise FileFormatError(
             f"{path} is not a {name}: it is not whole, valid JSON in UTF-8 ({error}); "
             f"write the {name} again, or save it so"
         ) from None
+
+
+def _no_json_number(path: str | Path) -> str:
+    """The first entry of a file that is NaN or infinite, as Python writes them; empty if none."""
+    odd: list[str] = []
+
+    def take(pairs: list[tuple[str, Any]]) -> None:
+        odd.extend(f"{name} is {entry}" for name, entry in pairs if entry in _NO_NUMBERS)
+
+    with suppress(ValueError, RecursionError):
+        text = read_bytes(path).removeprefix(BOM_UTF8).decode()
+        json.loads(text, parse_constant=str, object_pairs_hook=take)
+    return odd[0] if odd else ""
 
 
 def keeps_checksum(path: str | Path, name: str) -> bool | None:

@@ -1,8 +1,10 @@
 """Every public function that takes a task, profile, plant, front or the like says what to give."""
 
+import dataclasses
 import inspect
 import re
 
+import numpy as np
 import pytest
 
 import quietarm as qa
@@ -191,3 +193,95 @@ def test_an_energy_adds_to_energies_alone():
 def test_an_argument_that_is_not_known_is_pythons_own_error(right):
     with pytest.raises(TypeError, match=r"plan_move.* got an unexpected keyword argument 'terms'"):
         qa.plan_move(right["task"], terms=6)
+
+
+NUMBERS = {
+    "bound": (qa.plan_move, qa.epsilon_front, qa.weighted_front, qa.search, qa.MoveFunction),
+    "residual_limit": (qa.plan_move,),
+    "starts": (qa.plan_move, qa.epsilon_front, qa.energy_floor),
+    "seed": (qa.plan_move, qa.epsilon_front, qa.search),
+    "steps": (qa.plan_move, qa.MoveFunction),
+    "points": (qa.epsilon_front, qa.weighted_front),
+}
+
+
+@pytest.mark.parametrize("value", ["0.2", True, False, np.True_])
+@pytest.mark.parametrize(
+    ("function", "name"),
+    [(function, name) for name, functions in NUMBERS.items() for function in functions],
+)
+def test_text_and_truth_values_are_no_numbers(right, function, name, value):
+    settings = {"profile": qa.CycloidPolynomial(2), "bound": 0.2, name: value}
+    known = inspect.signature(function).parameters
+    with pytest.raises(ValueError, match=r" is .*; give a (whole )?number"):
+        function(right["task"], **{key: settings[key] for key in settings if key in known})
+
+
+TASK_NUMBERS = [
+    entry.name
+    for entry in dataclasses.fields(qa.PointToPoint)
+    if entry.name in ("start", "target", "duration", "residual_window") or "_limit" in entry.name
+]
+
+
+@pytest.mark.parametrize("value", ["0.8", True])
+@pytest.mark.parametrize("name", TASK_NUMBERS)
+def test_so_is_no_entry_of_a_task(name, value):
+    move = {"target": 0.5, "duration": 0.8, name: value}
+    with pytest.raises(ValueError, match=f"is {value!r}; give a number"):
+        qa.PointToPoint(qa.SingleLinkManipulator(), **move)
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: qa.deg("30"), "degrees are '30'; give a number, as deg(30)"),
+        (lambda: qa.JointSpline(25), "knots is 25; give a list of fractions, as [0.3, 0.7]"),
+        (lambda: qa.CycloidSpline(True), "terms is True; give a whole number"),
+        (lambda: qa.Line(3, "x"), "plan is 3; give a plan, as Plan.load('plan.json')"),
+        (lambda: qa.Uncertainty({"frequency": "0.1"}), "is '0.1'; give a number"),
+        (lambda: qa.CopperLoss("0.1"), "motor constant is '0.1'; give a number"),
+        (lambda: qa.ModalState(["0.1"], [0]), "is '0.1'; give a number"),
+        (lambda: qa.load_plant_file(3), "path is 3; give the name of a Python file"),
+    ],
+)
+def test_what_is_made_of_something_else_says_what_to_give(make, told):
+    with pytest.raises((TypeError, ValueError), match=re.escape(told)):
+        make()
+
+
+@pytest.mark.parametrize("kind", [qa.Plan, qa.Front, qa.Floor])
+@pytest.mark.parametrize("path", [3, None, ["plan.json"]])
+def test_a_file_has_a_name(right, kind, path):
+    with pytest.raises(TypeError, match=r"; give the name of a file, as 'plan\.json'"):
+        kind.load(path)
+    plan = qa.evaluate_coefficients(right["task"], [0.1])
+    for save in (plan.save, plan.save_csv):
+        with pytest.raises(TypeError, match=r"; give the name of a file, as 'plan\.json'"):
+            save(path)
+
+
+def test_a_plan_in_a_list_is_named_as_short_as_a_line(right):
+    plan = qa.evaluate_coefficients(right["task"], [0.1])
+    told = "motion 1 is an object of Plan; give a line, as Line(plan, 'plan')"
+    with pytest.raises(TypeError, match=re.escape(told)):
+        qa.motion_figure([plan])
+
+
+@pytest.mark.parametrize("coefficients", [["0.1"], [True], "ab"])
+def test_coefficients_are_numbers(right, coefficients):
+    with pytest.raises(ValueError, match="; give 1 number"):
+        qa.evaluate_coefficients(right["task"], coefficients)
+
+
+def test_a_notebook_shows_what_a_robust_plan_is_worth():
+    task = qa.PointToPoint(
+        qa.SingleLinkManipulator(), 0.5236, 0.8, torque_limit=0.5,
+        torque_speed=[(1.5, 0), (0.8, 20)], uncertainty=qa.Uncertainty({"frequency": 0.08}),
+    )  # fmt: skip
+    plan = qa.evaluate_coefficients(task, [0.01])
+    shown = plan._repr_html_()
+    assert "<td>parameter errors</td><td>frequency +-8 %</td>" in shown
+    worst = f"{plan.worst.residual:.3g} m with frequency "
+    assert f"<td>worst-case residual</td><td>{worst}" in shown
+    assert "<td>limits</td><td>torque 0.5 N m, torque-speed 1.5Nm@0,0.8Nm@20</td>" in shown

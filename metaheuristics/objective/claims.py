@@ -69,7 +69,7 @@ def _check_points(front: Front, table: NDArray[np.float64]) -> None:
         for limit, passed in zip(limits, violations):
             if not passed <= OVERRUN:
                 raise ValueError(
-                    f"{which} breaks the {limit.name} limit of {limit.bounds}: its coefficients "
+                    f"{which} breaks the {limit.label} limit of {limit.bounds}: its coefficients "
                     f"give {limit.describe(limit.size * (1 + passed))}"
                 )
 

@@ -148,7 +148,7 @@ def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.
         )
     try:
         given = np.asarray(coefficients)
-        if given.dtype.kind not in "biufO":
+        if given.dtype.kind not in "iufO":
             raise TypeError
         table = given.astype(float)
     except (TypeError, ValueError, OverflowError):

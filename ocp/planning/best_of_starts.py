@@ -230,12 +230,12 @@ def unmet(
             ended = f"{ended.partition(';')[0]}; {otherwise}"
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
     asked = ", ".join(
-        f"{one.name} {'<=' if one.is_peak else 'within'} {one.bounds}"
+        f"{one.label} {'<=' if one.is_peak else 'within'} {one.bounds}"
         for one in limits
         if one.size < np.inf
     )
     remedies = [
-        f"{one.name} limit {one.describe(least[one.name] * _ROOM)}"
+        f"{one.label} limit {one.describe(least[one.name] * _ROOM)}"
         for one in limits
         if one.name in least and not one.keeps(least[one.name], at_rest=STILL)
     ]

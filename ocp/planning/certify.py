@@ -367,7 +367,7 @@ def excess_error(
         peak = limit.peak_of(motion)
         if not limit.keeps(peak, OVERRUN, still):
             return SolverFailedError(
-                f"the verified {limit.name} is {limit.describe(peak)}, above its limit of "
+                f"the verified {limit.label} is {limit.describe(peak)}, above its limit of "
                 f"{limit.bounds}: {remedy}"
             )
     return None

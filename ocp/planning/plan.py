@@ -151,6 +151,8 @@ class Plan(MotionAnswer):
             "move": f"{task.start:.4g} to {task.target:.4g} rad in {task.duration:.4g} s",
             "energy F2": f"{motion.energy:.5g} J",
             f"residual vibration F1 within {task.residual_window:.4g} s": residual,
+            **self._robust_rows(),
+            "limits": ", ".join(map(str, task.limits)) or "-",
             "peak torque": f"{motion.peak_torque:.4g} N m",
             "peak speed": f"{motion.peak_speed:.4g} rad/s",
             "peak acceleration": f"{motion.peak_acceleration:.4g} rad/s\u00b2",
@@ -160,6 +162,21 @@ class Plan(MotionAnswer):
         }
         joint = task.plant.joint
         return to_html((name, joint_unit(words, joint)) for name, words in rows.items())
+
+    def _robust_rows(self) -> dict[str, str]:
+        """What a notebook shows of parameter errors: their ranges, and the worst case."""
+        rows, unit = dict[str, str](), self.task.plant.tip_unit
+        if ranges := self.task.ranges:
+            words = (f"{name} +-{100 * size:.3g} %" for name, size in ranges.items())
+            rows["parameter errors"] = ", ".join(words)
+        if self.worst is not None:
+            errors = (f"{name} {100 * size:+.3g} %" for name, size in self.worst.errors.items())
+            rows["worst-case residual"] = (
+                f"{self.worst.residual:.3g} {unit} with {', '.join(errors)}"
+            )
+        if self.residual_limit:
+            rows["residual limit"] = f"{self.residual_limit:.3g} {unit}"
+        return rows
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
         """Write the move as a table to drive a joint with, so many rows a second [Hz].
@@ -241,7 +258,7 @@ def only_motion(
         residual = Limit.of_residual(max(residual_limit, STILL), task.plant.tip_unit)
         limits = {residual.name: residual} | limits
     broken = [
-        f"its {name} reaches {limits[name].describe(limits[name].peak_of(plan.motion))}, above "
+        f"its {limits[name].label} reaches {limits[name].describe(limits[name].peak_of(plan.motion))}, above "
         f"{limits[name].bounds}"
         for name in plan.motion.exceeded(limits.values(), OVERRUN)
     ]

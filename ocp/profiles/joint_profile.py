@@ -194,6 +194,8 @@ class JointProfile(ABC):
             )
         counted = f"{self.size} number{'s' if self.size != 1 else ''}"
         try:
+            if np.asarray(coefficients).dtype.kind in "USb":  # text and truth values
+                raise TypeError
             values = np.atleast_1d(np.asarray(coefficients, dtype=float))
         except (TypeError, ValueError):
             raise ValueError(

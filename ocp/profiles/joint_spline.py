@@ -55,7 +55,8 @@ class JointSpline(JointProfile):
 
     def __post_init__(self) -> None:
         knots = tuple(
-            finite("knot", knot) for knot in several("knots", self.knots, "fractions, as [0.3, 0.7]")
+            finite("knot", knot)
+            for knot in several("knots", self.knots, "fractions, as [0.3, 0.7]")
         )
         if not 1 <= len(knots) <= MOST_KNOTS:
             raise ValueError(f"got {len(knots)} knots; give 1 to {MOST_KNOTS}")

@@ -77,11 +77,12 @@ def judge(
     """
     candidate = moved if isinstance(moved, Candidate) else moved.candidate
     nominal = Candidate(task.certain, candidate.path)
+    exceeded = nominal.motion.exceeded(task.limits, OVERRUN)
     own = Judged(
         name,
         nominal.motion,
         float(task.residual_window),
-        exceeded=tuple(nominal.motion.exceeded(task.limits, OVERRUN)),
+        exceeded=tuple(limit.label for limit in task.limits if limit.name in exceeded),
     )
     if isinstance(moved, Plan):
         uncertain = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)

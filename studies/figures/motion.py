@@ -70,6 +70,9 @@ class Line:
     colour: str = ""
     style: Dash = "-"
 
+    def __post_init__(self) -> None:
+        instance("plan", self.plan, Plan, Floor)
+
 
 Motions = Sequence[Line] | Plan | Floor
 

@@ -124,7 +124,7 @@ def _why_none(rows: Array, failed: NDArray[np.bool_], violations: Array, task: P
     limit = task.limits[int(passed.argmax())]
     reached = limit.describe((1 + passed.max()) * limit.size)
     return (
-        f"{none}the {limit.name} of the one that keeps the limits best is {reached}, above "
+        f"{none}the {limit.label} of the one that keeps the limits best is {reached}, above "
         f"{limit.bounds}; widen that limit, or give a longer duration"
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from codecs import BOM_UTF8
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -17,9 +18,13 @@ from quietarm.ocp.saved import keeps_checksum
 def format_of(path: Path) -> str:
     """The format that a file states; empty where it states none, for its reader to refuse."""
     # a file that cannot be read, is no JSON, or is nested too deep
-    with suppress(FileFormatError, msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+    with suppress(FileFormatError, ValueError, RecursionError):
         content = read_bytes(path).removeprefix(BOM_UTF8)
-        return msgspec.json.decode(content, type=_Format).format
+        with suppress(msgspec.DecodeError):
+            return msgspec.json.decode(content, type=_Format).format
+        document = json.loads(content)  # with NaN, as Python writes it
+        stated = document.get("format") if isinstance(document, dict) else ""
+        return stated if isinstance(stated, str) else ""
     return ""
 
 
@@ -44,21 +49,29 @@ def load_front(path: Path) -> Front:
     return front
 
 
-def load_runs(paths: Sequence[Path]) -> dict[Path, Front]:
+def load_runs(paths: Sequence[Path]) -> tuple[dict[Path, Front], list[str]]:
     """Recorded runs, of files or of all files of folders, after their motions were evaluated again.
 
-    Unlike a front, a run may have found nothing.
+    And words on files of a folder that are no runs, or damaged. Unlike a front, a run may have
+    found nothing.
     """
     inside = [sorted(path.rglob("*.json")) if path.is_dir() else [path] for path in paths]
     files = [file for own in inside for file in own]
     for file in files:
         if files.count(file) > 1:
             raise ValueError(f"the run {file} is given twice; give it once")
-    runs = {file: Front.load(file) for file in files}
+    runs, left_out = dict[Path, Front](), list[str]()
+    for file in files:
+        try:
+            runs[file] = Front.load(file)
+        except FileFormatError as error:
+            if file in paths:  # asked for by its own name
+                raise
+            left_out.append(f"{error}: left out")
     for file, run in runs.items():
         check_figures(run, str(file))
         _refuse_changed(file, Front)
-    return runs
+    return runs, left_out
 
 
 def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:

@@ -36,6 +36,9 @@ _LONGEST_NAME = 100
 """Letters of a column's heading: more are no name, and would fill every message."""
 _MOST_ROWS, _MOST_COLUMNS, _MOST_OF_ARRAY = 2_000_000, 1000, 10_000
 """Rows and columns of a text, and columns of an array, which may be a long row."""
+_LONGEST_LINE = 200_000
+"""Bytes of a text's line: two hundred for each of the most columns. What no column can be is not
+looked at letter by letter."""
 _CALLED = {
     "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds", "millis", "micros"},
     "angle": {"angle", "theta", "position", "q"},
@@ -229,9 +232,15 @@ def _refuse_huge(content: bytes) -> None:
     rows = max(content.count(b"\n"), content.count(b"\r"))
     if rows > _MOST_ROWS:
         raise FileFormatError(f"it has {rows} rows; give at most {_MOST_ROWS}")
-    for line in re.findall(rb"[^\r\n]{%d,}" % (2 * _MOST_COLUMNS), content):
+    for match in re.finditer(rb"[^\r\n]{%d,}" % (2 * _MOST_COLUMNS), content):
+        line = match[0]
         columns = 1 + max(line.count(b","), line.count(b";"), line.count(b"\t"))
         _refuse_wide(max(columns, len(line.split())), _MOST_COLUMNS)
+        if len(line) > _LONGEST_LINE:
+            number = content.count(b"\n", 0, match.start()) + 1
+            raise FileFormatError(
+                f"line {number} has {len(line)} letters; give at most {_LONGEST_LINE} in a line"
+            )
 
 
 def _refuse_wide(columns: int, most: int) -> None:

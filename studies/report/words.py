@@ -126,4 +126,4 @@ def title_of(task: PointToPoint) -> str:
 
 def limit_words(task: PointToPoint) -> list[str]:
     """The limits of a task, as "acceleration within 40 rad/s^2"."""
-    return [f"{one.name} within {one.bounds}" for one in task.limits]
+    return [f"{one.label} within {one.bounds}" for one in task.limits]

@@ -149,6 +149,7 @@ def plan_from(path: str | Path, **at: float) -> tuple[Plan, Between, InfeasibleT
     """
     library = MoveLibrary(path)
     plan, between = library.plan(**at), library.between()
-    broken = " and ".join(plan.motion.exceeded(plan.task.limits, OVERRUN))
+    exceeded = plan.motion.exceeded(plan.task.limits, OVERRUN)
+    broken = " and ".join(limit.label for limit in plan.task.limits if limit.name in exceeded)
     words = f"between the cells the move breaks its limit of {broken}; {between.remedy}"
     return plan, between, InfeasibleTaskError(words) if broken else None

@@ -245,7 +245,9 @@ def _open(path: Path) -> xarray.Dataset:
         raise FileFormatError(f"{path} is no dataset of a sweep; give another name")
     _read_descriptions(path)
     with _damage_told(path), warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of what was changed, which `Store` finds and tells in a line
+        warnings.simplefilter(
+            "ignore"
+        )  # of what was changed, which `Store` finds and tells in a line
         return xr.open_dataset(path, engine="zarr", consolidated=False, cache=False)
 
 

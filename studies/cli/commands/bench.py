@@ -79,13 +79,16 @@ def bench(given: Given) -> None:
     jobs, left_out = jobs_of(problems, *asked)
     candidates = sum(job.budget or 0 for job in jobs)
     given.refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE)
-    imported, not_imported = imports_on(problems, load_runs(given.imported), given.imported)
+    runs, unreadable = load_runs(given.imported)
+    imported, not_imported = imports_on(problems, runs, given.imported)
     reported_runs(given.output)  # refuses a folder whose runs.csv is another's
     planned = [(job.problem.name, job.label) for job in jobs]
     planned += [(run.problem.name, run.method) for run in imported_runs(imported, jobs)]
     kept = len(finished_jobs(jobs, given.output))  # refuses a changed file before anything is done
     there = [f"{kept} of {len(jobs)} runs are in {given.output}"] if kept else []
-    print_lines(progress_console(), *left_out, *not_imported, say_power_of(planned), *there)
+    print_lines(
+        progress_console(), *left_out, *unreadable, *not_imported, say_power_of(planned), *there
+    )
     write_references(problems, given.output)
     trouble = None
     with counting(len(jobs), "jobs") as progress:

@@ -1,5 +1,6 @@
 """A bench: its measures against moocore, imported runs, and its report."""
 
+import re
 import time
 from contextlib import nullcontext
 from dataclasses import replace
@@ -223,3 +224,30 @@ def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
     table = problem_table(results, NAME)
     assert table["missing [%]"].is_monotonic_increasing
     assert table["method"].iloc[-1] == "random search"
+
+
+def test_a_folder_of_runs_with_a_broken_file_imports_the_rest_and_names_it(call, tmp_path):
+    recorded = qa.problem_of(NAME).recorded()
+    recorded(np.random.default_rng(0).uniform(recorded.lower, recorded.upper, (50, 2)))
+    runs = tmp_path / "runs"
+    runs.mkdir()
+    recorded.save(runs / "0.json", "my tool", 0)
+    (runs / "broken.json").write_text('{"format": "quietarm-fr')
+    (runs / "other.json").write_text("[1, 2]")
+    line = f"bench {NAME} --methods random --runs 2 --evaluations 100 --output {tmp_path / 'out'}"
+    code, out, err = call(f"{line} --import {runs}")
+    assert (code, "my tool" in out) == (0, True)
+    assert re.search(r"broken.json is not a front: it is not whole, .*: left out\n", err)
+    assert "other.json is not a front: its format is None; give a front file: left out" in err
+    code, _, err = call(f"{line}2 --import {runs / 'broken.json'}")  # by its own name
+    assert (code, err.count("\n")) == (2, 1)
+    assert not (tmp_path / "out2").exists()
+
+
+def test_a_scheduler_without_an_address_is_told_what_to_give(call, tmp_path):
+    for address in ("", " "):
+        line = ["bench", NAME, "--output", str(tmp_path / "out"), "--scheduler", address]
+        code, _, err = call(line)
+        assert (code, err.count("\n")) == (2, 1)
+        assert "the scheduler's address is empty; give one, as tcp://host:8786" in err
+    assert not (tmp_path / "out").exists()

@@ -20,6 +20,9 @@ TEXTS = {
     "many.csv": "1,2\n" * 2_100_000,
     "deep.json": "[" * DEEP + "]" * DEEP,
     "deeper.json": '{"format": "quietarm-plan", "x": ' + '{"a":' * DEEP + "1" + "}" * (DEEP + 1),
+    "long.csv": f"{ROWS}\n{'1' * 20_000_000}\n",
+    "nan.json": '{"format": "quietarm-plan", "version": 4, "motion": {"energy": NaN}}',
+    "infinite.json": '{"format": "quietarm-front", "points": [{"residual": -Infinity}]}',
     "name.csv": "n" * DEEP + f",tip\n{ROWS}\n",
     "colour.csv": f"\x1b[31mred\x1b]0;title\x07\x9b2J\u202e,tip\n{ROWS}\n",
     "huge.py": "#" * 1_000_001,
@@ -89,6 +92,10 @@ def test_what_asks_for_too_much_is_refused_with_the_bound(call, files):
         f"{TABLE} liar.npy": "it is no whole .npy file of numbers",
         f"{TABLE} huge.csv": "huge.csv has 100000 MB; give at most 100 MB",
         "identify bomb.npz flexible-beam --tip x": "its arrays take 120 MB; give at most 100 MB",
+        f"{TABLE} long.csv": "line 10 has 20000000 letters; give at most 200000 in a line",
+        "compare nan.json": "nan.json is not a valid plan: energy is NaN, which is no number",
+        "export nan.json --output a.csv": "is not a valid plan: energy is NaN, which is no number",
+        "compare infinite.json": "is not a valid front: residual is -Infinity, which is no num",
         "compare huge.json": "huge.json has 100000 MB; give at most 100 MB",
         "compare deep.json": "it is not whole, valid JSON in UTF-8",
         "compare deeper.json": "it is not whole, valid JSON in UTF-8",
@@ -147,6 +154,24 @@ def test_a_profile_of_many_coefficients_says_that_it_takes_minutes(call):
     assert call(line)[0] == 2  # sweep has no starts
     _, _, err = call(f"plan {MOVE} --profile network --terms 30 --bound -1")
     assert err.startswith("91 coefficients: a plan takes minutes; with fewer --terms seconds\n")
+
+
+@pytest.mark.parametrize(
+    ("line", "solves"),
+    [
+        ("plan --profile network --terms 30 --starts 10000", 10_000),
+        ("plan --profile gaussians --terms 32 --starts 9999", 9999),
+        ("front --points 10000 --starts 10000", 100_000_000),
+        ("front --profile spline --terms 32 --points 10000", 40_000),
+        ("front --profile network --terms 20 --points 500", 2000),
+    ],
+)
+def test_endless_solves_are_refused_with_their_number(call, line, solves):
+    command, _, rest = line.partition(" ")
+    status, out, err = call(f"{command} {MOVE} {rest}")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert f"{solves} solves take some " in err
+    assert " hours on a core; give fewer, or --yes" in err
 
 
 SOUND = matlab(t=np.arange(50) / 50.0, tip=np.sin(np.arange(50.0)), s={"a": [1.0, 2.0]}, name="x")
