@@ -258,8 +258,8 @@ def only_motion(
         residual = Limit.of_residual(max(residual_limit, STILL), task.plant.tip_unit)
         limits = {residual.name: residual} | limits
     broken = [
-        f"its {limits[name].label} reaches {limits[name].describe(limits[name].peak_of(plan.motion))}, above "
-        f"{limits[name].bounds}"
+        f"its {limits[name].label} reaches "
+        f"{limits[name].describe(limits[name].peak_of(plan.motion))}, above {limits[name].bounds}"
         for name in plan.motion.exceeded(limits.values(), OVERRUN)
     ]
     if broken:
