@@ -155,7 +155,8 @@ WORKERS = option("--workers", type=Parsed("number", parse_workers), default="1",
 YES = option("--yes", is_flag=True, help="Begin what takes a core more than ten hours.")
 SCHEDULER = option("--scheduler", metavar="ADDRESS",
                    type=Parsed("address", scheduler_address),
-                   help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.")  # fmt: skip
+                   help="Let the workers of this dask scheduler share the work, as in "
+                   "tcp://host:8786.")  # fmt: skip
 PART = option("--part", type=Parsed("i/n", parse_share_of_work), default="1/1",
               help="Do every n-th piece alone, as 2/8 in a queue's array job.")  # fmt: skip
 
