@@ -230,6 +230,8 @@ def _title(one: Structure, same: bool, room: int) -> list[str]:
     """The lines above a panel."""
     plan, task = one.line.plan, one.line.plan.task
     residual = residual_words(plan.residual, task.plant.tip_unit)
+    if residual == "rest":
+        residual = "at rest"
     lines = [
         f"{one.line.label}, {one.scale_words}",
         *([] if same else [f"{moved(task)}, {move_of(task)}"]),
