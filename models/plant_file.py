@@ -6,8 +6,9 @@ import copyreg
 import hashlib
 import sys
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from inspect import isabstract
 from pathlib import Path
 from types import ModuleType
@@ -35,6 +36,8 @@ _file_of: dict[type[Plant], PlantFile] = {}
 
 def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
     """Run a Python file that you trust, and make its plants known by name.
+
+    Profiles and energies that stand beside them are known as well.
 
     Parameters
     ----------
@@ -85,8 +88,24 @@ def _plants_of(file: PlantFile) -> Mapping[str, type[Plant]]:
     for plant in plants.values():
         copyreg.pickle(plant, _to_other_process)  # which could not import it by name
         _file_of[plant] = file  # by the name that it was given last
+    for kind in _classes_beside(plants):
+        copyreg.pickle(kind, partial(_value_to_other_process, file))
     Plant._known.update(plants)
     return plants
+
+
+def _classes_beside(plants: Mapping[str, type[Plant]]) -> Iterator[type[object]]:
+    """What else the file of these plants defines, as profiles and energies."""
+    module = _module_of(plants)
+    for kind in vars(module).values():
+        defined_there = isinstance(kind, type) and kind.__module__ == module.__name__
+        if defined_there and not issubclass(kind, Plant):
+            yield kind
+
+
+def _module_of(plants: Mapping[str, type[Plant]]) -> ModuleType:
+    """The module of the file that these plants are of."""
+    return sys.modules[next(iter(plants.values())).__module__]
 
 
 def _run(file: PlantFile) -> dict[str, type[Plant]]:
@@ -128,3 +147,16 @@ def _to_other_process(plant: Plant) -> tuple[Callable[..., Plant], tuple[object,
 
 def _from_other_process(file: PlantFile, name: str, parameters: Mapping[str, float]) -> Plant:
     return _plants_of(file)[name](**parameters)
+
+
+def _value_to_other_process(
+    file: PlantFile, value: object
+) -> tuple[Callable[..., object], tuple[object, ...]]:
+    return _value_from_other_process, (file, type(value).__name__, vars(value))
+
+
+def _value_from_other_process(file: PlantFile, kind: str, entries: Mapping[str, object]) -> object:
+    value_class = vars(_module_of(_plants_of(file)))[kind]
+    value = object.__new__(value_class)
+    vars(value).update(entries)
+    return value

@@ -33,7 +33,6 @@ from .planning.plan import Plan as Plan
 from .planning.plan import evaluate_coefficients as evaluate_coefficients
 from .planning.plan_move import plan_move as plan_move
 from .planning.shaper import shaped_cycloid as shaped_cycloid
-from .profiles.cycloid import MAX_TERMS as MAX_TERMS
 from .profiles.cycloid import CycloidPolynomial as CycloidPolynomial
 from .profiles.cycloid import CycloidSpline as CycloidSpline
 from .profiles.joint_profile import JointPath as JointPath
@@ -42,6 +41,8 @@ from .profiles.joint_spline import JointSpline as JointSpline
 from .profiles.networks import CycloidGaussians as CycloidGaussians
 from .profiles.networks import CycloidNetwork as CycloidNetwork
 from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
+from .profiles.term_profile import MAX_TERMS as MAX_TERMS
+from .profiles.term_profile import TermProfile as TermProfile
 from .record import Record as Record
 from .record import SolveSettings as SolveSettings
 from .record import Verification as Verification

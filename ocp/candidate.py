@@ -19,8 +19,9 @@ from quietarm.models import JointMotion
 from quietarm.ocp.checks import takes
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, Ranged
+from quietarm.ocp.profiles.check_profile import check_motion, check_profile
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
-from quietarm.ocp.profiles.joint_profile import JointProfile, check_motion, check_profile
+from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.grid import Grid

@@ -10,20 +10,18 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from enum import Enum
 from html import escape
-from importlib import import_module
 from pathlib import Path
-from pkgutil import iter_modules
 from typing import Any, ClassVar, Self, TypeVar
 
 import msgspec
 import numpy as np
 from quietarm.models import Plant, file_of_plant, known_plants
-from quietarm.ocp import profiles
 from quietarm.ocp.checks import known
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.errors import FileFormatError
 from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.term_profile import import_profiles
 from quietarm.ocp.record import Record
 from quietarm.ocp.simulation.objective import Motion
 
@@ -79,8 +77,7 @@ def _known_of(family: type[Any]) -> Mapping[str, type[Any]]:
     if family is Plant:
         return known_plants()
     if family is JointProfile:
-        for module in iter_modules(profiles.__path__):
-            import_module(f"{profiles.__name__}.{module.name}")
+        import_profiles()
     return known(family)
 
 

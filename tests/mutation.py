@@ -52,6 +52,8 @@ TESTS = {
     "ocp/simulation/collocation.py": [*QUICK, *SLOW, "studies/identify/test_identify.py"],
     "ocp/simulation/objective.py": [*QUICK, "ocp/test_candidate.py", "ocp/test_energies.py", *SLOW],
     "ocp/profiles/joint_profile.py": ["ocp/profiles", *QUICK],
+    "ocp/profiles/check_profile.py": ["ocp/profiles"],
+    "ocp/profiles/differentiate.py": ["ocp/profiles", *QUICK],
     "ocp/profiles/cycloid.py": [
         "ocp/profiles/test_polynomial.py",
         "ocp/profiles/test_shaped_inputs.py",

@@ -10,7 +10,7 @@ from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.checks import takes, whole
 from quietarm.ocp.front.points import table_of
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
-from quietarm.ocp.profiles.joint_profile import check_profile
+from quietarm.ocp.profiles.check_profile import check_profile
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Batch, batch

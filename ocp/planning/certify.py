@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.limits import QUANTITIES, Limit, Quantity, Ranged
-from quietarm.ocp.profiles.joint_profile import check_motion
+from quietarm.ocp.profiles.check_profile import check_motion
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Batch, Values, batch

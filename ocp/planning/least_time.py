@@ -140,7 +140,7 @@ def _knots_at(motion: RigidMotion) -> tuple[float, ...]:
 def _knots_along(profile: JointSpline, coefficients: Array) -> tuple[float, ...]:
     """Knots where the acceleration of a motion changes."""
     fractions = np.linspace(0.0, 1.0, _SAMPLES)
-    *_, acceleration = profile.inner(coefficients.tolist(), fractions)
+    *_, acceleration = profile.derivatives(coefficients.tolist(), fractions)
     changes = np.abs(np.diff(acceleration, prepend=acceleration[0]))
     return _knots_by(fractions, np.cumsum(changes))
 

@@ -42,18 +42,18 @@ def b_splines(knots: Sequence[float], degree: int, at: Expression) -> list[Expre
         pairs = list(zip(knots, knots[d:]))
         shares = [_share(at, *pair) for pair in pairs]
         row = [
-            _blend(left, shares[i], right, shares[i + 1])
-            for i, (left, right) in enumerate(pairwise(row))
+            _blend(before, shares[i], after, shares[i + 1])
+            for i, (before, after) in enumerate(pairwise(row))
         ]
     return row
 
 
 def _blend(
-    left: Expression, share: Expression, right: Expression, share_of_next: Expression
+    before: Expression, share: Expression, after: Expression, share_of_next: Expression
 ) -> Expression:
     """One step of the recursion; B-splines that are nothing anywhere cost nothing."""
-    rising = 0.0 if is_zero(left) else left * share
-    falling = 0.0 if is_zero(right) else right * (1 - share_of_next)
+    rising = 0.0 if is_zero(before) else before * share
+    falling = 0.0 if is_zero(after) else after * (1 - share_of_next)
     if is_zero(rising):
         return falling
     return rising if is_zero(falling) else rising + falling

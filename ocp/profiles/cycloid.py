@@ -5,81 +5,53 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import casadi as ca
 from quietarm.models import Expression, JointMotion
-from quietarm.ocp.checks import whole
 from quietarm.ocp.profiles.b_splines import spline
+from quietarm.ocp.profiles.differentiate import Derivatives, differentiate
 from quietarm.ocp.profiles.joint_profile import JointProfile, Values
-
-Input = tuple[Expression, Expression, Expression]
-"""U, and its first two derivatives by the fraction of the duration."""
-
-MAX_TERMS, MAX_POWERS = 32, 28
-"""Most terms, and of a polynomial: the condition number of the powers of T on [-1, 1] grows like
-(1 + sqrt 2)^N, and with 29 and more (5e10) some plans of the paper's plate end nowhere."""
-
-DEGREE = 5
-"""With a cubic, fixed steps miss the residual of a move at rest by 1e-5 m where pieces meet."""
+from quietarm.ocp.profiles.term_profile import TermProfile
 
 
-@dataclass(frozen=True)
 class Cycloid(JointProfile):
-    """A cycloid whose input U goes from 0 to 1: the joint is at rest at both ends, eq (5)."""
+    """A cycloid whose input U goes from 0 to 1: the joint is at rest at both ends, eq (5).
 
-    term: ClassVar[str] = "term"
-    least_terms: ClassVar[int] = 1
-    most_terms: ClassVar[int] = MAX_TERMS
-    constants: ClassVar[int] = 0
-    each: ClassVar[int] = 1
-    """Coefficients that every member has, and those of each term."""
-    terms: int = 6
-
-    def __post_init__(self) -> None:
-        why = "beyond that double precision no longer distinguishes the terms"
-        terms = whole("terms", self.terms, self.least_terms, self.most_terms, why)
-        object.__setattr__(self, "terms", terms)
-
-    @property
-    def amount(self) -> str:
-        """As 6 terms."""
-        return f"{self.terms} {self.term}{'s' if self.terms != 1 else ''}"
-
-    @classmethod
-    def of_size(cls, size: int) -> Self:
-        """The family's member that has so many coefficients; ValueError where none has."""
-        terms, rest = divmod(size - cls.constants, cls.each)
-        if rest:
-            raise ValueError(
-                f"got {size} coefficients; {cls.name} has {cls.constants}, and {cls.each} for "
-                f"every {cls.term}; give so many numbers"
-            )
-        return cls(terms)
-
-    @property
-    def size(self) -> int:
-        """How many coefficients the profile has."""
-        return self.constants + self.each * self.terms
+    Its input takes the place of its angle: `derivatives` are those of the input.
+    """
 
     @abstractmethod
-    def input(self, coefficients: Values, fraction: Expression) -> Input:
-        """U, 0 and 1 at the ends, and its first two derivatives by the fraction."""
+    def input(self, coefficients: Values, fraction: Expression) -> Expression:
+        """U at a fraction of the duration: 0 at its beginning and 1 at its end."""
 
-    def derivatives(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
-        """Theta by eq (1), theta' by eq (2), theta'' by eq (3) mended."""
-        return self.outer(self.input(coefficients, fraction), *move)[:3]
+    def angle(self, coefficients: Values, fraction: Expression) -> Expression:
+        """Eq (1)."""
+        U = self.input(coefficients, fraction)
+        return self.motion_of((U, 0.0, 0.0), 0.0, 1.0, 1.0).angle
 
-    def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
-        """U and its derivatives by the fraction, which do not depend on the move."""
-        return self.input(coefficients, fraction)
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+        """U, and its first two derivatives by the fraction: CasADi's."""
+        U, dU, ddU = differentiate(
+            lambda at: [self.input(coefficients, at)], fraction, coefficients, order=2
+        )
+        return U, dU, ddU
 
-    def outer(self, inner: Values, *move: Expression) -> JointMotion:
+    def motion_of(
+        self,
+        derivatives: Derivatives,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> JointMotion:
         """The cycloid of U: eqs (1), (2) and (3), the latter mended."""
-        start, target, duration = move
-        U, dU, ddU = inner[0], inner[1] / duration, inner[2] / duration**2
-        sine, cosine = ca.sin(math.pi * U), ca.cos(math.pi * U)
-        span, pi = target - start, math.pi
+        U = derivatives[0]
+        dU = derivatives[1] / duration
+        ddU = derivatives[2] / duration**2
+        pi = math.pi
+        sine = ca.sin(pi * U)
+        cosine = ca.cos(pi * U)
+        span = target - start
         return JointMotion(
             start + span * (U - sine * cosine / pi),
             2 * span * (sine * sine) * dU,
@@ -87,7 +59,38 @@ class Cycloid(JointProfile):
         )
 
 
-def with_bump(fraction: Expression, p: Expression, dp: Expression, ddp: Expression) -> Input:
+@dataclass(frozen=True)
+class CycloidPolynomial(TermProfile, Cycloid):
+    """A cycloid whose input is a polynomial, eqs (1)-(7), with eq (3) corrected.
+
+    Parameters
+    ----------
+    terms : int
+        N of eq (6), 0 (the plain cycloid) to 28; as many coefficients, a_1 to a_N.
+    """
+
+    name: ClassVar[str] = "cycloid-polynomial"
+    least_terms: ClassVar[int] = 0
+    most_terms: ClassVar[int] = 28
+    """The condition number of the powers of T on [-1, 1] grows like (1 + sqrt 2)^N, and with 29 and
+    more (5e10) some plans of the paper's plate end nowhere."""
+
+    def input(self, coefficients: Values, fraction: Expression) -> Expression:
+        """U of eq (6): linear in the coefficients."""
+        return self.derivatives(coefficients, fraction)[0]
+
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+        """U by Horner's rule, differentiated as it goes: faster than CasADi's."""
+        T = 2 * fraction - 1  # eq (7)
+        p = dp = ddp = 0 * T
+        for a in reversed(coefficients):
+            ddp = ddp * T + 2 * dp
+            dp = dp * T + p
+            p = p * T + a
+        return with_bump(fraction, p, dp, ddp)
+
+
+def with_bump(fraction: Expression, p: Expression, dp: Expression, ddp: Expression) -> Derivatives:
     """U = t/TE + (1 - T^2) p, whose bump holds the ends, and its derivatives by the fraction."""
     T = 2 * fraction - 1  # eq (7)
     bump = 1 - T * T
@@ -99,32 +102,7 @@ def with_bump(fraction: Expression, p: Expression, dp: Expression, ddp: Expressi
 
 
 @dataclass(frozen=True)
-class CycloidPolynomial(Cycloid):
-    """A cycloid whose input is a polynomial, eqs (1)-(7), with eq (3) corrected.
-
-    Parameters
-    ----------
-    terms : int
-        N of eq (6), 0 (the plain cycloid) to `MAX_POWERS`; as many coefficients, a_1 to a_N.
-    """
-
-    name: ClassVar[str] = "cycloid-polynomial"
-    least_terms: ClassVar[int] = 0
-    most_terms: ClassVar[int] = MAX_POWERS
-
-    def input(self, coefficients: Values, fraction: Expression) -> Input:
-        """U of eq (6) and its derivatives: linear in the coefficients."""
-        T = 2 * fraction - 1  # eq (7)
-        p = dp = ddp = 0 * T
-        for a in reversed(coefficients):  # Horner's rule, differentiated as it goes
-            ddp = ddp * T + 2 * dp
-            dp = dp * T + p
-            p = p * T + a
-        return with_bump(fraction, p, dp, ddp)
-
-
-@dataclass(frozen=True)
-class CycloidSpline(Cycloid):
+class CycloidSpline(TermProfile, Cycloid):
     """A cycloid whose input is a clamped quintic B-spline on even knots.
 
     U = t/TE + sum_j a_j B_j(t/TE), of all B-splines but the first and the last, which are not zero
@@ -140,11 +118,18 @@ class CycloidSpline(Cycloid):
     name: ClassVar[str] = "cycloid-spline"
     term: ClassVar[str] = "control point"
     default_bound: ClassVar[float | None] = 0.5
-    least_terms: ClassVar[int] = DEGREE - 1
+    degree: ClassVar[int] = 5
+    """With a cubic, fixed steps miss the residual of a move at rest by 1e-5 m where pieces meet."""
+    least_terms: ClassVar[int] = degree - 1
 
-    def input(self, coefficients: Values, fraction: Expression) -> Input:
-        """U and its derivatives: linear in the coefficients."""
-        pieces = self.terms + 2 - DEGREE
+    def input(self, coefficients: Values, fraction: Expression) -> Expression:
+        """U: linear in the coefficients."""
+        return self.derivatives(coefficients, fraction)[0]
+
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+        """U and its derivatives, splines of a lower degree."""
+        pieces = self.terms + 2 - self.degree
         knots = [i / pieces for i in range(pieces + 1)]
-        rise, rate, bend = spline(knots, DEGREE, [0.0, *coefficients, 0.0], fraction)
+        points = [0.0, *coefficients, 0.0]
+        rise, rate, bend = spline(knots, self.degree, points, fraction)
         return fraction + rise, 1 + rate, bend

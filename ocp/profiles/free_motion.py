@@ -112,14 +112,16 @@ class _AlongProfile:
     profile: JointProfile
 
     def __call__(
-        self, given: Sequence[Expression], fraction: Expression, *, jerk: bool
+        self, numbers: Sequence[Expression], fraction: Expression, *, jerk: bool
     ) -> JointMotion:
-        return self.profile.motion(given[:-3], fraction, *given[-3:], jerk=jerk)
+        coefficients = numbers[:-3]
+        move = numbers[-3:]
+        return self.profile.motion(coefficients, fraction, *move, jerk=jerk)
 
 
-def _freely(given: Sequence[Expression], fraction: Expression, *, jerk: bool) -> JointMotion:
+def _freely(numbers: Sequence[Expression], fraction: Expression, *, jerk: bool) -> JointMotion:
     """The law of a free motion, from the joint where an interval begins, and its length."""
-    return joint_after(given[:-1], fraction * given[-1])
+    return joint_after(numbers[:-1], fraction * numbers[-1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""The base class of joint profiles, theta(t; a) with its time derivatives, and their one check."""
+"""The base class of joint profiles, theta(t; a), and a member of the family in time."""
 
 from __future__ import annotations
 
@@ -7,37 +7,26 @@ import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, Self, final
 
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion
 from quietarm.models.final import refuse_overridden
-from quietarm.ocp.checks import finite, hashable, instance
-from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.checks import finite
+from quietarm.ocp.profiles.differentiate import Derivatives, differentiate
 
 Values = Sequence[Expression]
-"""The coefficients, or what follows from them."""
-
-_START, _TARGET, _DURATION = -0.3, 0.9, 1.3
-"""A move [rad, s], none of whose numbers is 0 or 1: a factor that is left out then shows."""
-_SHARES = np.array([0.0, 1.0, *np.random.default_rng(0).uniform(0.02, 0.98, 15)])
-"""Of the duration: both ends, then anywhere between."""
-_DIFFERENT = 1e-6
-"""Share of a quantity's largest value by which it may differ from what it has to be."""
-
-UNBOUNDED_SPREAD = 0.2
-"""Random starts lie within this of the plain cycloid where the coefficients have no bound."""
+"""The coefficients."""
 
 
 class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
-    A new family is a frozen dataclass with a `size` and `derivatives`; casadi derives the jerk.
-    `inner` and `outer` may state the same in two steps. `motion` and `path` follow and are final:
-    what they return is what was checked.
+    A new family is a frozen dataclass with a `size` and an `angle`; speed, acceleration and jerk
+    are CasADi's derivatives. `derivatives` may give formulas that are faster, which are checked
+    against CasADi's. `motion` and `path` are final: what they return is what was checked.
 
     Raises
     ------
@@ -60,12 +49,14 @@ class JointProfile(ABC):
     energy_agreement: ClassVar[float] = 0.0
     """Share by which the energy of a plan's steps may differ from CVODES' before these are doubled,
     where that is more than any plan's."""
+    unbounded_spread: ClassVar[float] = 0.2
+    """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
     random_starts: ClassVar[int] = 1
     """The gradient's random starts for each that is asked for, several where minima are many."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        refuse_overridden(cls, JointProfile, "derivatives, or inner and outer together")
+        refuse_overridden(cls, JointProfile, "angle, or derivatives")
 
     @property
     @abstractmethod
@@ -110,7 +101,7 @@ class JointProfile(ABC):
 
     def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Where the gradient's random starts lie, as `box`, but finite."""
-        return self.box(UNBOUNDED_SPREAD if bound is None else bound)
+        return self.box(self.unbounded_spread if bound is None else bound)
 
     @property
     def shortest_part(self) -> float:
@@ -122,16 +113,8 @@ class JointProfile(ABC):
         return ()
 
     @abstractmethod
-    def derivatives(
-        self,
-        coefficients: Values,
-        fraction: Expression,
-        start: Expression,
-        target: Expression,
-        duration: Expression,
-        /,
-    ) -> Values:
-        """Joint angle [rad] and its first two time derivatives, computed element by element.
+    def angle(self, coefficients: Values, fraction: Expression) -> Expression:
+        """Share of the way that the joint has gone, computed element by element.
 
         Parameters
         ----------
@@ -139,38 +122,58 @@ class JointProfile(ABC):
             `size` coefficients.
         fraction : Expression
             t / duration, between 0 and 1.
-        start, target, duration : Expression
-            Joint angles at the ends [rad]; travelling time [s].
+
+        Returns
+        -------
+        Expression
+            0 at the fraction 0 and 1 at the fraction 1, with no slope at both. Where it is linear
+            in the coefficients, the gradient is several times cheaper.
         """
 
-    def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
-        """Values that the coefficients enter; `outer` makes the joint's motion of them.
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+        """The angle, and its first two derivatives by the fraction; CasADi's by default."""
+        share, rate, bend = differentiate(
+            lambda at: [self.angle(coefficients, at)], fraction, coefficients, order=2
+        )
+        return share, rate, bend
 
-        Where they are linear in the coefficients, by derivatives that depend on neither these nor
-        the move, the gradient is several times cheaper. The move is as in `derivatives`.
-        """
-        return self.derivatives(coefficients, fraction, *move)[:3]
+    def motion_of(
+        self,
+        derivatives: Derivatives,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> JointMotion:
+        """The joint from start to target [rad] in the duration [s], by what `derivatives` gives."""
+        share, rate, bend = derivatives
+        span = target - start
+        return JointMotion(start + span * share, span * rate / duration, span * bend / duration**2)
 
-    def outer(self, inner: Values, *move: Expression) -> JointMotion:
-        """Angle, speed and acceleration of the joint from the values of `inner`."""
-        return JointMotion(*inner)
+    def at_duration(self, duration: Expression) -> Self:
+        """The profile in a move that takes so long [s], where its angle depends on that."""
+        return self
 
     @final
     def motion(
         self, coefficients: Values, fraction: Expression, *move: Expression, jerk: bool = False
     ) -> JointMotion:
-        """Angle, speed and acceleration of the joint, and its jerk where it is asked for."""
+        """Angle, speed and acceleration of the joint, and its jerk where it is asked for.
+
+        The move is start, target and duration.
+        """
+        start, target, duration = move
+        profile = self.at_duration(duration)
+
+        def without_jerk(at: Expression) -> JointMotion:
+            derivatives = profile.derivatives(coefficients, at)
+            return profile.motion_of(derivatives, start, target, duration)
+
         if not jerk:
-            return JointMotion(*self.derivatives(coefficients, fraction, *move)[:3])
-        # casadi differentiates by symbols only: the fraction is one first, replaced afterwards
-        kinds = {type(one) for one in (*coefficients, fraction, *move)}
-        kind: Any = ca.SX if ca.SX in kinds else ca.MX
-        place = kind(fraction)
-        at, ones = kind.sym("t", *place.shape), kind.ones(*place.shape)
-        values = [kind(value) for value in self.derivatives(coefficients, at, *move)[:3]]
-        rate = ca.jtimes(values[2], at, ones) * ones / move[-1]
-        motion: Any = ca.substitute([*values, rate], [at], [place])
-        return JointMotion(*(motion if kinds & {ca.SX, ca.MX} else map(ca.evalf, motion)))
+            return without_jerk(fraction)
+        angle, speed, acceleration, rate = differentiate(
+            lambda at: without_jerk(at)[:3], fraction, [*coefficients, *move], order=1
+        )
+        return JointMotion(angle, speed, acceleration, rate / duration)
 
     @final
     def path(
@@ -238,96 +241,3 @@ class JointPath:
         values = motion[order].full().reshape(t.shape)
         outside = (t < 0) | (t > self.duration)
         return np.where(outside, 0.0, values) if order else values
-
-
-def check_profile(profile: JointProfile) -> None:
-    """Refuse a profile whose motion is not from rest to rest, or whose derivatives are not.
-
-    The derivatives of the angle are CasADi's, at random coefficients.
-
-    Raises
-    ------
-    TypeError
-        When it is no profile, or one that may change.
-    ValueError
-        With the value, where it is, and what it has to be.
-    """
-    instance("profile", profile, JointProfile)
-    hashable("profile", profile)
-    _check_at_random(profile)
-
-
-@lru_cache(maxsize=256)
-def _check_at_random(profile: JointProfile) -> None:
-    within = profile.start_box(profile.default_bound)
-    coefficients = np.random.default_rng(1).uniform(*within)
-    duration = max(_DURATION, 2 * profile.least_duration)
-    table = _compared_values(profile, coefficients, _START, _TARGET, duration)
-    _refuse_difference(profile, table, _START, _TARGET)
-
-
-def check_motion(
-    profile: JointProfile, coefficients: ArrayLike, start: float, target: float, duration: float
-) -> None:
-    """Refuse one motion likewise, at its own coefficients, as every answer's is.
-
-    One that overflows is left to the integrator, which says so.
-    """
-    table = _compared_values(profile, np.asarray(coefficients, float), start, target, duration)
-    if np.isfinite(table).all():
-        _refuse_difference(profile, table, start, target)
-
-
-def _refuse_difference(
-    profile: JointProfile, table: NDArray[np.float64], start: float, target: float
-) -> None:
-    """ValueError where rows of `_compared_values` differ, or are not at rest at the ends."""
-    angle, speed, acceleration, angle_rate, speed_rate, *joined = table
-    ends = f"its end of a move from {start:.4g} to {target:.4g}"
-    compared = [
-        ("angle", angle, [start, target], ends),
-        ("speed", speed, [0.0, 0.0], "rest at both ends"),
-        ("speed", speed, angle_rate, "the derivative of the angle"),
-        ("acceleration", acceleration, speed_rate, "the derivative of the speed"),
-    ]
-    for name, value, other in zip(("angle", "speed", "acceleration"), table[:3], joined):
-        compared.append(
-            (f"{name} by outer(inner(...))", other, value, f"the {name} of derivatives")
-        )
-    for name, found, wanted, words in compared:
-        allowed = _DIFFERENT * max(float(np.abs(found).max()), 1e-9)
-        values = found[: len(wanted)]  # the ends come first
-        wrong = ~(np.abs(values - wanted) <= allowed)  # nan is wrong as well
-        if wrong.any():
-            k = int(wrong.argmax())
-            raise ValueError(
-                f"profile {profile.name!r}: its {name} is {values[k]:.4g} at {_SHARES[k]:.3g} of "
-                f"the duration, where {words} is {wanted[k]:.4g}; check the factors and signs in "
-                "derivatives (d/dt is d/dfraction over the duration)"
-            )
-
-
-@keep_interrupts()  # casadi loses a Ctrl-C
-def _compared_values(
-    profile: JointProfile, coefficients: NDArray[np.float64], *move: float
-) -> NDArray[np.float64]:
-    """What is compared, at `_SHARES` of the duration, a row each.
-
-    Angle, speed and acceleration; CasADi's rates of the first two; all three by `outer` of `inner`.
-    """
-    function = _comparison(profile)
-    columns = np.tile([*coefficients, *move], (len(_SHARES), 1)).T
-    return function(np.vstack([_SHARES, columns])).full()
-
-
-@lru_cache(maxsize=256)
-def _comparison(profile: JointProfile) -> ca.Function:
-    """What `_compared_values` returns, of columns of a fraction, coefficients and a move."""
-    symbols = ca.SX.sym("given", 1 + profile.size + 3)
-    fraction, *given = ca.vertsplit(symbols)
-    coefficients, move = given[: profile.size], given[profile.size :]
-    motion = [ca.SX(x) for x in profile.derivatives(coefficients, fraction, *move)[:3]]
-    joined = profile.outer(profile.inner(coefficients, fraction, *move), *move)[:3]
-    rates = [ca.jacobian(value, fraction) / move[-1] for value in motion[:2]]
-    results = ca.densify(ca.vertcat(*motion, *rates, *joined))
-    return ca.Function("motion", [symbols], [results]).map(len(_SHARES))

@@ -9,19 +9,11 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import Expression, JointMotion
+from quietarm.models import Expression
 from quietarm.ocp.checks import finite, several
 from quietarm.ocp.profiles.b_splines import spline
+from quietarm.ocp.profiles.differentiate import Derivatives
 from quietarm.ocp.profiles.joint_profile import JointProfile, Values
-
-DEGREE = 5
-"""So that the acceleration, a cubic spline, has a continuous second derivative."""
-_AT_REST = 3
-"""Control points at either end that are the end itself: angle, speed and acceleration are at rest.
-"""
-MOST_KNOTS = 64
-_LEAST_GAP = 1e-4
-"""Share of the move that lies between two knots at least: within less no step has room."""
 
 
 @dataclass(frozen=True)
@@ -50,21 +42,27 @@ class JointSpline(JointProfile):
     default_bound: ClassVar[float | None] = 0.5
     steps_of_a_piece: ClassVar[int] = 2
     energy_agreement: ClassVar[float] = 1e-4
+    degree: ClassVar[int] = 5
+    """So that the acceleration, a cubic spline, has a continuous second derivative."""
+    points_at_rest: ClassVar[int] = 3
+    """Control points at either end that are the end itself: there angle, speed and acceleration are
+    at rest."""
+    most_knots: ClassVar[int] = 64
+    least_gap: ClassVar[float] = 1e-4
+    """Share of the move that lies between two knots at least: within less no step has room."""
 
     knots: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        knots = tuple(
-            finite("knot", knot)
-            for knot in several("knots", self.knots, "fractions, as [0.3, 0.7]")
-        )
-        if not 1 <= len(knots) <= MOST_KNOTS:
-            raise ValueError(f"got {len(knots)} knots; give 1 to {MOST_KNOTS}")
+        values = several("knots", self.knots, "fractions, as [0.3, 0.7]")
+        knots = tuple(finite("knot", knot) for knot in values)
+        if not 1 <= len(knots) <= self.most_knots:
+            raise ValueError(f"got {len(knots)} knots; give 1 to {self.most_knots}")
         gaps = [after - before for before, after in pairwise((0.0, *knots, 1.0))]
-        if min(gaps) < _LEAST_GAP:
+        if min(gaps) < self.least_gap:
             raise ValueError(
                 f"knots are {min(gaps):.2g} of the move apart; give fractions that rise from 0 to "
-                f"1 by at least {_LEAST_GAP:g}"
+                f"1 by at least {self.least_gap:g}"
             )
         object.__setattr__(self, "knots", knots)
 
@@ -85,25 +83,23 @@ class JointSpline(JointProfile):
     @property
     def places(self) -> NDArray[np.float64]:
         """Where the B-splines of the coefficients act, as fractions of the duration: (size,)."""
-        clamped = np.array([0.0] * DEGREE + [0.0, *self.knots, 1.0] + [1.0] * DEGREE)
-        averages = np.convolve(clamped[1:-1], np.full(DEGREE, 1 / DEGREE), mode="valid")
-        return averages[_AT_REST:-_AT_REST]
+        ends = np.zeros(self.degree), np.ones(self.degree)
+        clamped = np.concatenate([ends[0], [0.0, *self.knots, 1.0], ends[1]])
+        share = np.full(self.degree, 1 / self.degree)
+        averages = np.convolve(clamped[1:-1], share, mode="valid")
+        return averages[self.points_at_rest : -self.points_at_rest]
 
-    def derivatives(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
-        """The spline, and its first two time derivatives."""
-        return self.outer(self.inner(coefficients, fraction, *move), *move)[:3]
+    def angle(self, coefficients: Values, fraction: Expression) -> Expression:
+        """The spline: linear in the coefficients."""
+        return self.derivatives(coefficients, fraction)[0]
 
-    def inner(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
-        """Share of the way, and its derivatives by the fraction: linear in the coefficients."""
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+        """The spline and its derivatives, splines of a lower degree."""
         turn = 2 * math.pi
         plain = [at - math.sin(turn * at) / turn for at in self.places.tolist()]
         free = [height + a for height, a in zip(plain, coefficients)]
-        points = [*[0.0] * _AT_REST, *free, *[1.0] * _AT_REST]
-        return spline([0.0, *self.knots, 1.0], DEGREE, points, fraction)
-
-    def outer(self, inner: Values, *move: Expression) -> JointMotion:
-        """From shares of the way to the joint."""
-        start, target, duration = move
-        share, rate, bend = inner
-        span = target - start
-        return JointMotion(start + span * share, span * rate / duration, span * bend / duration**2)
+        begin = [0.0] * self.points_at_rest
+        end = [1.0] * self.points_at_rest
+        points = [*begin, *free, *end]
+        share, rate, bend = spline([0.0, *self.knots, 1.0], self.degree, points, fraction)
+        return share, rate, bend

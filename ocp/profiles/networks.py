@@ -10,17 +10,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression
-from quietarm.ocp.profiles.cycloid import Cycloid, Input, with_bump
+from quietarm.ocp.profiles.cycloid import Cycloid, with_bump
+from quietarm.ocp.profiles.differentiate import Derivatives
 from quietarm.ocp.profiles.joint_profile import Values
-
-REACH = 1.25
-"""First units lie in even cells of T between plus and minus this, the outermost beyond the ends."""
-_WEIGHT = 0.5
-"""Largest weight where no bound is given."""
-_LIGHT = 0.1
-"""Random starts have weights within this share of their bound: larger ones swing the joint."""
-SHARPEST = 200.0
-"""Largest inverse width or gain: one ten times as sharp can lie between all integrators' steps."""
+from quietarm.ocp.profiles.term_profile import TermProfile
 
 
 class Range(NamedTuple):
@@ -33,7 +26,7 @@ class Range(NamedTuple):
 
 
 @dataclass(frozen=True)
-class CycloidOfUnits(Cycloid):
+class CycloidOfUnits(TermProfile, Cycloid):
     """U = t/TE + (1 - T^2) (v_0 + sum_j v_j g(x_j, y_j, T)), T = -1 + 2 t/TE.
 
     The coefficients are v_0 to v_n, then x_1 to x_n, then y_1 to y_n. A bound is for the weights v;
@@ -41,20 +34,30 @@ class CycloidOfUnits(Cycloid):
     weights: so weights are always bounded, and starts have the units side by side.
     """
 
-    default_bound: ClassVar[float | None] = _WEIGHT
+    largest_weight: ClassVar[float] = 0.5
+    """Where no bound is given."""
+    default_bound: ClassVar[float | None] = largest_weight
     sharp: ClassVar[bool] = True
     random_starts: ClassVar[int] = 4
-    constants: ClassVar[int] = 1
-    each: ClassVar[int] = 3
+    fixed_coefficients: ClassVar[int] = 1
+    coefficients_of_term: ClassVar[int] = 3
+    reach: ClassVar[float] = 1.25
+    """First units lie in even cells of T between plus and minus this, the outermost beyond the
+    ends."""
+    light: ClassVar[float] = 0.1
+    """Random starts have weights within this share of their bound: larger ones swing the joint."""
+    sharpest: ClassVar[float] = 200.0
+    """Largest inverse width or gain: one ten times as sharp can lie between all integrators'
+    steps."""
     terms: int = 5
 
     def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
-        """As every profile's; ValueError, too, where a unit is sharper than `SHARPEST`."""
+        """As every profile's; ValueError, too, where a unit is sharper than `sharpest`."""
         values = super().checked(coefficients, duration)
-        if (largest := max(map(abs, values[1 + 2 * self.terms :]))) > SHARPEST:
+        if (largest := max(map(abs, values[1 + 2 * self.terms :]))) > self.sharpest:
             raise ValueError(
                 f"the inverse width or gain of a {self.term} is {largest:g}; give at most "
-                f"{SHARPEST:g}: a sharper one acts between the integrators' steps"
+                f"{self.sharpest:g}: a sharper one acts between the integrators' steps"
             )
         return values
 
@@ -65,44 +68,56 @@ class CycloidOfUnits(Cycloid):
 
     @staticmethod
     @abstractmethod
-    def unit(x: Expression, y: Expression, T: Expression) -> Input:
+    def unit(x: Expression, y: Expression, T: Expression) -> Derivatives:
         """One unit g and its first two derivatives by T; finite for all x and y."""
 
-    def _every(self, weight: float, kind: str) -> NDArray[np.float64]:
+    def _assemble(self, weight: float, field: str) -> NDArray[np.float64]:
         """Numbers for all coefficients: one for the weights, and one field of the ranges."""
-        own = [np.broadcast_to(getattr(of, kind), self.terms) for of in self.ranges]
-        return np.concatenate([np.full(1 + self.terms, weight), *own])
+        weights = np.full(1 + self.terms, weight)
+        of_units = [
+            np.broadcast_to(getattr(parameter, field), self.terms) for parameter in self.ranges
+        ]
+        return np.concatenate([weights, *of_units])
 
     @property
     def plain(self) -> NDArray[np.float64]:
         """No weight, and the units side by side."""
-        return self._every(0.0, "first")
+        return self._assemble(0.0, "first")
 
     def box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """`bound` for the weights, `ranges` for the rest."""
-        weight = _WEIGHT if bound is None else bound
-        return self._every(-weight, "least"), self._every(weight, "most")
+        weight = self.largest_weight if bound is None else bound
+        return self._assemble(-weight, "least"), self._assemble(weight, "most")
 
     def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Small weights, and the units nearly in their even cells."""
         lower, upper = self.box(bound)
-        around = self._every(_LIGHT * upper[0], "spread")
+        around = self._assemble(self.light * upper[0], "spread")
         return np.maximum(lower, self.plain - around), np.minimum(upper, self.plain + around)
 
     @property
     def cells(self) -> NDArray[np.float64]:
-        """Middles of even cells between plus and minus `REACH`, one for each unit."""
-        return REACH * (2 * np.arange(self.terms) + 1 - self.terms) / self.terms
+        """Middles of even cells between plus and minus `reach`, one for each unit."""
+        return self.reach * (2 * np.arange(self.terms) + 1 - self.terms) / self.terms
 
-    def input(self, coefficients: Values, fraction: Expression) -> Input:
-        """U and its derivatives; the weights alone enter linearly."""
-        n, T = self.terms, 2 * fraction - 1  # eq (7)
-        constant, *weights = coefficients[: 1 + n]
-        p, dp, ddp = constant + 0 * T, 0 * T, 0 * T
-        own = zip(coefficients[1 + n : 1 + 2 * n], coefficients[1 + 2 * n :])
-        for v, (x, y) in zip(weights, own):
+    def input(self, coefficients: Values, fraction: Expression) -> Expression:
+        """U: the weights alone enter linearly."""
+        return self.derivatives(coefficients, fraction)[0]
+
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+        """U and its derivatives."""
+        T = 2 * fraction - 1  # eq (7)
+        constant, *weights = coefficients[: 1 + self.terms]
+        places = coefficients[1 + self.terms : 1 + 2 * self.terms]
+        widths = coefficients[1 + 2 * self.terms :]
+        p = constant + 0 * T
+        dp = 0 * T
+        ddp = 0 * T
+        for v, x, y in zip(weights, places, widths):
             g, dg, ddg = self.unit(x, y, T)
-            p, dp, ddp = p + v * g, dp + v * dg, ddp + v * ddg
+            p = p + v * g
+            dp = dp + v * dg
+            ddp = ddp + v * ddg
         return with_bump(fraction, p, dp, ddp)
 
 
@@ -126,12 +141,12 @@ class CycloidGaussians(CycloidOfUnits):
     @property
     def ranges(self) -> tuple[Range, Range]:
         """Centres; inverse widths, from nearly a parabola over the move to a sixth of it."""
-        half = REACH / self.terms
+        half = self.reach / self.terms
         centres = Range(self.cells, half, self.cells - half, self.cells + half)
         return centres, Range(2.0, 0.25, 0.3, 3.0)
 
     @staticmethod
-    def unit(x: Expression, y: Expression, T: Expression) -> Input:
+    def unit(x: Expression, y: Expression, T: Expression) -> Derivatives:
         """A Gaussian of centre x and inverse width y, and its derivatives."""
         z = y * (T - x)
         g = ca.exp(-z * z)
@@ -163,7 +178,7 @@ class CycloidNetwork(CycloidOfUnits):
         return biases, Range(gain, 0.5, 0.3, steepest)
 
     @staticmethod
-    def unit(x: Expression, y: Expression, T: Expression) -> Input:
+    def unit(x: Expression, y: Expression, T: Expression) -> Derivatives:
         """A hidden node of bias x and gain y, and its derivatives."""
         g = ca.tanh(x + y * T)
         slope = y * (1 - g * g)

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 from functools import partial
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, Self
 
 import casadi as ca
 from quietarm.models import Expression
@@ -18,14 +19,8 @@ from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
 TOLERATED = 0.05
 """Residual of EI at its design frequency, as a share of the unshaped vibration."""
-_LEAST_DECAY_OF_EI = math.sqrt(TOLERATED / (2 - TOLERATED))
-"""K at which EI's weight V' reaches 1, so that its middle impulse 2 (1 - V') K vanishes."""
-MOST_DAMPING_OF_EI = 1 / math.hypot(1, math.pi / math.log(_LEAST_DECAY_OF_EI))
-"""The damping ratio of that decay, about 0.504."""
 LEAST_SHARE = 0.05
 """Least share of the duration for the cycloid: a shorter one would be a jolt between steps."""
-MOST_IMPULSES = 243
-"""Five modes of three impulses; the motion has a cycloid for every impulse."""
 
 
 class Impulses(NamedTuple):
@@ -75,28 +70,39 @@ def _fitted(
     """
     _refuse_damping(name, damping_ratio, most)
 
-    def at(powers: Sequence[float]) -> float:
-        return sum(one * damping_ratio**k for k, one in enumerate(powers))
+    def polynomial(powers: Sequence[float]) -> float:
+        return sum(factor * damping_ratio**k for k, factor in enumerate(powers))
 
-    total, period = sum(map(at, amplitudes)), 2 * math.pi / frequency
+    total = sum(map(polynomial, amplitudes))
+    period = 2 * math.pi / frequency
     return Impulses(
-        tuple(at(one) / total for one in amplitudes), tuple(at(one) * period for one in times)
+        tuple(polynomial(powers) / total for powers in amplitudes),
+        tuple(polynomial(powers) * period for powers in times),
     )
+
+
+def _mzv(frequency: float, damping_ratio: float) -> Impulses:
+    """Three impulses, three eighths of a period apart."""
+    outer = 1 - math.sqrt(0.5)
+    weights = [outer, 1 - 2 * outer, outer]
+    return _apart(0.75, weights, frequency, damping_ratio)
 
 
 def _ei(frequency: float, damping_ratio: float) -> Impulses:
     """Extra insensitive: a residual of `TOLERATED` at the design frequency."""
-    _refuse_damping("ei", damping_ratio, MOST_DAMPING_OF_EI)
+    # K at which the weight V below reaches 1, so that the middle impulse 2 (1 - V) K vanishes
+    least_decay = math.sqrt(TOLERATED / (2 - TOLERATED))
+    most_damping = 1 / math.hypot(1, math.pi / math.log(least_decay))  # about 0.504
+    _refuse_damping("ei", damping_ratio, most_damping)
     decay = _decay(damping_ratio)
     # so that the residual at the frequency is TOLERATED for any damping; undamped V = TOLERATED
     V = TOLERATED * (1 + decay) ** 2 / (4 * decay**2 - TOLERATED * (1 - decay) ** 2)
     return _apart(1.0, [1 + V, 2 * (1 - V), 1 + V], frequency, damping_ratio)
 
 
-_OUTER = 1 - math.sqrt(0.5)
 SHAPERS: Mapping[str, Callable[[float, float], Impulses]] = {
     "zv": partial(_apart, 1.0, [1.0, 1.0]),
-    "mzv": partial(_apart, 0.75, [_OUTER, 1 - 2 * _OUTER, _OUTER]),
+    "mzv": _mzv,
     "zvd": partial(_apart, 1.0, [1.0, 2.0, 1.0]),
     "ei": _ei,
     "2hump-ei": partial(
@@ -155,19 +161,28 @@ class ShapedCycloid(JointProfile):
     """
 
     name: ClassVar[str] = "shaped-cycloid"
+    most_impulses: ClassVar[int] = 243
+    """Five modes of three impulses; the motion has a cycloid for every impulse."""
     shaper: str
     frequencies: tuple[float, ...]
     damping_ratios: tuple[float, ...]
     impulses: Impulses = field(init=False, repr=False, compare=False)
     """One shaper for all modes."""
+    duration: Expression = field(default=math.nan, init=False, repr=False, compare=False)
+    """That of the move [s], as `at_duration` sets it."""
 
     def __post_init__(self) -> None:
         if self.shaper not in SHAPERS:
             raise ValueError(f"shaper is {self.shaper!r}; give {', '.join(SHAPERS)}")
-        given = several("frequencies", self.frequencies, "numbers, one for each mode")
-        frequencies = tuple(positive("frequency", frequency, "rad/s") for frequency in given)
-        given = several("damping_ratios", self.damping_ratios, "numbers, one for each mode")
-        damping = tuple(finite("damping ratio", ratio) for ratio in given)
+        numbers = "numbers, one for each mode"
+        frequencies = tuple(
+            positive("frequency", frequency, "rad/s")
+            for frequency in several("frequencies", self.frequencies, numbers)
+        )
+        damping = tuple(
+            finite("damping ratio", ratio)
+            for ratio in several("damping_ratios", self.damping_ratios, numbers)
+        )
         if not frequencies or len(frequencies) != len(damping):
             raise ValueError(
                 f"got {len(frequencies)} frequencies and {len(damping)} damping ratios; give one "
@@ -179,15 +194,16 @@ class ShapedCycloid(JointProfile):
                     f"damping ratio is {zeta:g}; give one between -1 and 1: other modes do not "
                     "vibrate"
                 )
-        each = [SHAPERS[self.shaper](*mode) for mode in zip(frequencies, damping)]
-        if (count := math.prod(len(one.times) for one in each)) > MOST_IMPULSES:
+        shapers = [SHAPERS[self.shaper](*mode) for mode in zip(frequencies, damping)]
+        count = math.prod(len(shaper.times) for shaper in shapers)
+        if count > self.most_impulses:
             raise ValueError(
                 f"{self.shaper} for {len(frequencies)} modes has {count} impulses; quietarm goes "
-                f"up to {MOST_IMPULSES}: give the slowest modes only"
+                f"up to {self.most_impulses}: give the slowest modes only"
             )
         object.__setattr__(self, "frequencies", frequencies)
         object.__setattr__(self, "damping_ratios", damping)
-        object.__setattr__(self, "impulses", convolved(each))
+        object.__setattr__(self, "impulses", convolved(shapers))
 
     @property
     def length(self) -> float:
@@ -216,18 +232,20 @@ class ShapedCycloid(JointProfile):
         ends = (begin + duration - self.length for begin in begins)
         return tuple(sorted({at / duration for at in (*begins, *ends) if 0 < at < duration}))
 
-    def derivatives(self, coefficients: Values, fraction: Expression, *move: Expression) -> Values:
+    def at_duration(self, duration: Expression) -> Self:
+        """The same shaper in a move that takes so long [s]."""
+        timed = copy(self)
+        object.__setattr__(timed, "duration", duration)
+        return timed
+
+    def angle(self, coefficients: Values, fraction: Expression) -> Expression:
         """Sum of the cycloids, each at rest before it begins and after it ends."""
-        start, target, duration = move
-        cycloid, turn = duration - self.length, 2 * math.pi
-        angle = speed = acceleration = 0 * fraction
+        cycloid = self.duration - self.length
+        turn = 2 * math.pi
+        angle = 0 * fraction
         for share, begin in zip(*self.impulses):
-            own = (fraction * duration - begin) / cycloid
+            part = (fraction * self.duration - begin) / cycloid
             # Not fmin and fmax, whose derivative is halved where the move begins and ends.
-            own = ca.if_else(ca.logic_and(own >= 0, own <= 1), own, own > 1)
-            sine, cosine = ca.sin(turn * own), ca.cos(turn * own)
-            angle += share * (own - sine / turn)
-            speed += share * (1 - cosine) / cycloid
-            acceleration += share * turn * sine / cycloid**2
-        span = target - start
-        return start + span * angle, span * speed, span * acceleration
+            part = ca.if_else(ca.logic_and(part >= 0, part <= 1), part, part > 1)
+            angle += share * (part - ca.sin(turn * part) / turn)
+        return angle

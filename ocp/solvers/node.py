@@ -96,7 +96,8 @@ class Path:
         self._profile, self._jerk, self._times = profile, jerk, ca.horzcat(*times)
         shape = self._times.shape
         a, move, at = symbols(profile.size, shape), symbols(3, shape), ca.MX.sym("t", *shape)
-        y = [ca.MX.zeros(*shape) + value for value in profile.inner(a, at, *move)]
+        derivatives = profile.at_duration(move[2]).derivatives(a, at)
+        y = [ca.MX.zeros(*shape) + value for value in derivatives]
         self._own = len(y)
         if jerk:
             rates = product(jacobian(y, [at]), [ca.MX.ones(*shape)], len(y))
@@ -129,7 +130,8 @@ class Path:
 
     def motion(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:
         """The joint's motion, without its jerk."""
-        return self._profile.outer(y[: self._own], *move)
+        value, rate, bend = y[: self._own]
+        return self._profile.motion_of((value, rate, bend), *move)
 
     def motion_with_jerk(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:
         """The same with the jerk where that is asked for; y are symbols."""

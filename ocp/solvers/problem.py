@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.profiles.joint_profile import JointProfile, check_profile
+from quietarm.ocp.profiles.check_profile import check_profile
+from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.batch import Derivatives, Values, batch

@@ -25,7 +25,7 @@ from quietarm.studies.cli.quantities import (
     parse_workers,
 )
 from quietarm.studies.cli.types import SETTING, TIME, Named, Parsed
-from quietarm.studies.reading.profiles import FAMILIES, POLYNOMIAL
+from quietarm.studies.reading.profiles import POLYNOMIAL, families
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
 from rich.console import Console
@@ -165,13 +165,14 @@ def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.
     """--profile and --terms; `others` are profiles without coefficients."""
     no_front = (
         "{0} is an input shaper: it has one motion for a move, and therefore no front; give one of "
-        f"{', '.join(FAMILIES)}, or quietarm plan"
+        f"{', '.join(families())}, or quietarm plan"
     )
     none = {} if others else {name: no_front.format(name) for name in SHAPERS}
-    sizes = ", ".join(f"{family().terms} for {name}" for name, family in FAMILIES.items())
+    sizes = ", ".join(f"{family.terms} for {name}" for name, family in families().items())
     sizes += "; of a polynomial within limits 18, or 24 where the plant has several modes"
     return (
-        option("--profile", type=Named("profile", [*FAMILIES, *others], none), default=POLYNOMIAL,
+        option("--profile", type=Named("profile", lambda: [*families(), *others], none),
+               default=POLYNOMIAL,
                help="How the joint moves: a cycloid of a polynomial, of Gaussians, of a neural "
                f"network or of a spline{words}."),
         option("--terms", type=int, help="Terms of the polynomial, Gaussians, hidden nodes or "

@@ -32,13 +32,20 @@ class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
     Large letters, hyphens and spaces do not matter: NSGA-II and nsga_2 are nsga2.
     """
 
-    def __init__(self, what: str, names: Iterable[str], none: Mapping[str, str] | None = None):
-        super().__init__(list(names))
+    def __init__(
+        self,
+        what: str,
+        names: Iterable[str] | Callable[[], Iterable[str]],
+        none: Mapping[str, str] | None = None,
+    ):
+        self._list_names = names if callable(names) else partial(list[str], names)
+        super().__init__(list(self._list_names()))
         self._what = what
         self._none = {spelling(name): why for name, why in (none or {}).items()}
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name."""
+        self.choices = tuple(self._list_names())  # a user's own file may have brought more
         same = [name for name in self.choices if spelling(name) == spelling(value)]
         if not same:
             known = unknown(self._what, value, self.choices)

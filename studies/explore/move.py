@@ -17,7 +17,7 @@ from quietarm.ocp.front.curve import Report, no_report
 from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.window import default_window
 from quietarm.studies.export.formats import export_plan
-from quietarm.studies.reading.profiles import FAMILIES, profile_of
+from quietarm.studies.reading.profiles import families, profile_of
 from quietarm.studies.report.words import moved
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary
@@ -81,7 +81,7 @@ class Explored:
     @property
     def profile(self) -> str:
         """The name of the profile's family; its label where it has none."""
-        kinds: dict[Any, str] = {kind: name for name, kind in FAMILIES.items()}
+        kinds: dict[Any, str] = {kind: name for name, kind in families().items()}
         return kinds.get(type(self.plan.profile), self.plan.profile.label)
 
     @cached_property

@@ -32,7 +32,7 @@ from quietarm.ocp import QuietarmError
 from quietarm.studies.explore.move import FILES, Dial, Explored
 from quietarm.studies.explore.plots import GREY, PANELS, Plots
 from quietarm.studies.figures.looks import RED
-from quietarm.studies.reading.profiles import FAMILIES
+from quietarm.studies.reading.profiles import families
 from quietarm.studies.report.moves import HARD_REMEDIES, plan_rows
 
 Change = Callable[[Explored], Explored]
@@ -84,9 +84,9 @@ class Page:
 
     def _roots(self, plants: Mapping[str, Plant]) -> list[UIElement]:
         """What the template puts into its places, by name."""
-        families: Any = list(dict.fromkeys([*FAMILIES, self._explored.profile]))
+        profiles: Any = list(dict.fromkeys([*families(), self._explored.profile]))
         plant = Select(title="plant", options=list(plants))
-        profile = Select(title="profile", options=families)
+        profile = Select(title="profile", options=profiles)
         terms = Spinner(title="terms", low=1, step=1)
         for name, field in {"plant": plant, "profile": profile, "terms": terms}.items():
             self._watch(name, field)

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics import MoveFunction
 from quietarm.metaheuristics.objective.claims import FIGURES, agrees
 from quietarm.metaheuristics.objective.population import UNUSABLE
-from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError
+from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError, TermProfile
 from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.planning.plan import evaluate_coefficients
-from quietarm.ocp.profiles.cycloid import Cycloid
 from quietarm.ocp.record import REST
 from quietarm.ocp.window import DefaultWindow
 from quietarm.studies.reading.foreign import Found, read_found
@@ -33,7 +32,7 @@ residuals are near rest, and a share says little, by `REST` as well."""
 def import_front(
     file: Path,
     task: PointToPoint,
-    family: type[Cycloid],
+    family: type[TermProfile],
     terms: int | None = None,
     bound: float | None = None,
     evaluations: int | None = None,

@@ -3,36 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib import import_module
-from pkgutil import iter_modules
 
-from quietarm.ocp import JointProfile, PointToPoint, profiles, shaped_cycloid
+from quietarm.ocp import (
+    CycloidGaussians,
+    CycloidNetwork,
+    CycloidSpline,
+    JointProfile,
+    PointToPoint,
+    TermProfile,
+    shaped_cycloid,
+)
 from quietarm.ocp.planning.choose_profile import choose_profile
-from quietarm.ocp.profiles.cycloid import Cycloid
+from quietarm.ocp.profiles.term_profile import known_term_profiles
 
 POLYNOMIAL = "polynomial"
 
 
-def _families() -> dict[str, type[Cycloid]]:
-    """The families that stand in the folder of profiles, the paper's first."""
-    modules = (
-        import_module(f"{profiles.__name__}.{it.name}") for it in iter_modules(profiles.__path__)
-    )
-    found = {
-        kind.name.removeprefix("cycloid-"): kind
-        for module in modules
-        for kind in vars(module).values()
-        if isinstance(kind, type) and issubclass(kind, Cycloid) and hasattr(kind, "name")
+def families() -> dict[str, type[TermProfile]]:
+    """Profiles with a number of terms, by the names that a command takes, the paper's first.
+
+    Each has terms by default. Those of a user's own file are there once it is loaded.
+    """
+    by_name = {
+        name.removeprefix("cycloid-"): family for name, family in known_term_profiles().items()
     }
-    return {POLYNOMIAL: found.pop(POLYNOMIAL), **dict(sorted(found.items()))}
+    return {POLYNOMIAL: by_name.pop(POLYNOMIAL), **dict(sorted(by_name.items()))}
 
 
-FAMILIES: Mapping[str, type[Cycloid]] = _families()
-"""Profiles with coefficients to choose; each takes a number of terms and has one by default."""
-OTHERS: Mapping[str, Cycloid] = {
-    "network": FAMILIES["network"](),
-    "Gaussians": FAMILIES["gaussians"](),
-    "spline": FAMILIES["spline"](),
+OTHERS: Mapping[str, TermProfile] = {
+    "network": CycloidNetwork(),
+    "Gaussians": CycloidGaussians(),
+    "spline": CycloidSpline(),
 }
 """What stands beside the polynomial in comparisons, by what tables call it, in its default size."""
 
@@ -41,9 +42,9 @@ def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> Joint
     """A profile by its name; a polynomial without a number of terms is the task's."""
     if chooses_terms(name, terms):
         return choose_profile(task)
-    if name not in FAMILIES:
+    family = families().get(name)
+    if family is None:
         return shaped_cycloid(task, name)
-    family = FAMILIES[name]
     return family() if terms is None else family(terms)
 
 

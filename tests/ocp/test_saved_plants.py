@@ -1,6 +1,8 @@
 """Answers about a plant of a user's file: what is recorded, and who may load them."""
 
 import hashlib
+import pickle
+import sys
 
 import pytest
 
@@ -20,6 +22,32 @@ def _refused(path):
     with pytest.raises(qa.FileFormatError) as told:
         qa.Plan.load(path)
     return str(told.value)
+
+
+BESIDE = """
+
+@dataclass(frozen=True)
+class Half(qa.Energy):
+    name: ClassVar[str] = "half-of-a-test"
+    share: float = 0.5
+
+    def smooth(self, torque, speed):
+        return 0.5 * torque * speed
+
+
+class Straight(qa.TermProfile):
+    name: ClassVar[str] = "straight-of-a-test"
+
+    def angle(self, coefficients, fraction):
+        return fraction
+"""
+
+
+def test_profiles_and_energies_beside_the_plant_go_to_other_processes(crane_file):
+    crane_file.write_text(crane_file.read_text() + BESIDE)
+    module = sys.modules[qa.load_plant_file(crane_file)["crane"].__module__]
+    for value in (module.Half(0.25), module.Straight(3)):
+        assert pickle.loads(pickle.dumps(value)) == value
 
 
 def test_it_loads_where_the_file_was_given(saved, crane_file, tmp_path):

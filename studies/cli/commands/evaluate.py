@@ -22,7 +22,7 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.types import INPUT, Parsed
-from quietarm.studies.reading.profiles import FAMILIES
+from quietarm.studies.reading.profiles import families
 from quietarm.studies.reading.table import TABLES
 from quietarm.studies.report.fronts import search_lines
 from quietarm.studies.report.moves import path_rows
@@ -74,7 +74,7 @@ def evaluate(given: Given) -> None:
         raise click.UsageError("Missing option '--coefficients'.")
     else:
         given.refuse(["terms"], "follows from the number of --coefficients")
-        motions = FAMILIES[given.profile].of_size(len(given.coefficients))
+        motions = families()[given.profile].of_size(len(given.coefficients))
     with busy("integrating"):
         found = evaluate_coefficients(task, given.coefficients or [], profile=motions)
     return finish_plan(given, found)
@@ -97,9 +97,11 @@ def _evaluate_table(given: Given, task: PointToPoint) -> None:
     from quietarm.studies.reading.importing import import_front
 
     if given.profile in SHAPERS:
-        raise ValueError(f"{given.profile} has no coefficients; give one of {', '.join(FAMILIES)}")
+        raise ValueError(
+            f"{given.profile} has no coefficients; give one of {', '.join(families())}"
+        )
     asked = given.pick("terms", "bound", "evaluations")
     with busy("evaluating"):
-        front, notes = import_front(given.coefficients, task, FAMILIES[given.profile], **asked)
+        front, notes = import_front(given.coefficients, task, families()[given.profile], **asked)
     files = answer_files(given.output, lambda: figures.front_figure([front]), front)
     finish(files, search_lines([front], notes))

@@ -25,7 +25,7 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.plants import read_parameters
 from quietarm.studies.cli.types import INPUT
-from quietarm.studies.reading.profiles import FAMILIES, chooses_terms
+from quietarm.studies.reading.profiles import chooses_terms, families
 from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
 from quietarm.studies.sweep.grid import OF_MOVES
 
@@ -69,7 +69,7 @@ def plan(given: Given) -> None:
     if given.dataset is not None:
         return _look_up(given)
     fastest = given.duration == _FASTEST
-    if given.profile not in FAMILIES:
+    if given.profile not in families():
         free = given.profile in FREE
         why = f"is not for {given.profile}, only for profiles with coefficients"
         given.refuse(_OF_COEFFICIENTS if free else (*_OF_COEFFICIENTS[:-1], *_OF_SOLVERS), why)

@@ -44,14 +44,11 @@ class _InPowers(JointProfile):
     def size(self):
         return 0
 
-    def derivatives(self, coefficients, fraction, start, target, duration):
-        found, polynomial = [], np.polynomial.Polynomial(self.powers)
-        for order in range(4):
-            value = 0 * fraction
-            for power in reversed(polynomial.deriv(order).coef.tolist()):
-                value = value * fraction + power
-            found.append((start * (order == 0)) + (target - start) / duration**order * value)
-        return tuple(found)
+    def angle(self, coefficients, fraction):
+        share = 0 * fraction
+        for power in reversed(self.powers):
+            share = share * fraction + power
+        return share
 
 
 def test_a_power_that_is_exactly_zero_at_a_sample_parts_the_work():

@@ -1,0 +1,96 @@
+"""A profile of a user's own, in one file: the one of docs/extend.md, through four commands."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pages import blocks
+from quietarm.ocp import Front, Plan
+
+ROOT = Path(__file__).parents[3]
+PACKAGES = "quietarm", "models", "ocp", "metaheuristics", "studies"
+(PROFILE,) = blocks("extend", "python")
+MOVE = "--target 60deg --duration 3 --profile minimum-jerk --quiet"
+LEAST_JERK_SPEED = 15 / 8
+"""Largest speed of the motion of least jerk over the mean: 30 s^2 (1 - s)^2 at s = 1/2."""
+
+
+def lines(move):
+    """Four commands that make a plan, a front, a front of a search, and a plan of coefficients."""
+    return [
+        f"plan {move} --terms 4 --output plan.json",
+        f"front {move} --terms 4 --points 3 --output front.json",
+        f"search {move} --terms 4 --bound 1 --population 20 --generations 3 --output search.json",
+        f"evaluate {move} --coefficients=0,0,0 --output least.json",
+    ]
+
+
+def check_answers(span, duration):
+    """All four files have the profile; the motion without coefficients is that of least jerk."""
+    plan = Plan.load("plan.json")
+    front = Front.load("front.json")
+    found = Front.load("search.json")
+    least = Plan.load("least.json")
+    labels = [answer.profile.label for answer in (plan, front, found, least)]
+    assert labels == [f"minimum-jerk of {terms} terms" for terms in (4, 4, 4, 3)]
+    assert plan.residual < 1e-8
+    assert front.points
+    assert found.points
+    expected = LEAST_JERK_SPEED * span / duration
+    assert least.motion.peak_speed == pytest.approx(expected, rel=1e-4)
+
+
+def test_a_profile_beside_a_plant_in_the_plant_file(done, call, refused, crane_file):
+    crane_file.write_text(f"{crane_file.read_text()}\n\n{PROFILE}")
+    for line in lines(f"{MOVE} --plant-file crane.py"):
+        done(line)
+    check_answers(span=3.141592653589793 / 3, duration=3)
+    polish = "front --polish search.json --plant-file crane.py --quiet --output polished.json"
+    assert call(polish)[0] == 0
+    assert Front.load("polished.json").profile == Front.load("search.json").profile
+    told = refused(f"evaluate --plant-file crane.py {MOVE} --coefficients=1 --profile minimum-jrk")
+    assert "did you mean 'minimum-jerk'" in told
+
+
+@pytest.mark.slow
+def test_workers_know_the_profile_of_a_plant_file(call, crane_file):
+    crane_file.write_text(f"{crane_file.read_text()}\n\n{PROFILE}")
+    line = f"search --plant-file crane.py {MOVE} --terms 3 --bound 1 --population 20"
+    line += " --generations 2 --runs 2 --workers 2 --output found.json"
+    code, _, err = call(line)
+    assert (code, err) == (0, "")
+    saved = sorted(Path().glob("found*.json"))
+    assert len(saved) == 2
+    assert {Front.load(file).profile.amount for file in saved} == {"3 terms"}
+
+
+@pytest.mark.slow
+def test_a_profile_in_a_file_of_the_folder_of_profiles(folder):
+    checkout = folder / "checkout"
+    for name in PACKAGES:
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / name, checkout / name, symlinks=True, ignore=ignored)
+    file = checkout / "ocp" / "profiles" / "minimum_jerk.py"
+    file.write_text(PROFILE)
+    move = f"single-link {MOVE}"
+    loads = ["Front.load('front.json')", "Plan.load('least.json')"]
+    program = [
+        "import shlex, sys",
+        f"sys.path.insert(0, {str(checkout)!r})",
+        "import quietarm as qa",
+        "from quietarm.studies.cli import main",
+        "def run(line):",
+        "    try:",
+        "        main(shlex.split(line))",
+        "    except SystemExit as ended:",
+        "        assert not ended.code, line",
+        *(f"run({line!r})" for line in lines(move)),
+        f"print(qa.__file__, *(answer.profile.amount for answer in (qa.{', qa.'.join(loads)})))",
+    ]
+    command = [sys.executable, "-W", "error", "-c", "\n".join(program)]
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    assert (ran.returncode, ran.stderr) == (0, "")
+    last = ran.stdout.splitlines()[-1]
+    assert last == f"{checkout / 'quietarm' / '__init__.py'} 4 terms 3 terms"
