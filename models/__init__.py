@@ -1,40 +1,9 @@
 """What moves: plants as symbolic equations, and nothing else."""
 
 import casadi
+import lazy_loader
 
 if not hasattr(casadi, "SX"):  # a script's own file of that name was imported in its place
     raise ImportError(f"{casadi.__file__} hides the library casadi; give that file another name")
 
-from quietarm.models.arm_on_flexible_link import ArmOnFlexibleLink
-from quietarm.models.drawing import Body, flexible_link, rigid_link
-from quietarm.models.dual_link import DualLinkManipulator
-from quietarm.models.flexible_beam import FlexibleBeam
-from quietarm.models.joint_motion import Expression, JointMotion, deg, joint_unit
-from quietarm.models.linear_axis import LinearAxis
-from quietarm.models.plant import Plant, known_plants, parameter
-from quietarm.models.plant_file import PlantFile, file_of_plant, load_plant_file
-from quietarm.models.single_link import SingleLinkManipulator
-
-__version__ = "2.0.0.dev0"
-
-__all__ = [
-    "ArmOnFlexibleLink",
-    "Body",
-    "DualLinkManipulator",
-    "Expression",
-    "FlexibleBeam",
-    "JointMotion",
-    "LinearAxis",
-    "Plant",
-    "PlantFile",
-    "SingleLinkManipulator",
-    "__version__",
-    "deg",
-    "file_of_plant",
-    "flexible_link",
-    "joint_unit",
-    "known_plants",
-    "load_plant_file",
-    "parameter",
-    "rigid_link",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

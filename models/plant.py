@@ -79,8 +79,8 @@ class Plant(ABC):
                 )
         if not isinstance(name := cls.__dict__.get("name"), str):
             return
-        taken = Plant._known.get(name, cls)
-        if taken.__module__ != cls.__module__ and taken.__module__.startswith(f"{__package__}."):
+        belongs_to_quietarm = cls.__module__.startswith(f"{__package__}.")
+        if not belongs_to_quietarm and name in _shipped_plants():
             raise ValueError(f"plant name {name!r} is quietarm's own; give {cls.__name__} another")
         Plant._known[name] = cls
 
@@ -164,6 +164,16 @@ _MOST_PARAMETER = 1e100
 
 def known_plants() -> dict[str, type[Plant]]:
     """Every plant by its name: quietarm's own, and those of files that were imported."""
+    _import_shipped_plants()
+    return dict(Plant._known)
+
+
+def _shipped_plants() -> set[str]:
+    """The names of the plants that come with quietarm."""
+    shipped = f"{__package__}."
+    return {name for name, plant in known_plants().items() if plant.__module__.startswith(shipped)}
+
+
+def _import_shipped_plants() -> None:
     for module in iter_modules([str(Path(__file__).parent)]):
         import_module(f"{__package__}.{module.name}")
-    return dict(Plant._known)

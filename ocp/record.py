@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
-from quietarm.models import __version__
+from quietarm import __version__
 from quietarm.ocp.checks import (
     Count,
     CountFromOne,

@@ -4,3 +4,7 @@ Rooms: `cli` has the commands; `bench`, `compare`, `reproduce`, `sweep`, `identi
 `explore` what they do; `figures` draws, `report` writes, and `reading` knows what files and users
 call things. All of them may import the other three packages.
 """
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -35,10 +35,16 @@ def _kind_of(annotation):
     return None, False
 
 
+def _public():
+    """What every package, and every room of `studies` that users call, gives by name."""
+    homes = [qa.models, qa.ocp, qa.metaheuristics, qa.figures, qa.compare, qa.bench]
+    homes += [qa.studies.identify, qa.studies.sweep]
+    return {name: getattr(home, name) for home in homes for name in dir(home)}
+
+
 def _doors():
     """Public functions, classes that are no answers, and class methods, with such an argument."""
-    for name in dir(qa):
-        public = getattr(qa, name)
+    for name, public in sorted(_public().items()):
         if not callable(public):
             continue
         made_by_hand = not hasattr(public, "__dataclass_fields__") or public is qa.PointToPoint
