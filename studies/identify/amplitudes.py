@@ -23,7 +23,7 @@ def spread_of(pieces: Sequence[Part], name: str) -> tuple[float, float] | None:
     None where the pieces agree within their own uncertainty. The ends of the swing are half a piece
     beyond the middle of the first and last pieces: the change goes on there as it was.
     """
-    from scipy.stats import chi2  # not at the top: it takes long to load
+    from scipy.special import chdtri  # not at the top: it takes long to load
 
     if len(pieces) < 2:
         return None
@@ -33,7 +33,7 @@ def spread_of(pieces: Sequence[Part], name: str) -> tuple[float, float] | None:
     weights = 1 / deviations**2
     mean = float((weights * values).sum() / weights.sum())
     squares = float((weights * (values - mean) ** 2).sum())
-    limit = chi2.ppf(1 - _CHANCE, len(values) - 1)
+    limit = chdtri(len(values) - 1, _CHANCE)
     if squares <= limit:
         return None
     # pieces that are less certain than the change tell nothing of it

@@ -44,7 +44,7 @@ def estimate(
     name: str, values: Array, deviations: Array, recordings: NDArray[np.int64]
 ) -> Estimate:
     """Mean and intervals of one parameter, of parts of some recordings (by number)."""
-    from scipy.stats import t  # not at the top: it takes long to load
+    from scipy.special import stdtrit  # not at the top: it takes long to load
 
     own = np.maximum(deviations, 1e-12 * np.abs(values) + 1e-300) ** 2
     groups = [recordings == k for k in np.unique(recordings)]
@@ -61,7 +61,7 @@ def estimate(
 
     def ends(variances: Array) -> tuple[float, float]:
         total = variances.sum()
-        level = t.ppf((1 + _LEVEL) / 2, total**2 / (variances**2 / freedom).sum())
+        level = stdtrit(total**2 / (variances**2 / freedom).sum(), (1 + _LEVEL) / 2)
         half = float(level * total**0.5)
         return mean - half, mean + half
 

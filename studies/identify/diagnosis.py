@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.recording import noise_of, resolution_of
+from quietarm.studies.identify.running import running_median
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
@@ -71,10 +72,8 @@ def doubt_of(
 
 def _beside(power: Array) -> Array:
     """The noise's power in each bin, by the median of those beside it: two octaves or 40 bins."""
-    from scipy.ndimage import median_filter  # not at the top: it takes long to load
-
     count = len(power)
-    local = median_filter(power[1:], min(40, max(8, count // 2)), mode="nearest")
+    local = running_median(power[1:], min(40, max(8, count // 2)))
     high = float(np.median(power[count // 2 :]))
     beside = np.maximum(local, 0.2 * high)
     return np.append(local[0], beside) / np.log(2) + 1e-30 * power.max()

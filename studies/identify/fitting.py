@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -90,9 +90,14 @@ class Model:
 
     def cost(self, p: Array) -> float:
         """Share of the signals' power that these parameters leave, the trend not counted."""
+        residual = self.values - self.fitted(p)
+        return float(((residual**2).sum(axis=0) / self._power).sum())
+
+    @cached_property
+    def _power(self) -> Array:
+        """Of every signal, the trend not counted."""
         trend = self.trend @ np.linalg.lstsq(self.trend, self.values, rcond=None)[0]
-        left, whole = self.values - self.fitted(p), self.values - trend
-        return float(((left**2).sum(axis=0) / ((whole**2).sum(axis=0) + 1e-300)).sum())
+        return ((self.values - trend) ** 2).sum(axis=0) + 1e-300
 
     def start(self, p: Array, weights: Array | None = None) -> Array:
         """The parameters with their best amplitudes, by weights (signals, rows that count): x."""
@@ -105,6 +110,8 @@ class Model:
         B, dB = self._last(x[: self.count].tobytes(), True)
         free = x[self.count :].reshape(self.values.shape[1], -1)
         amplitudes = np.pad(free, ((0, 0), (self.fixed, 0)), constant_values=1.0)
+        if self.kept.all():  # no copies
+            return B, dB, amplitudes
         return B[:, self.kept], dB[:, :, self.kept], amplitudes
 
     def left(self, x: Array) -> Array:

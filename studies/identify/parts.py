@@ -15,9 +15,10 @@ from quietarm.models.joint_motion import ROTARY
 from quietarm.studies.identify.amplitudes import spread_of
 from quietarm.studies.identify.diagnosis import doubt, doubt_of, exceeds, saturated
 from quietarm.studies.identify.fitting import Fit, Model, fit
+from quietarm.studies.identify.joint_spline import smooth
 from quietarm.studies.identify.machine import Part, bounds_of, is_frequency, is_modal, values_of
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
-from quietarm.studies.identify.response import Driven, Forced, FreeDecay, response_of, smooth
+from quietarm.studies.identify.response import Driven, Forced, FreeDecay, response_of
 from quietarm.studies.identify.ring_downs import LEAST_PERIODS, find_ring_downs, moves
 from quietarm.studies.identify.well_damped import find_well_damped
 from quietarm.studies.identify.words import say
@@ -90,7 +91,7 @@ class PartFitter:
         kinds = [kind for kind, values in recording.signals.items() for _ in values.T]
         self._response = response_of(plant, tuple(names), tuple(kinds))
         self._given = values_of(plant, names)
-        self._splines = dict[tuple[float, float, int], Any]()
+        self._splines = dict[tuple[float, float], Any]()
         self._rates = np.array([is_frequency(plant, name) for name in names])
         modal = np.array([is_modal(plant, name) for name in names])
         self._dampings = modal & ~self._rates
@@ -106,13 +107,13 @@ class PartFitter:
 
         Where it is thinned it has so many samples a period of the fastest mode.
         """
-        piece = self._piece(part)
+        piece = whole = self._piece(part)
         fastest = self.frequency * float(self._modes[-1] / self._modes[0])
         if thin and not part.saturated:
             piece = piece.averaged(1 / max(per_period * fastest * piece.step, 1e-9))
         columns = FreeDecay(self._response, piece)
         if part.hub:
-            spline, speed = self._spline(part, piece), tau * fastest
+            spline, speed = self._spline(part, whole, fastest), tau * fastest
             columns = Driven(self._response, piece.time, spline, speed, self._scaled)
             if self._scaled and self._response.is_linear:
                 columns = Forced(self._response, piece.time, spline, speed)
@@ -124,11 +125,12 @@ class PartFitter:
                 model.kept = ~saturated(piece.values, model.fitted(part.vector))
         return model
 
-    def _spline(self, part: Part, piece: Recording) -> Any:
-        """The joint's motion in a part, smooth; told once from the samples of `piece`."""
-        ends = (part.begin, part.end, len(piece.time))
+    def _spline(self, part: Part, piece: Recording, fastest: float) -> Any:
+        """The joint's motion in a part, smooth."""
+        ends = (part.begin, part.end)
         if ends not in self._splines:
-            self._splines[ends] = smooth(piece)
+            count = 1 / max(_PER_PERIOD * fastest * piece.step, 1e-9)
+            self._splines[ends] = smooth(piece.averaged(count))
         return self._splines[ends]
 
     def ring_downs(self, by_hand: Sequence[tuple[float, float]] = ()) -> tuple[list[Part], str]:
@@ -234,7 +236,7 @@ class PartFitter:
     def _ring_down(self, rows: slice, earliest: int, by_hand: bool) -> Part:
         """A ring-down fitted alone: grown to what it meets; then what helps its model is added."""
         part = self._part(rows)
-        model = self.model(part)
+        model = self.model(part, per_period=_ROUGHLY)
         near = self.frequency + np.linspace(-0.6, 0.6, 9) / float(np.ptp(model.time))
         starts = self._starts(np.maximum(near, 0.3 * self.frequency))
         part, best = self._met(part, min(starts, key=model.cost))

@@ -26,6 +26,7 @@ from quietarm.ocp.simulation.collocation import (
 )
 from quietarm.ocp.uncertainty import with_values
 from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.recursion import decaying_sums
 
 Array = NDArray[np.float64]
 _STEP = 0.4
@@ -37,7 +38,6 @@ _DIFFERENCE = 1e-6
 """Share of a parameter, by which the differences of modes are taken."""
 _AT_ONCE = 512
 """Marches are compiled for multiples of so many steps."""
-_KNOTS = (12, 24, 48, 96, 192, 384, 768, 1536)
 
 
 class Response:
@@ -228,16 +228,14 @@ class Forced:
 
     def _answers(self, values: Any, derivatives: bool) -> tuple[Any, Any]:
         """What each eigenvalue makes of the acceleration at the rows, and its derivative by it."""
-        from scipy.signal import lfilter  # not at the top: it takes long to load
-
         found, slopes = list[Any](), list[Any]()
         for value in values:
             grown, by_step, by_step_slope = _over_a_step(value, self._step, self._nodes)
-            at = lfilter([1.0], [1.0, -grown], np.append(0.0, by_step))
+            at = decaying_sums(grown, np.append(0.0, by_step))
             begin, slope = at[self._rows], 0.0
             if derivatives:
                 pushed = by_step_slope + self._step * grown * at[:-1]
-                slope = lfilter([1.0], [1.0, -grown], np.append(0.0, pushed))[self._rows]
+                slope = decaying_sums(grown, np.append(0.0, pushed))[self._rows]
             if self._rest.any():
                 further, by_rest, by_rest_slope = _over_a_step(value, self._rest, self._row_nodes)
                 slope = further * (slope + self._rest * begin) + by_rest_slope
@@ -318,23 +316,6 @@ def response_of(plant: Plant, names: tuple[str, ...], kinds: tuple[str, ...]) ->
 
 
 Columns: TypeAlias = FreeDecay | Forced | Driven
-
-
-def smooth(recording: Recording) -> Any:
-    """The quintic spline of an angle whose number of knots has the least cross-validated error."""
-    from scipy.interpolate import make_lsq_spline  # not at the top: it takes long to load
-
-    time, angle, found = recording.time, recording.angle, list[tuple[float, int, Any]]()
-    rows = len(time)
-    for count in _KNOTS:
-        if count > max(rows / 4, _KNOTS[0]):
-            break
-        inner = np.interp(np.linspace(0, rows - 1, count)[1:-1], np.arange(rows), time)
-        knots = np.concatenate([[time[0]] * 6, inner, [time[-1]] * 6])
-        spline = make_lsq_spline(time, angle, knots, 5)
-        rest = float(np.sum((spline(time) - angle) ** 2))
-        found.append((rest / (rows - len(inner) - 6) ** 2, count, spline))
-    return min(found)[2]
 
 
 def _parts(values: Any) -> Array:

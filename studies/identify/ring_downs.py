@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
+from quietarm.studies.identify.running import running_maximum, running_minimum
 
 Array = NDArray[np.float64]
 
@@ -41,8 +42,6 @@ def envelope(recording: Recording, frequency: float) -> Envelope | None:
     Cosine, sine, offset and slope are fitted to three periods at a time by weighted least squares:
     that is two filters.
     """
-    from scipy.signal import fftconvolve  # not at the top: it takes long to load
-
     even, y = evenly(recording, frequency)
     h = float(even[1] - even[0])
     count = min(round(_WINDOW / (frequency * h)), len(even))
@@ -53,9 +52,23 @@ def envelope(recording: Recording, frequency: float) -> Envelope | None:
     X = np.stack([np.cos(phase), np.sin(phase), np.ones(count), t], axis=1)
     weight = np.hanning(count + 2)[1:-1]
     kernel = np.linalg.solve(X.T @ (weight[:, None] * X), X.T * weight)[:2]
-    parts = [fftconvolve(y, k[::-1, None], mode="valid", axes=0) for k in kernel]
+    parts = [_weighed(y, weights) for weights in kernel]
     size = np.sqrt(sum((part**2).sum(axis=1) for part in parts))
     return Envelope(even[: len(size)] + (count - 1) / 2 * h, size, float(np.linalg.norm(kernel[0])))
+
+
+def _weighed(values: Array, weights: Array) -> Array:
+    """Sums of every run of rows by weights (rows, signals), by Fourier transforms."""
+    from scipy.fft import irfft, next_fast_len, rfft  # not at the top: it takes long to load
+
+    transform: Any = rfft
+    back: Any = irfft
+    count = len(values)
+    size = next_fast_len(count, real=True)
+    spectrum = transform(values, size, axis=0)
+    of_weights = np.conj(transform(weights, size))
+    sums = back(spectrum * of_weights[:, None], size, axis=0)
+    return sums[: count - len(weights) + 1]
 
 
 def evenly(recording: Recording, frequency: float) -> tuple[Array, Array]:
@@ -123,13 +136,11 @@ def _decays(swing: Envelope, part: Recording, frequency: float) -> list[tuple[fl
 
 def standing(recording: Recording, frequency: float) -> NDArray[np.bool_]:
     """Where the joint is at rest: it moves no more in a period than its noise, or creeps."""
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d  # not at the top: slow to load
-
     angle = recording.angle
     if angle is None:
         return np.ones(len(recording.time), bool)
     size = max(3, round(1 / (frequency * recording.step)))
-    moved = maximum_filter1d(angle, size) - minimum_filter1d(angle, size)
+    moved = running_maximum(angle, size) - running_minimum(angle, size)
     return moved <= max(_flicker(angle), _CREEPS * float(np.ptp(angle)))
 
 
