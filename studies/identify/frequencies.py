@@ -8,8 +8,9 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models.joint_motion import ROTARY
+from quietarm.studies.identify.envelope import envelope, evenly
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording
-from quietarm.studies.identify.ring_downs import envelope, evenly, rests
+from quietarm.studies.identify.ring_downs import rests
 from quietarm.studies.identify.spectra import highest_peaks, spectrogram
 from quietarm.studies.identify.words import say
 
