@@ -19,7 +19,7 @@ def spread_of(pieces: Sequence[Part], name: str) -> tuple[float, float] | None:
     """
     from scipy.special import chdtri  # not at the top: it takes long to load
 
-    chance = 1e-3  # of pieces that agree to differ as much
+    chance = 1e-2  # of pieces that agree to differ as much
     matters = 1e-5  # share of the value, below which a change is one of the arithmetic
     if len(pieces) < 2:
         return None
@@ -42,20 +42,23 @@ def spread_of(pieces: Sequence[Part], name: str) -> tuple[float, float] | None:
 def _ends(values: Array, deviations: Array, least: float) -> tuple[float, float] | None:
     """The least and the largest of values and of what they go on to; None where all is less."""
     sure = 2.0  # deviations that a value may be off
-    before = _beyond(values)
-    after = _beyond(values[::-1])
-    all_values = np.concatenate([values, before, after])
-    of_before = np.full(len(before), deviations[0])
-    of_after = np.full(len(after), deviations[-1])
-    all_deviations = np.concatenate([deviations, of_before, of_after])
-    low = float((all_values - sure * all_deviations).min())
-    high = float((all_values + sure * all_deviations).max())
-    return (low, high) if high - low > least else None
+    before = _beyond(values, deviations)
+    after = _beyond(values[::-1], deviations[::-1])
+    candidates = [*zip(values, deviations), *before, *after]
+    low = float(min(value - sure * deviation for value, deviation in candidates))
+    high = float(max(value + sure * deviation for value, deviation in candidates))
+    if high - low <= least:
+        return None
+    curved = 0.05 * (high - low)  # what neither line nor parabola has
+    return low - curved, high + curved
 
 
-def _beyond(values: Array) -> list[float]:
-    """What is half a step before the first of values: by a line, and by a parabola."""
-    line = 1.5 * values[0] - 0.5 * values[1]
-    if len(values) < 3:
-        return [line]
-    return [line, 1.875 * values[0] - 1.25 * values[1] + 0.375 * values[2]]
+def _beyond(values: Array, deviations: Array) -> list[tuple[float, float]]:
+    """What is half a step before the first of values, by a line and a parabola; its deviation."""
+    weights = [np.array([1.5, -0.5])]
+    if len(values) > 2:
+        weights.append(np.array([1.875, -1.25, 0.375]))
+    return [
+        (float(w @ values[: len(w)]), float(np.linalg.norm(w * deviations[: len(w)])))
+        for w in weights
+    ]

@@ -134,10 +134,10 @@ def _judged(both: Fit, recording: Recording, piece: Recording) -> CloseModes | N
     seconds = float(np.ptp(piece.time))
     apart = abs(frequencies[0] - frequencies[1])
     met = both.misfit <= 1.5 * noise + 0.003
-    half_a_beat = apart * seconds > pi and apart > 6 * deviations[::2].max()
+    a_quarter = apart * seconds > pi / 2 and apart > 6 * deviations[::2].max()
     two = amplitudes.min() > 0.05 * amplitudes.max()
     decays = (dampings + 2 * deviations[1::2] > 0).all()
-    if not (met and half_a_beat and two and decays):
+    if not (met and a_quarter and two and decays):
         return None
     return CloseModes(
         frequencies[order],

@@ -10,27 +10,33 @@ from quietarm.studies.identify.least_squares import least_squares
 Array = NDArray[np.float64]
 
 
-def changes_along(fitted: Fit, frequency: float) -> bool:
+def changes_along(fitted: Fit, frequency: float, chance: float) -> bool:
     """Whether the residual has a part that is the swing times a curve over time.
 
+    The chance is that of noise to pass for it.
+
+
     A frequency that drifts, a damping that changes with the amplitude and a second mode nearby all
-    leave such a part. It is told from noise by the F test's limit for many rows (a score test).
+    leave such a part. The first half of a period does not count, in which the
+    swing may be held yet. It is told from noise by the F test's limit for many rows (a score test).
     """
     from scipy.special import chdtri  # not at the top: it takes long to load
 
-    chance = 1e-4  # that noise passes for a change
     nothing = 1e-6  # share of the swing, below which a change is one of the arithmetic
     if fitted.misfit < nothing:
         return False
     model = fitted.model
     residual = fitted.residual.T
     x = model.start(fitted.p)
-    slopes = model.jacobian(x)
+    time = model.time[model.counts]
+    after_release = time >= time[0] + 0.5 / frequency
+    residual = residual[:, after_release]
+    slopes = model.jacobian(x)[:, after_release]
     deviation = deviation_of(residual)
     clipped = np.clip(residual, -4 * deviation, 4 * deviation)
     explained = 0.0
     left_over = np.zeros_like(clipped)
-    curves = model.curved_swings(fitted.p)
+    curves = model.curved_swings(fitted.p)[:, after_release]
     for signal, values in enumerate(clipped):
         by_fit = slopes[signal]
         both = np.hstack([by_fit, curves[min(signal, len(curves) - 1)]])
@@ -38,9 +44,8 @@ def changes_along(fitted: Fit, frequency: float) -> bool:
         after = values - _nearest(both, values)
         explained += float(before @ before - after @ after) / float(deviation[signal, 0]) ** 2
         left_over[signal] = after / deviation[signal]
-    time = model.time[model.counts]
     count = curves.shape[-1] * len(residual)
-    power = power_near(time, left_over, frequency, len(x) + count)
+    power = power_near(time[after_release], left_over, frequency, len(x) + count)
     return explained > power * chdtri(count, chance)
 
 

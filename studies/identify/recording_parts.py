@@ -17,7 +17,12 @@ from quietarm.studies.identify.ring_downs import (
     find_swings,
     moves,
 )
-from quietarm.studies.identify.swing_changes import fit_close_modes, has_changes, with_changes
+from quietarm.studies.identify.swing_changes import (
+    fit_close_modes,
+    has_changes,
+    with_both,
+    with_changes,
+)
 from quietarm.studies.identify.well_damped import find_well_damped
 from quietarm.studies.identify.whole_recording import wide_range
 from quietarm.studies.identify.words import say
@@ -34,8 +39,9 @@ def fit_parts(fitter: PartFitter, by_hand: Spans = ()) -> tuple[list[Part], str]
     why = say("recording.silent")
     if fitter.frequency:
         parts, why = _periodic(fitter, by_hand)
-        if not by_hand and all(part.misfit > POOR for part in parts):
-            parts = _beating(fitter) or parts
+        doubtful = all(part.misfit > POOR or _is_doubted(part) for part in parts)
+        if doubtful and not by_hand:
+            parts = _with_fast_beats(fitter, parts)
     if all(part.misfit > POOR for part in parts):
         parts = _well_damped(fitter, by_hand) or parts
     if moves(recording) and not by_hand:
@@ -69,10 +75,12 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
             among = spans[: k + 1] if by_hand else spans
             beat, after_beat = _beat(fitter, among, k, best)
             if beat:
+                if after_beat == k + 1:
+                    beat = with_both(beat, with_changes(fitter, part, best, rows))
                 parts.append(beat)
                 earliest = spans[after_beat - 1].stop
                 continue
-            part = with_changes(fitter, part, rows)
+            part = with_changes(fitter, part, best, rows)
         last = parts[-1] if parts and not by_hand else None
         whole = _joined(fitter, last, part) if last else None
         if whole:
@@ -114,15 +122,34 @@ def _beat(
     return longest, after
 
 
-def _beating(fitter: PartFitter) -> list[Part]:
-    """Swings of two modes that beat so fast that nothing between is a ring-down."""
+def _with_fast_beats(fitter: PartFitter, parts: Sequence[Part]) -> list[Part]:
+    """The parts, and swings of two modes in whose fast beats no ring-down is found, or a false one.
+
+    A part inside such a swing is no part of its own.
+    """
     start = min(
         fitter.starts(np.array([fitter.frequency])),
         key=lambda p: abs(fitter.frequency_of(p) - fitter.frequency),
     )
     spans = find_swings(fitter.recording, fitter.frequency)
     fits = [fit_close_modes(fitter, rows, start) for rows in spans]
-    return [part for part in fits if part]
+    beats = [part for part in fits if part]
+    others = list[Part]()
+    for part in parts:
+        inside = [k for k, beat in enumerate(beats) if _overlap(beat, part)]
+        for k in inside:
+            beats[k] = with_both(beats[k], part)
+        if not inside:
+            others.append(part)
+    return sorted([*others, *beats], key=lambda part: part.begin)
+
+
+def _is_doubted(part: Part) -> bool:
+    return bool(part.warning) and part.cause != "close"
+
+
+def _overlap(first: Part, second: Part) -> bool:
+    return first.begin < second.end and second.begin < first.end
 
 
 def _well_damped(fitter: PartFitter, by_hand: Spans) -> list[Part]:
@@ -172,7 +199,9 @@ def _joined(fitter: PartFitter, first: Part, second: Part) -> Part | None:
         inside = (time >= part.begin) & (time <= part.end)
         if (best.residual[inside].std(axis=0) > more * residual).any():
             return None
-    return with_changes(fitter, whole, rows) if has_changes(fitter, whole, best) else whole
+    if has_changes(fitter, whole, best):
+        return with_changes(fitter, whole, best, rows)
+    return whole
 
 
 def _no_ring_down(fitter: PartFitter) -> str:

@@ -26,12 +26,15 @@ MET = 0.1
 
 
 def has_changes(fitter: PartFitter, part: Part, best: Fit) -> bool:
-    """Whether a swing leaves more than noise, or its frequency or damping change along it."""
-    leaves_more = part.misfit > 1.5 * part.noise + 0.003
-    return leaves_more or changes_along(best, fitter.frequency)
+    """Whether a swing leaves more than noise, or its frequency or damping may change along it."""
+    return _leaves_more(part) or changes_along(best, fitter.frequency, chance=1e-2)
 
 
-def with_changes(fitter: PartFitter, part: Part, rows: slice) -> Part:
+def _leaves_more(part: Part) -> bool:
+    return part.misfit > 1.5 * part.noise + 0.003
+
+
+def with_changes(fitter: PartFitter, part: Part, best: Fit, rows: slice) -> Part:
     """A ring-down with what its parameters are along it, fitted where one value meets it.
 
     Pieces of it are fitted alone, from the begin of the rows in which it was found, if a swing is
@@ -45,12 +48,34 @@ def with_changes(fitter: PartFitter, part: Part, rows: slice) -> Part:
     met = part
     if part.unexplained > MET and not part.saturated:
         met = _where_it_fits(fitter, part, pieces)
-    if met.cause in ("", "amplitude", "misfit") and met.unexplained < MET:
+    certain = _leaves_more(part) or changes_along(best, fitter.frequency, chance=1e-4)
+    if certain and met.cause in ("", "amplitude", "misfit") and met.unexplained < MET:
         first = _words(fitter, pieces[0])
         last = _words(fitter, pieces[-1])
         doubts = doubt("changes", misfit=part.misfit, first=first, last=last)
         met = replace(met, **doubts)
+    if part.saturated:
+        spread = _beyond_the_saturated(part, pieces, spread)
     return replace(met, spread=spread)
+
+
+def _beyond_the_saturated(part: Part, pieces: Sequence[Part], spread: Spread) -> Spread:
+    """What parameters may be of all of a part, where they change after it is saturated no more."""
+    seen = pieces[-1].end - pieces[0].begin
+    unseen = (pieces[0].begin - part.begin) / seen
+    return {
+        name: (low - unseen * (high - low), high + unseen * (high - low))
+        for name, (low, high) in spread.items()
+    }
+
+
+def with_both(beat: Part, changes: Part) -> Part:
+    """Two modes, whose spread holds that of pieces as well: less than a beat may be a drift."""
+    spread = dict(beat.spread)
+    for name, (low, high) in changes.spread.items():
+        lowest, highest = spread[name]
+        spread[name] = (min(low, lowest), max(high, highest))
+    return replace(beat, spread=spread)
 
 
 def _told_apart(fitter: PartFitter, part: Part, rows: slice) -> tuple[list[Part], Spread]:
@@ -183,5 +208,6 @@ def _of_the_louder(fitter: PartFitter, part: Part, close: CloseModes, start: Arr
         unsure = factor * (close.damping_deviations if is_damping else close.frequency_deviations)
         values[name] = float(of_modes[0])
         deviations[name] = float(unsure[0])
-        spread[name] = (float((of_modes - 2 * unsure).min()), float((of_modes + 2 * unsure).max()))
+        sure = 2 * unsure + 1e-8 * np.abs(of_modes)
+        spread[name] = (float((of_modes - sure).min()), float((of_modes + sure).max()))
     return replace(part, values=values, deviations=deviations, spread=spread)
