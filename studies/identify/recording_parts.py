@@ -76,7 +76,8 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
             beat, after_beat = _beat(fitter, among, k, best)
             if beat:
                 if after_beat == k + 1:
-                    beat = with_both(beat, with_changes(fitter, part, best, rows))
+                    changes = with_changes(fitter, part, best, rows)
+                    beat = with_both(fitter, beat, changes)
                 parts.append(beat)
                 earliest = spans[after_beat - 1].stop
                 continue
@@ -138,7 +139,7 @@ def _with_fast_beats(fitter: PartFitter, parts: Sequence[Part]) -> list[Part]:
     for part in parts:
         inside = [k for k, beat in enumerate(beats) if _overlap(beat, part)]
         for k in inside:
-            beats[k] = with_both(beats[k], part)
+            beats[k] = with_both(fitter, beats[k], part)
         if not inside:
             others.append(part)
     return sorted([*others, *beats], key=lambda part: part.begin)

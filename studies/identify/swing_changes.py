@@ -69,8 +69,12 @@ def _beyond_the_saturated(part: Part, pieces: Sequence[Part], spread: Spread) ->
     }
 
 
-def with_both(beat: Part, changes: Part) -> Part:
-    """Two modes, whose spread holds that of pieces as well: less than a beat may be a drift."""
+def with_both(fitter: PartFitter, beat: Part, changes: Part) -> Part:
+    """Two modes, whose spread holds that of pieces as well where less than a beat may be a drift."""
+    rates = np.array(fitter.names)[fitter.are_rates].tolist()
+    apart = max((beat.spread[name][1] - beat.spread[name][0] for name in rates), default=0.0)
+    if apart * (beat.end - beat.begin) > 1.5 * tau:
+        return beat
     spread = dict(beat.spread)
     for name, (low, high) in changes.spread.items():
         lowest, highest = spread[name]
