@@ -27,16 +27,16 @@ def doubt(cause: str, /, **facts: object) -> dict[str, str]:
     return {"cause": name, "warning": say(f"doubt.{cause}", **facts)}
 
 
-def spectrum_of(time: Array, left: Array) -> tuple[Array, Array]:
+def spectrum_of(time: Array, residual: Array) -> tuple[Array, Array]:
     """Frequencies [Hz], and the amplitude of what is left in each, of the signal with most."""
     even = np.linspace(time[0], time[-1], len(time))
-    values = np.interp(even, time, left[:, int(left.std(axis=0).argmax())])
+    values = np.interp(even, time, residual[:, int(residual.std(axis=0).argmax())])
     amplitudes: Array = 2 * np.abs(np.fft.rfft(values)) / len(even)
     return np.asarray(np.fft.rfftfreq(len(even), even[1] - even[0]), dtype=float), amplitudes
 
 
 def doubt_of(
-    time: Array, left: Array, swinging: Array, frequency: float, noise: float
+    time: Array, residual: Array, swinging: Array, frequency: float, noise: float
 ) -> dict[str, str]:
     """What is left beside noise: the likely cause and a warning; empty where it is noise.
 
@@ -51,14 +51,14 @@ def doubt_of(
     noise : float
         The recording's own, as a share of the swing.
     """
-    at, size = spectrum_of(time, left)
+    at, size = spectrum_of(time, residual)
     power, whole = size**2 / 2, float((swinging**2).mean(axis=0).max()) + 1e-300
     stands_out = power > _STANDS_OUT * _beside(power)
     lines = np.convolve(stands_out[1:], np.ones(5), "same") > 0
     excess = np.append(0.0, power[1:] * lines)
     share = float(excess.sum() / whole) ** 0.5
     if share < _MATTERS:
-        misfit = float((left**2).mean(axis=0).max() / whole) ** 0.5
+        misfit = float((residual**2).mean(axis=0).max() / whole) ** 0.5
         large = misfit >= max(_MUCH, 4 * noise)
         return doubt("misfit", misfit=misfit, noise=noise) if large else {}
     band = np.digitize(at, [0.6 * frequency, 1.5 * frequency])

@@ -65,7 +65,7 @@ def _filters(recording: Recording, frequency: float) -> _Filters | None:
     shapes = np.stack([np.cos(phase), np.sin(phase), np.ones(count), place], axis=1)
     hann = np.hanning(count + 2)[1:-1]
     products = shapes.T @ (hann[:, None] * shapes)
-    weights = np.linalg.solve(products, shapes.T * hann)[:2]
+    weights: Any = np.linalg.solve(products, shapes.T * hann)[:2]
     return _Filters(weights, time, values)
 
 

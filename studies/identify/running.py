@@ -39,7 +39,8 @@ def running_median(values: Array, size: int) -> Array:
 def running_mean(values: Array, size: int) -> Array:
     """The mean of so many values around each."""
     weights: Any = np.full(size, 1 / size)
-    return np.convolve(_padded(values, size), weights, "valid")
+    means: Any = np.convolve(_padded(values, size), weights, "valid")
+    return means
 
 
 def _padded(values: Array, size: int) -> Array:

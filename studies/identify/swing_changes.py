@@ -70,7 +70,7 @@ def _beyond_the_saturated(part: Part, pieces: Sequence[Part], spread: Spread) ->
 
 
 def with_both(fitter: PartFitter, beat: Part, changes: Part) -> Part:
-    """Two modes, whose spread holds that of pieces as well where less than a beat may be a drift."""
+    """Two modes, and what pieces say as well: less than a beat may be a drift."""
     rates = np.array(fitter.names)[fitter.are_rates].tolist()
     apart = max((beat.spread[name][1] - beat.spread[name][0] for name in rates), default=0.0)
     if apart * (beat.end - beat.begin) > 1.5 * tau:

@@ -44,7 +44,7 @@ def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
     stretches = np.split(there, turns)
     peaks = [int(run[np.abs(away[run]).argmax()]) for run in stretches]
     heights = np.abs(away[peaks])
-    found = list[tuple[slice, float]]()
+    swings = list[tuple[slice, float]]()
     for k in range(len(peaks) - 1):
         begins = k == 0 or heights[k] > heights[k - 1]
         if not begins or heights[k] < _LARGE * heights.max():
@@ -64,8 +64,8 @@ def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
         rows = slice(first, min(int(end), last))
         lasts = float(time[rows.stop - 1] - time[first]) * frequency
         if rows.stop - rows.start >= LEAST_ROWS and lasts >= _LEAST_PERIODS:
-            found.append((rows, frequency))
-    return found
+            swings.append((rows, frequency))
+    return swings
 
 
 def _crossing(time: Array, away: Array, before: int, after: int) -> float:

@@ -18,13 +18,13 @@ def _families() -> dict[str, type[Cycloid]]:
     modules = (
         import_module(f"{profiles.__name__}.{it.name}") for it in iter_modules(profiles.__path__)
     )
-    found = {
+    families = {
         kind.name.removeprefix("cycloid-"): kind
         for module in modules
         for kind in vars(module).values()
         if isinstance(kind, type) and issubclass(kind, Cycloid) and hasattr(kind, "name")
     }
-    return {POLYNOMIAL: found.pop(POLYNOMIAL), **dict(sorted(found.items()))}
+    return {POLYNOMIAL: families.pop(POLYNOMIAL), **dict(sorted(families.items()))}
 
 
 FAMILIES: Mapping[str, type[Cycloid]] = _families()

@@ -48,7 +48,7 @@ def load_runs(paths: Sequence[Path]) -> dict[Path, Front]:
     Unlike a front, a run may have found nothing.
     """
     inside = [sorted(path.rglob("*.json")) if path.is_dir() else [path] for path in paths]
-    files = [file for own in inside for file in own]
+    files = [file for in_folder in inside for file in in_folder]
     for file in files:
         if files.count(file) > 1:
             raise ValueError(f"the run {file} is given twice; give it once")
