@@ -60,7 +60,7 @@ def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Rec
     recording = next(one for one in recordings if one.name == part.recording)
     model, signals = curve_of(found, part, recordings)
     time, fitted = model.time, signals[:, 0]
-    residual = np.where(model.kept, model.values[:, 0] - fitted, np.nan)
+    residual = np.where(model.counts, model.values[:, 0] - fitted, np.nan)
     size = max(float(np.abs(fitted - fitted.mean()).max()), 1e-300)
     piece = recording.part(recording.rows(part.begin, part.end))
     over.plot(piece.time, piece.values[:, 0], color=GREY, linewidth=2.2, label="measured")
@@ -77,7 +77,7 @@ def _draw_part(row: Any, found: Identified, part: Part, recordings: Sequence[Rec
     left.axhline(0, color="0.3", linewidth=0.5)
     left.set_ylabel("residual [%]", fontsize=8)
     left.set_xlabel("time [s]", fontsize=8)
-    at, amplitude = spectrum_of(time[model.kept], residual[model.kept, None])
+    at, amplitude = spectrum_of(time[model.counts], residual[model.counts, None])
     spectrum.loglog(at[1:], 100 * amplitude[1:] / size + 1e-9, color=RED, linewidth=0.7)
     for frequency in _frequencies(found, part):
         spectrum.axvline(frequency, color=BLUE, linewidth=0.8, linestyle="--")

@@ -9,12 +9,6 @@ from numpy.typing import NDArray
 from quietarm.studies.identify.machine import Part
 
 Array = NDArray[np.float64]
-_SURE = 2.0
-"""Deviations that a piece's value may be off."""
-_CHANCE = 1e-4
-"""Of pieces that agree to differ as much: rarer is a change."""
-_MATTERS = 1e-5
-"""Share of a value, below which a change is one of the arithmetic."""
 
 
 def spread_of(pieces: Sequence[Part], name: str) -> tuple[float, float] | None:
@@ -23,8 +17,10 @@ def spread_of(pieces: Sequence[Part], name: str) -> tuple[float, float] | None:
     None where the pieces agree within their own uncertainty. The ends of the swing are half a piece
     beyond the middle of the first and last pieces: the change goes on there as it was.
     """
-    from scipy.stats import chi2  # not at the top: it takes long to load
+    from scipy.special import chdtri  # not at the top: it takes long to load
 
+    chance = 1e-2  # of pieces that agree to differ as much
+    matters = 1e-5  # share of the value, below which a change is one of the arithmetic
     if len(pieces) < 2:
         return None
     values = np.array([piece.values[name] for piece in pieces])
@@ -33,16 +29,36 @@ def spread_of(pieces: Sequence[Part], name: str) -> tuple[float, float] | None:
     weights = 1 / deviations**2
     mean = float((weights * values).sum() / weights.sum())
     squares = float((weights * (values - mean) ** 2).sum())
-    limit = chi2.ppf(1 - _CHANCE, len(values) - 1)
-    if squares <= limit:
+    freedom = len(values) - 1
+    if squares <= chdtri(freedom, chance):
         return None
     # pieces that are less certain than the change tell nothing of it
-    between = max(squares - (len(values) - 1), 0.0) / weights.sum()
-    certain = deviations**2 <= max(between, float(np.sort(deviations)[1]) ** 2)
-    values, deviations = values[certain], deviations[certain]
-    first, last = (values[0] - values[1]) / 2, (values[-1] - values[-2]) / 2
-    values = np.append(values, [values[0] + first, values[-1] + last])
-    deviations = np.append(deviations, deviations[[0, -1]])
-    low = float((values - _SURE * deviations).min())
-    high = float((values + _SURE * deviations).max())
-    return (low, high) if high - low > _MATTERS * abs(mean) else None
+    change = max(squares - freedom, 0.0) / weights.sum()
+    second_best = float(np.sort(deviations)[1]) ** 2
+    certain = deviations**2 <= max(change, second_best)
+    return _ends(values[certain], deviations[certain], matters * abs(mean))
+
+
+def _ends(values: Array, deviations: Array, least: float) -> tuple[float, float] | None:
+    """The least and the largest of values and of what they go on to; None where all is less."""
+    sure = 2.0  # deviations that a value may be off
+    before = _beyond(values, deviations)
+    after = _beyond(values[::-1], deviations[::-1])
+    candidates = [*zip(values, deviations), *before, *after]
+    low = float(min(value - sure * deviation for value, deviation in candidates))
+    high = float(max(value + sure * deviation for value, deviation in candidates))
+    if high - low <= least:
+        return None
+    curved = 0.05 * (high - low)  # what neither line nor parabola has
+    return low - curved, high + curved
+
+
+def _beyond(values: Array, deviations: Array) -> list[tuple[float, float]]:
+    """What is half a step before the first of values, by a line and a parabola; its deviation."""
+    weights = [np.array([1.5, -0.5])]
+    if len(values) > 2:
+        weights.append(np.array([1.875, -1.25, 0.375]))
+    return [
+        (float(w @ values[: len(w)]), float(np.linalg.norm(w * deviations[: len(w)])))
+        for w in weights
+    ]

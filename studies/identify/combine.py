@@ -25,26 +25,27 @@ _OWN_FREEDOM = 30.0
 
 def combine(names: Sequence[str], parts: Sequence[Part]) -> tuple[list[Estimate], dict[str, str]]:
     """The estimates of parameters from parts, and those with an interval as wide as their value."""
-    found, wide = list[Estimate](), dict[str, str]()
+    estimates = list[Estimate]()
+    wide = dict[str, str]()
     recordings = np.unique([part.recording for part in parts], return_inverse=True)[1]
     for name in names:
         values = np.array([part.values[name] for part in parts])
         deviations = np.array([part.deviations[name] for part in parts])
         spreads = [part.spread[name] for part in parts if name in part.spread]
-        one = _widened(estimate(name, values, deviations, recordings), spreads)
-        if one.value == 0 or one.error >= 1:
-            low, high = one.widest
+        combined = _widened(estimate(name, values, deviations, recordings), spreads)
+        if combined.value == 0 or combined.error >= 1:
+            low, high = combined.widest
             wide[name] = say("parameter.wide", low=low, high=high)
         else:
-            found.append(one)
-    return found, wide
+            estimates.append(combined)
+    return estimates, wide
 
 
 def estimate(
     name: str, values: Array, deviations: Array, recordings: NDArray[np.int64]
 ) -> Estimate:
     """Mean and intervals of one parameter, of parts of some recordings (by number)."""
-    from scipy.stats import t  # not at the top: it takes long to load
+    from scipy.special import stdtrit  # not at the top: it takes long to load
 
     own = np.maximum(deviations, 1e-12 * np.abs(values) + 1e-300) ** 2
     groups = [recordings == k for k in np.unique(recordings)]
@@ -61,7 +62,7 @@ def estimate(
 
     def ends(variances: Array) -> tuple[float, float]:
         total = variances.sum()
-        level = t.ppf((1 + _LEVEL) / 2, total**2 / (variances**2 / freedom).sum())
+        level = stdtrit(total**2 / (variances**2 / freedom).sum(), (1 + _LEVEL) / 2)
         half = float(level * total**0.5)
         return mean - half, mean + half
 
@@ -69,16 +70,17 @@ def estimate(
     return Estimate(name, mean, *ends(of_parts), *next_swing)
 
 
-def _widened(own: Estimate, spreads: Sequence[tuple[float, float]]) -> Estimate:
+def _widened(estimated: Estimate, spreads: Sequence[tuple[float, float]]) -> Estimate:
     """An estimate whose intervals hold what the parameter is at every amplitude as well."""
     lowest = min((low for low, _ in spreads), default=np.inf)
     highest = max((high for _, high in spreads), default=-np.inf)
-    next_swing = {}
-    if own.next_low is not None and own.next_high is not None:
-        next_swing = {
-            "next_low": min(own.next_low, lowest), "next_high": max(own.next_high, highest)
-        }  # fmt: skip
-    return replace(own, low=min(own.low, lowest), high=max(own.high, highest), **next_swing)
+    low = min(estimated.low, lowest)
+    high = max(estimated.high, highest)
+    if estimated.next_low is None or estimated.next_high is None:
+        return replace(estimated, low=low, high=high)
+    next_low = min(estimated.next_low, lowest)
+    next_high = max(estimated.next_high, highest)
+    return replace(estimated, low=low, high=high, next_low=next_low, next_high=next_high)
 
 
 def _mean(values: Array, variances: Array) -> tuple[float, float]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.recording import noise_of, resolution_of
+from quietarm.studies.identify.running import running_median
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
@@ -26,16 +27,16 @@ def doubt(cause: str, /, **facts: object) -> dict[str, str]:
     return {"cause": name, "warning": say(f"doubt.{cause}", **facts)}
 
 
-def spectrum_of(time: Array, left: Array) -> tuple[Array, Array]:
+def spectrum_of(time: Array, residual: Array) -> tuple[Array, Array]:
     """Frequencies [Hz], and the amplitude of what is left in each, of the signal with most."""
     even = np.linspace(time[0], time[-1], len(time))
-    values = np.interp(even, time, left[:, int(left.std(axis=0).argmax())])
+    values = np.interp(even, time, residual[:, int(residual.std(axis=0).argmax())])
     amplitudes: Array = 2 * np.abs(np.fft.rfft(values)) / len(even)
     return np.asarray(np.fft.rfftfreq(len(even), even[1] - even[0]), dtype=float), amplitudes
 
 
 def doubt_of(
-    time: Array, left: Array, swinging: Array, frequency: float, noise: float
+    time: Array, residual: Array, swinging: Array, frequency: float, noise: float
 ) -> dict[str, str]:
     """What is left beside noise: the likely cause and a warning; empty where it is noise.
 
@@ -50,14 +51,14 @@ def doubt_of(
     noise : float
         The recording's own, as a share of the swing.
     """
-    at, size = spectrum_of(time, left)
+    at, size = spectrum_of(time, residual)
     power, whole = size**2 / 2, float((swinging**2).mean(axis=0).max()) + 1e-300
     stands_out = power > _STANDS_OUT * _beside(power)
     lines = np.convolve(stands_out[1:], np.ones(5), "same") > 0
     excess = np.append(0.0, power[1:] * lines)
     share = float(excess.sum() / whole) ** 0.5
     if share < _MATTERS:
-        misfit = float((left**2).mean(axis=0).max() / whole) ** 0.5
+        misfit = float((residual**2).mean(axis=0).max() / whole) ** 0.5
         large = misfit >= max(_MUCH, 4 * noise)
         return doubt("misfit", misfit=misfit, noise=noise) if large else {}
     band = np.digitize(at, [0.6 * frequency, 1.5 * frequency])
@@ -71,10 +72,8 @@ def doubt_of(
 
 def _beside(power: Array) -> Array:
     """The noise's power in each bin, by the median of those beside it: two octaves or 40 bins."""
-    from scipy.ndimage import median_filter  # not at the top: it takes long to load
-
     count = len(power)
-    local = median_filter(power[1:], min(40, max(8, count // 2)), mode="nearest")
+    local = running_median(power[1:], min(40, max(8, count // 2)))
     high = float(np.median(power[count // 2 :]))
     beside = np.maximum(local, 0.2 * high)
     return np.append(local[0], beside) / np.log(2) + 1e-30 * power.max()

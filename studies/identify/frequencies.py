@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import tau
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models.joint_motion import ROTARY
+from quietarm.studies.identify.envelope import envelope, evenly
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording
-from quietarm.studies.identify.ring_downs import envelope, evenly, rests
+from quietarm.studies.identify.ring_downs import rests
+from quietarm.studies.identify.spectra import highest_peaks, spectrogram
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
@@ -94,33 +95,21 @@ def _candidates(recording: Recording) -> dict[float, float]:
 
     Peaks of displacement and of speed: the one is steep beside a slow motion, the other is not.
     """
-    from scipy.signal import find_peaks, spectrogram  # not at the top: it takes long to load
-
-    spectra: Any = spectrogram
-    even, y = evenly(recording, 1 / (32 * recording.step))
-    rate, total = 1 / float(even[1] - even[0]), len(even)
+    time, values = evenly(recording, 1 / (32 * recording.step))
+    rate, total = 1 / float(time[1] - time[0]), len(time)
     found = dict[float, float]()
     for length in (total // share for share in _STRETCHES if total // share >= 32):
-        at, _, power = spectra(
-            y, rate, "hann", length, length // 2, 4 * length, detrend=_without_line, axis=0
-        )
+        at = np.fft.rfftfreq(4 * length, 1 / rate)
+        loudest = spectrogram(values, length).max(axis=1)
         known = slice(int(np.searchsorted(at, 1.5 * rate / length)), None)
-        levels = np.log(power.sum(axis=1).max(axis=-1)[known] + 1e-300)
+        levels = np.log(loudest[known] + 1e-300)
         for order in (0, 2):
             steep = levels + order * np.log(at[known])
-            peaks, _ = find_peaks(steep, prominence=_STANDS_OUT)
-            for k in peaks[np.argsort(steep[peaks])[::-1][:_CANDIDATES]]:
+            for k in highest_peaks(steep, _CANDIDATES, _STANDS_OUT):
                 one = float(at[known][k])
                 if all(abs(one / other - 1) > _APART for other in found):
                     found[one] = _prominence(recording, one)
     return found
-
-
-def _without_line(values: Array) -> Array:
-    """Values less the line through them, along the last axis."""
-    at = np.linspace(-1.0, 1.0, values.shape[-1])
-    slope = (values @ at) / (at @ at)
-    return values - values.mean(axis=-1, keepdims=True) - slope[..., None] * at
 
 
 def _prominence(recording: Recording, frequency: float) -> float:

@@ -13,7 +13,6 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
 from quietarm.studies.identify.combine import combine
-from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
 from quietarm.studies.identify.machine import (
     Identified,
@@ -23,9 +22,12 @@ from quietarm.studies.identify.machine import (
     is_modal,
 )
 from quietarm.studies.identify.mending import without_glitches
-from quietarm.studies.identify.parts import PartFitter
+from quietarm.studies.identify.part_fitter import PartFitter
 from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.recording_parts import fit_parts
 from quietarm.studies.identify.ring_downs import moves
+from quietarm.studies.identify.swing_model import Model
+from quietarm.studies.identify.whole_recording import fit_whole, sensitivities
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
@@ -83,7 +85,7 @@ def identify(
     at_rest = "torque" not in kinds and all(is_modal(plant, name) for name in names)
     fitted, left_out, moving = list[Part](), dict[str, str](), list[PartFitter]()
     for fitter in fitters:
-        found, why = fitter.ring_downs(parts) if at_rest else ([], say("recording.silent"))
+        found, why = fit_parts(fitter, parts) if at_rest else ([], say("recording.silent"))
         fitted += found
         if not found and fitter.frequency and (moves(fitter.recording) or not at_rest):
             moving.append(fitter)
@@ -95,7 +97,7 @@ def identify(
         raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
     unknown = {} if fitted else _not_identifiable(moving)
     sought = [name for name in names if name not in unknown]
-    fitted += [fitter.of(sought).whole() for fitter in moving]
+    fitted += [fit_whole(fitter.of(sought)) for fitter in moving]
     fitted, worthless = _worth_pooling(plant, fitted)
     left_out |= worthless
     doubts += doubt_units(recordings, [one.frequency for one in fitters], plant.joint)
@@ -182,7 +184,7 @@ def _not_identifiable(each: Sequence[PartFitter]) -> dict[str, str]:
     for one in each:
         if not moves(one.recording):
             raise ValueError(say("refused.rests", name=one.recording.name))
-    J, names = np.concatenate([one.sensitivities() for one in each]), each[0].names
+    J, names = np.concatenate([sensitivities(one) for one in each]), each[0].names
     sizes = np.linalg.norm(J, axis=0)
     kept, cannot = list[int](), dict[str, str]()
     for k, name in enumerate(names):

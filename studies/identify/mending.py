@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.recording import Recording, noise_of
+from quietarm.studies.identify.running import running_maximum
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
@@ -112,16 +113,12 @@ def _by_neighbours(time: Array, values: Array, reach: int) -> tuple[Array, Array
 
 def _usual(residual: Array) -> Array:
     """The robust deviation of residuals in each block of samples, or in one beside it."""
-    from scipy.ndimage import maximum_filter1d  # not at the top: it takes long to load
-
     count = max(len(residual) // _BLOCK, 1)
     sizes, size = np.abs(residual), len(residual) // count
     usual = 1.4826 * np.median(sizes[: count * size].reshape(count, size), axis=1)
     blocks = np.minimum(np.arange(len(residual)) // size, count - 1)
-    return maximum_filter1d(usual, 3)[blocks]
+    return running_maximum(usual, 3)[blocks]
 
 
 def _largest_nearby(sizes: Array, reach: int) -> Array:
-    from scipy.ndimage import maximum_filter1d  # not at the top: it takes long to load
-
-    return maximum_filter1d(sizes, 2 * reach + 1)
+    return running_maximum(sizes, 2 * reach + 1)

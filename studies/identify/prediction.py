@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.ocp.checks import takes
-from quietarm.studies.identify.fitting import Model
 from quietarm.studies.identify.frequencies import find_frequencies
 from quietarm.studies.identify.machine import Part, is_modal, values_of
 from quietarm.studies.identify.mending import without_glitches
-from quietarm.studies.identify.parts import PartFitter
+from quietarm.studies.identify.part_fitter import PartFitter
 from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.recording_parts import fit_parts
+from quietarm.studies.identify.swing_model import Model
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
@@ -66,7 +67,7 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
     recordings, _ = without_glitches(recordings)
     for one, frequency in zip(recordings, find_frequencies(recordings)):
         fitter = PartFitter(plant, names, one, frequency)
-        parts, why = fitter.ring_downs()
+        parts, why = fit_parts(fitter)
         if not parts:
             raise ValueError(f"{one.name}: {why}")
         for part in parts:

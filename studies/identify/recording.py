@@ -61,18 +61,18 @@ class Recording:
     mended: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        given = {name: np.asarray(values, float) for name, values in self._arrays.items()}
-        if not given.keys() - {"time", "angle"}:
+        arrays = {name: np.asarray(values, float) for name, values in self._arrays.items()}
+        if not arrays.keys() - {"time", "angle"}:
             self._refuse("signals")
-        rows, whole = len(given["time"]), True
-        for name, values in given.items():
+        rows, whole = len(arrays["time"]), True
+        for name, values in arrays.items():
             if len(values) != rows:
                 self._refuse("lengths", rows=rows, others=len(values), what=name)
             whole = whole & np.isfinite(values.reshape(rows, -1)).all(axis=1)
-        kept = np.count_nonzero(whole)
-        if not LEAST_ROWS <= kept <= _MOST_ROWS:
-            self._refuse("rows", rows=kept, least=LEAST_ROWS, most=_MOST_ROWS)
-        whole_rows, changes = mended({name: values[whole] for name, values in given.items()})
+        whole_count = np.count_nonzero(whole)
+        if not LEAST_ROWS <= whole_count <= _MOST_ROWS:
+            self._refuse("rows", rows=whole_count, least=LEAST_ROWS, most=_MOST_ROWS)
+        whole_rows, changes = mended({name: values[whole] for name, values in arrays.items()})
         object.__setattr__(self, "mended", {**self.mended, **changes})
         for name, values in whole_rows.items():
             object.__setattr__(self, name, values)
@@ -99,8 +99,8 @@ class Recording:
     @property
     def signals(self) -> dict[str, Array]:
         """What is compared with the plant, a column each, by name."""
-        given = {k: v for k, v in self._arrays.items() if k not in ("time", "angle")}
-        return {name: values.reshape(len(values), -1) for name, values in given.items()}
+        arrays = {k: v for k, v in self._arrays.items() if k not in ("time", "angle")}
+        return {name: values.reshape(len(values), -1) for name, values in arrays.items()}
 
     @cached_property
     def values(self) -> Array:
@@ -125,8 +125,8 @@ class Recording:
         """Its means over so many rows each; itself where these are fewer than two."""
         size = max(1, int(min(count, len(self.time) / LEAST_ROWS)))
         rows = len(self.time) // size * size
-        given = self._arrays.items()
-        blocks = {name: v[:rows].reshape(-1, size, *v.shape[1:]) for name, v in given}
+        arrays = self._arrays.items()
+        blocks = {name: v[:rows].reshape(-1, size, *v.shape[1:]) for name, v in arrays}
         return replace(self, **{name: v.mean(axis=1) for name, v in blocks.items()})
 
 

@@ -2,87 +2,53 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.studies.identify.envelope import WINDOW, Envelope, envelope
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
+from quietarm.studies.identify.running import running_maximum, running_minimum
 
 Array = NDArray[np.float64]
-
 LEAST_PERIODS = 2.0
-_WINDOW = 3.0
-"""Periods that the swing is weighed over, by Hann's window."""
-_LEAST_SAMPLES = 4
-"""A period has to have."""
-_GAP = 1.0
-"""Periods without a sample, after which another part begins."""
-_GROWS = 1.15
-"""Factor by which a free decay never grows, beside the noise."""
-_SMALLEST = 0.05
-"""Of the largest swing: smaller ones are not called ring-downs."""
-_CREEPS = 0.03
-"""Of its whole way, what a joint may move in a period and be called at rest."""
-_FLICKERS = 8.0
-"""Deviations of an encoder's noise, within which it stands."""
-
-
-class Envelope(NamedTuple):
-    """Times, the amplitude of all signals together in units of their noise, and the noise of it."""
-
-    time: Array
-    size: Array
-    noise: float
-
-
-def envelope(recording: Recording, frequency: float) -> Envelope | None:
-    """The amplitude at a frequency over time, free of offset and slope; None where none fits in.
-
-    Cosine, sine, offset and slope are fitted to three periods at a time by weighted least squares:
-    that is two filters.
-    """
-    from scipy.signal import fftconvolve  # not at the top: it takes long to load
-
-    even, y = evenly(recording, frequency)
-    h = float(even[1] - even[0])
-    count = min(round(_WINDOW / (frequency * h)), len(even))
-    if frequency * h * _LEAST_SAMPLES > 1 or count < 8:
-        return None
-    t = (np.arange(count) - (count - 1) / 2) * h
-    phase = 2 * np.pi * frequency * t
-    X = np.stack([np.cos(phase), np.sin(phase), np.ones(count), t], axis=1)
-    weight = np.hanning(count + 2)[1:-1]
-    kernel = np.linalg.solve(X.T @ (weight[:, None] * X), X.T * weight)[:2]
-    parts = [fftconvolve(y, k[::-1, None], mode="valid", axes=0) for k in kernel]
-    size = np.sqrt(sum((part**2).sum(axis=1) for part in parts))
-    return Envelope(even[: len(size)] + (count - 1) / 2 * h, size, float(np.linalg.norm(kernel[0])))
-
-
-def evenly(recording: Recording, frequency: float) -> tuple[Array, Array]:
-    """Times with the same step, 32 a period, and the signals there in units of their noise."""
-    values = recording.values
-    least = 1e-9 * np.ptp(values, axis=0) + 1e-12 * np.abs(values).max(axis=0) + 1e-300
-    noise = np.maximum(noise_of(values), least)
-    thin = recording.averaged(1 / (32 * frequency * recording.step))
-    count = round(float(np.ptp(thin.time)) / thin.step) + 1
-    even = np.linspace(thin.time[0], thin.time[-1], count)
-    columns = [np.interp(even, thin.time, column) for column in (thin.values / noise).T]
-    return even, np.stack(columns, axis=1)
 
 
 def find_ring_downs(recording: Recording, frequency: float) -> list[slice]:
-    """The rows of every free decay of two periods or more, while the joint is at rest."""
-    sizes, found = list[float](), list[slice]()
-    for rest in rests(recording, frequency, _GAP):
+    """The rows of every free decay of two periods or more, while the joint is at rest.
+
+    A gap of a period without a sample ends one. Swings below a twentieth of the largest are none.
+    """
+    sizes = list[float]()
+    ring_downs = list[slice]()
+    for rest in rests(recording, frequency, gap=1.0):
         part = recording.part(rest)
         swing = envelope(part, frequency)
-        for begin, end in [] if swing is None else _decays(swing, part, frequency):
-            rows, long = recording.rows(begin, end), 0.9 * LEAST_PERIODS / frequency
-            if swing and end - begin > long and rows.stop - rows.start >= LEAST_ROWS:
-                among = (swing.time >= begin) & (swing.time <= end)
-                sizes.append(float(swing.size[among].max(initial=0.0)))
-                found.append(rows)
-    return [rows for rows, size in zip(found, sizes) if size >= _SMALLEST * max(sizes)]
+        if swing is None:
+            continue
+        for begin, end in _decays(swing, part, frequency):
+            rows = recording.rows(begin, end)
+            is_long = end - begin > 0.9 * LEAST_PERIODS / frequency
+            if is_long and rows.stop - rows.start >= LEAST_ROWS:
+                inside = (swing.time >= begin) & (swing.time <= end)
+                sizes.append(float(swing.size[inside].max(initial=0.0)))
+                ring_downs.append(rows)
+    largest = max(sizes, default=0.0)
+    return [rows for rows, size in zip(ring_downs, sizes) if size >= 0.05 * largest]
+
+
+def find_swings(recording: Recording, frequency: float) -> list[slice]:
+    """The rows of every rest from its largest swing on, to where it is lost in the noise."""
+    swings = list[slice]()
+    for rest in rests(recording, frequency, gap=1.0):
+        part = recording.part(rest)
+        swing = envelope(part, frequency)
+        if swing is None:
+            continue
+        begin = float(swing.time[int(swing.size.argmax())])
+        above = swing.time[swing.size > _least(swing)]
+        rows = recording.rows(begin, float(above[-1]))
+        if rows.stop - rows.start >= LEAST_ROWS:
+            swings.append(rows)
+    return swings
 
 
 def rests(recording: Recording, frequency: float, gap: float = np.inf) -> list[slice]:
@@ -90,47 +56,66 @@ def rests(recording: Recording, frequency: float, gap: float = np.inf) -> list[s
     at_rest = standing(recording, frequency)
     breaks = np.diff(at_rest) | (np.diff(recording.time) * frequency > gap)
     runs = np.split(np.arange(len(at_rest)), np.flatnonzero(breaks) + 1)
-    long = [run for run in runs if at_rest[run[0]] and len(run) >= LEAST_ROWS]
-    return [slice(run[0], run[-1] + 1) for run in long]
+    long_runs = [run for run in runs if at_rest[run[0]] and len(run) >= LEAST_ROWS]
+    return [slice(run[0], run[-1] + 1) for run in long_runs]
+
+
+def _least(swing: Envelope) -> float:
+    """The amplitude from which on a swing is above the noise."""
+    return max(3 * swing.noise, 1e-6 * float(swing.size.max()))
 
 
 def _decays(swing: Envelope, part: Recording, frequency: float) -> list[tuple[float, float]]:
     """Begin and end of each stretch in which the amplitude does not grow and is above the noise."""
     time, size, noise = swing
-    half, count = _WINDOW / 2 / frequency, len(size)
-    least = max(3 * noise, 1e-6 * float(size.max()))
-    reach = max(1, round(half / max(float(np.ptp(time)) / max(count - 1, 1), 1e-300)))
-    found, top = list[tuple[float, float]](), 0
+    most_growth = 1.15  # beside the noise a free decay never grows by more
+    count = len(size)
+    half_window = WINDOW / 2 / frequency
+    least = _least(swing)
+    step = max(float(np.ptp(time)) / max(count - 1, 1), 1e-300)
+    reach = max(1, round(half_window / step))
+    decays = list[tuple[float, float]]()
+    top = 0
     while top < count:
         if size[top] < least:
             top += 1
             continue
-        # up to the top: where it has not been surpassed for half a window
-        while ahead := int(np.argmax(size[top : top + reach + 1])):
-            top += ahead
+        top = _top(size, top, reach)
         rest = size[top:]
-        grows = rest > _GROWS * np.minimum.accumulate(rest) + 2 * noise
-        last = top + int(np.argmax(np.append((rest < least) | grows, True)))
+        lowest = np.minimum.accumulate(rest)
+        grows = rest > most_growth * lowest + 2 * noise
+        ends = np.append((rest < least) | grows, True)
+        last = top + int(np.argmax(ends))
         begin = part.time[0] if top == 0 else time[top]
         end = part.time[-1] if last == count else time[last - 1]
-        if last < count and size[last] >= least:  # what pushed it again is in the windows before
-            end = time[top + int(np.argmin(size[top:last]))] - half / 3
+        if last < count and size[last] >= least:
+            # what pushed it again is in the windows before
+            lowest_place = top + int(np.argmin(size[top:last]))
+            end = time[lowest_place] - half_window / 3
         if end > begin:
-            found.append((float(begin), float(end)))
+            decays.append((float(begin), float(end)))
         top = max(last, top + 1)
-    return found
+    return decays
+
+
+def _top(size: Array, place: int, reach: int) -> int:
+    """The next place that is not surpassed for so many samples."""
+    while ahead := int(np.argmax(size[place : place + reach + 1])):
+        place += ahead
+    return place
 
 
 def standing(recording: Recording, frequency: float) -> NDArray[np.bool_]:
-    """Where the joint is at rest: it moves no more in a period than its noise, or creeps."""
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d  # not at the top: slow to load
+    """Where the joint is at rest: it moves no more in a period than its noise, or creeps.
 
+    A joint that creeps moves less than 3 % of its whole way in a period.
+    """
     angle = recording.angle
     if angle is None:
         return np.ones(len(recording.time), bool)
     size = max(3, round(1 / (frequency * recording.step)))
-    moved = maximum_filter1d(angle, size) - minimum_filter1d(angle, size)
-    return moved <= max(_flicker(angle), _CREEPS * float(np.ptp(angle)))
+    moved = running_maximum(angle, size) - running_minimum(angle, size)
+    return moved <= max(_flicker(angle), 0.03 * float(np.ptp(angle)))
 
 
 def moves(recording: Recording) -> bool:
@@ -140,4 +125,5 @@ def moves(recording: Recording) -> bool:
 
 
 def _flicker(angle: Array) -> float:
-    return _FLICKERS * float(noise_of(angle)[0])
+    """What an encoder may show of a joint that stands: eight deviations of its noise."""
+    return 8.0 * float(noise_of(angle)[0])

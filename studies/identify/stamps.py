@@ -69,6 +69,10 @@ def _even(time: Array, steps: Array) -> tuple[Array, float] | None:
     longest = _GAP * max(float(np.median(steps)), tick)
     if np.ptp(steps[steps <= longest]) < 0.5 * tick:
         return None
+    longer = steps > 1.5 * np.median(steps)
+    alike = np.ptp(steps[~longer]) < 0.5 * tick
+    if alike and np.count_nonzero(longer) <= _SOME * len(steps):  # samples lack here and there
+        return None
     runs = np.split(np.arange(len(time)), np.flatnonzero(steps > longest) + 1)
     even = time.astype(float).copy()
     for run in runs:

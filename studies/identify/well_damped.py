@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
+from quietarm.studies.identify.running import running_mean
 
 Array = NDArray[np.float64]
 _REST = 0.1
@@ -27,14 +28,12 @@ _SMOOTH = 9
 
 def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
     """The rows of every swing that is damped well, and its frequency [Hz]."""
-    from scipy.ndimage import uniform_filter1d  # not at the top: it takes long to load
-
     time, values = recording.time, recording.values
     noise = noise_of(values)
     column = int((np.ptp(values, axis=0) / np.maximum(noise, 1e-300)).argmax())
     rest = np.median(values[-max(LEAST_ROWS // 2, int(_REST * len(time))) :, column])
     size = min(_SMOOTH, max(1, len(time) // 100))
-    away = uniform_filter1d(values[:, column] - rest, size)
+    away = running_mean(values[:, column] - rest, size)
     least = max(_ABOVE * float(noise[column]) / size**0.5, 0.01 * float(np.abs(away).max()))
     # from one side to the other, without what is near the rest
     sides = np.where(np.abs(away) > least, np.sign(away), 0.0)
@@ -45,7 +44,7 @@ def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
     stretches = np.split(there, turns)
     peaks = [int(run[np.abs(away[run]).argmax()]) for run in stretches]
     heights = np.abs(away[peaks])
-    found = list[tuple[slice, float]]()
+    swings = list[tuple[slice, float]]()
     for k in range(len(peaks) - 1):
         begins = k == 0 or heights[k] > heights[k - 1]
         if not begins or heights[k] < _LARGE * heights.max():
@@ -65,8 +64,8 @@ def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
         rows = slice(first, min(int(end), last))
         lasts = float(time[rows.stop - 1] - time[first]) * frequency
         if rows.stop - rows.start >= LEAST_ROWS and lasts >= _LEAST_PERIODS:
-            found.append((rows, frequency))
-    return found
+            swings.append((rows, frequency))
+    return swings
 
 
 def _crossing(time: Array, away: Array, before: int, after: int) -> float:

@@ -38,7 +38,9 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
     table, label = read_table(path), joint_label("angle", joint)
-    name, begin = (table.first(one, "name it so in its heading") for one in (label, "time"))
+    name, begin = (
+        table.first(quantity, "name it so in its heading") for quantity in (label, "time")
+    )
     time, angle = table.in_si(begin, "time"), table.in_si(name, label)
     _check(path, time, angle, joint)
     largest = np.abs(angle).max()

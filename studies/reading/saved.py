@@ -56,7 +56,7 @@ def load_runs(paths: Sequence[Path]) -> tuple[dict[Path, Front], list[str]]:
     found nothing.
     """
     inside = [sorted(path.rglob("*.json")) if path.is_dir() else [path] for path in paths]
-    files = [file for own in inside for file in own]
+    files = [file for in_folder in inside for file in in_folder]
     for file in files:
         if files.count(file) > 1:
             raise ValueError(f"the run {file} is given twice; give it once")

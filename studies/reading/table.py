@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -25,7 +24,6 @@ ARRAYS = (".npy", ".npz", ".mat")
 """Endings of files of arrays; any other is a text."""
 TABLES = (".csv", ".txt", ".dat", *ARRAYS)
 """Endings by which a table is told from numbers."""
-_SHOWN = 12
 _LEAST_STEPS = 8
 _EVEN = 0.95
 """Share of the steps that are the usual one where a column rises evenly."""
@@ -88,12 +86,9 @@ class Table:
                 return self.columns[found[0]]
         if name.isdecimal() and int(name) < len(self.columns):
             return self.columns[int(name)]
-        names = [one.name for one in self.columns]
-        listed = ", ".join(names[:_SHOWN]) + ", ..." * (len(names) > _SHOWN)
+        names = [column.name for column in self.columns]
         near = nearest(name, names) if names else ""
-        raise FileFormatError(
-            f"{self.path} has no column {name!r}{near}; its columns, from 0, are {listed}"
-        )
+        raise FileFormatError(f"{self.path} has no column {name!r}{near}; {self._listed()}")
 
     def first(self, quantity: str, remedy: str) -> str:
         """The first column that is called as a time, an angle or a position is.
@@ -106,10 +101,16 @@ class Table:
                 return one.name
         if quantity == "time" and self.columns and self._first_is_time():
             return self.columns[0].name
-        names = ", ".join(one.name for one in self.columns[:_SHOWN])
         raise FileFormatError(
-            f"{self.path} has no column called {quantity}; {remedy} (its columns, from 0: {names})"
+            f"{self.path} has no column called {quantity}; {remedy}; {self._listed()}"
         )
+
+    def _listed(self) -> str:
+        """The columns by name, in words; a number serves as well."""
+        most = 12
+        names = [column.name for column in self.columns[:most]]
+        more = ", ..." if len(self.columns) > most else ""
+        return f"its columns, by name or by number from 0, are {', '.join(names)}{more}"
 
     def _first_is_time(self) -> bool:
         """Whether the first column rises evenly, and does not only count the rows."""
@@ -232,12 +233,12 @@ def _refuse_huge(content: bytes) -> None:
     rows = max(content.count(b"\n"), content.count(b"\r"))
     if rows > _MOST_ROWS:
         raise FileFormatError(f"it has {rows} rows; give at most {_MOST_ROWS}")
-    for match in re.finditer(rb"[^\r\n]{%d,}" % (2 * _MOST_COLUMNS), content):
-        line = match[0]
-        columns = 1 + max(line.count(b","), line.count(b";"), line.count(b"\t"))
+    for number, line in enumerate(content.splitlines(), start=1):
+        if len(line) < 2 * _MOST_COLUMNS:
+            continue
+        columns = 1 + max(line.count(b","), line.count(b";"), line.count(b"\t"), line.count(b"|"))
         _refuse_wide(max(columns, len(line.split())), _MOST_COLUMNS)
         if len(line) > _LONGEST_LINE:
-            number = content.count(b"\n", 0, match.start()) + 1
             raise FileFormatError(
                 f"line {number} has {len(line)} letters; give at most {_LONGEST_LINE} in a line"
             )

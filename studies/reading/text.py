@@ -18,7 +18,7 @@ from quietarm.studies.reading.cells import is_clock, is_number, numbers_of, seco
 from quietarm.studies.reading.units import is_unit
 
 Array = NDArray[np.float64]
-_SEPARATORS = (";", "\t", ",", None)
+_SEPARATORS = (";", "\t", ",", "|", None)
 """None is white space."""
 _LIKE = 4
 """Rows that look alike are where the numbers begin."""
@@ -35,7 +35,7 @@ def read_text(content: bytes, strict: bool) -> list[tuple[str, str, Array]]:
     heading above the numbers.
     """
     lines = [line.strip(" ") for line in _decode(content).splitlines()]
-    filled = [k for k, line in enumerate(lines) if line.strip()]
+    filled = [k for k, line in enumerate(lines) if line.strip() and not _is_rule(line)]
     if not filled:
         raise FileFormatError("it is empty; give rows of numbers")
     data = [k for k in filled if lines[k].lstrip()[0] not in "#%"]
@@ -69,6 +69,11 @@ def read_text(content: bytes, strict: bool) -> list[tuple[str, str, Array]]:
     ]
 
 
+def _is_rule(line: str) -> bool:
+    """Whether a line only separates a heading from its rows, as |---|:--:| does."""
+    return "--" in line and not line.strip("-|+:= \t")
+
+
 def _decode(content: bytes) -> str:
     utf16 = content[:2] in (b"\xff\xfe", b"\xfe\xff")
     for encoding in ("utf-16",) if utf16 else ("utf-8-sig", "cp1252"):
@@ -82,7 +87,14 @@ def _decode(content: bytes) -> str:
 def _cells(line: str, separator: str | None) -> list[str]:
     if separator is None:
         return line.split()
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+    plain = _without_frame(line, separator)
+    return [cell.strip() for cell in next(csv.reader([plain], delimiter=separator), [])]
+
+
+def _without_frame(line: str, separator: str | None) -> str:
+    """A line of a table that has bars at both ends, without these."""
+    framed = separator == "|" and len(line) > 1 and line[0] == line[-1] == "|"
+    return line[1:-1] if framed else line
 
 
 def _begin(lines: list[str], separator: str | None, least: int) -> tuple[int, int, int] | None:
@@ -130,16 +142,30 @@ def _named(line: str, separator: str | None, first_row: list[str]) -> list[str] 
     One may be missing: that of rows with a mark at their end, or of rows that are numbered.
     """
     width = len(first_row)
+    splits = _splits(line, separator)
+    for cells in splits:
+        if len(cells) == width and _has_words(cells):
+            return cells
+    for cells in splits[:2]:
+        if len(cells) + 1 == width and _has_words(cells):
+            return ["", *cells] if first_row[-1] else [*cells, ""]
+    return None
+
+
+def _splits(line: str, separator: str | None) -> list[list[str]]:
+    """The ways in which a line may be cells: as the rows are, or as people write headings.
+
+    Above columns of white space names may have spaces of their own, a unit in brackets, or another
+    separator.
+    """
     splits = [_cells(line, separator)]
     if separator is None:
-        splits.append(re.split(r"\s{2,}|\t", line.strip()))
-    for cells in splits:
-        named = cells
-        if len(cells) + 1 == width:
-            named = ["", *cells] if first_row[-1] else [*cells, ""]
-        if len(named) == width and _has_words(named):
-            return named
-    return None
+        plain = line.strip()
+        splits.append(re.split(r"\s{2,}|\t", plain))
+        splits += [_cells(plain, mark) for mark in _SEPARATORS if mark and mark in plain]
+        splits.append(re.split(r"\s+(?![(\[{])(?![^(\[{]*[)\]}])", plain))
+        splits.append(re.findall(r"[^\s(\[{][^(\[{]*[(\[{][^)\]}]*[)\]}]", plain))
+    return splits
 
 
 def _has_words(cells: list[str]) -> bool:
@@ -156,12 +182,13 @@ def _numbers(
     import pandas as pd  # not at the top: it takes half a second to load
 
     for k, line in rows:
-        if separator and (count := line.count(separator)) >= width and '"' not in line:
+        count = _without_frame(line, separator).count(separator) if separator else 0
+        if count >= width and '"' not in line:
             raise FileFormatError(
                 f"line {k + 1} has {count + 1} columns, the first {width}; give as many in every "
                 "line"
             )
-    text = "\n".join(line for _, line in rows)
+    text = "\n".join(_without_frame(line, separator) for _, line in rows)
     read: Any = partial(
         pd.read_csv, sep=separator or r"\s+", header=None, names=range(width), index_col=False,
         skipinitialspace=True,

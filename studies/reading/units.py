@@ -9,7 +9,8 @@ from math import pi
 _TIMES = {
     "s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "msec": 1e-3,
     "millisecond": 1e-3, "milliseconds": 1e-3, "us": 1e-6, "usec": 1e-6, "microseconds": 1e-6,
-    "ns": 1e-9, "min": 60.0,
+    "microsecond": 1e-6, "ns": 1e-9, "min": 60.0, "mins": 60.0, "minute": 60.0, "minutes": 60.0,
+    "h": 3600.0, "hr": 3600.0, "hrs": 3600.0, "hour": 3600.0, "hours": 3600.0,
 }  # fmt: skip
 _ANGLES = {
     "rad": 1.0, "radian": 1.0, "radians": 1.0, "mrad": 1e-3, "deg": pi / 180, "degs": pi / 180,
@@ -33,9 +34,9 @@ UNITS: Mapping[str, Mapping[str, float]] = {
 }  # fmt: skip
 """What a unit of a quantity is in SI units."""
 _ELSEWHERE = """
-    hr hrs hour hours mins minutes day days samples ticks tick ft feet yd mil thou kg lb lbf oz ozin
+    day days samples ticks tick ft feet yd mil thou kg lb lbf oz ozin
     lbin lbft kgf kgcm gf ma ua amps volt volts bar pa kpa mpa psi kn hz khz rpm % rad/s deg/s
-    arcmin arcsec cnt count steps pulses lsb a h n
+    arcmin arcsec cnt count steps pulses lsb a n
 """
 _LIKE_UNITS = {unit for table in UNITS.values() for unit in table if unit != "in"} | set(
     _ELSEWHERE.split()

@@ -466,7 +466,9 @@ def test_the_peaks_of_an_encoder_are_not_saturated(counts):
 @pytest.mark.parametrize("acceleration", [False, True])
 @pytest.mark.parametrize("plant", [qa.FlexibleBeam(mode_count=2), qa.DualLinkManipulator()])
 def test_filters_of_the_acceleration_are_the_collocation_of_the_plans(plant, acceleration):
-    from quietarm.studies.identify.response import Driven, Forced, Response, smooth
+    from quietarm.studies.identify.columns import Driven, Forced
+    from quietarm.studies.identify.joint_spline import smooth
+    from quietarm.studies.identify.response import Response
 
     names = [name for name in plant.measured if name.startswith(("omega", "zeta"))]
     kinds = ["acceleration" if acceleration else "tip"] * plant.tips
@@ -504,3 +506,89 @@ def test_rows_that_stand_twice_are_read_once_however_many(share):
     twice = beam(qa.Recording(time[rows], tip=tip[rows]))
     assert twice.plant == beam(qa.Recording(time, tip=tip)).plant
     assert "stands twice" in twice.warnings[0]
+
+
+def two_modes(t, first, second, zeta, share, phase=0.4):
+    """A push at 1 s that two modes answer: a sum of closed forms."""
+    since = np.maximum(t - 1, 0)
+    omega = math.tau * second
+    damping = 1.2 * zeta
+    louder = decay(since, first, zeta)
+    root = math.sqrt(1 - damping**2)
+    other = np.exp(-damping * omega * since) * np.cos(omega * root * since + phase)
+    return np.where(t < 1, 0.0, louder + 20 * share * other)
+
+
+@pytest.mark.parametrize(
+    ("second", "share", "zeta"),
+    [(3.4, 0.9, 0.004), (3.25, 0.8, 0.003), (3.4, 0.2, 0.006), (2.6, 0.9, 0.01), (4.3, 0.9, 0.01)],
+)
+def test_two_close_modes_are_one_ring_down_whose_intervals_hold_both(second, share, zeta):
+    t = np.arange(0, 25, 0.005)
+    tip = two_modes(t, 3.2, second, zeta, share)
+    found = beam(qa.Recording(t, tip=noisy(tip, 0.01)))
+    assert causes(found) == {"close"}
+    assert len(found.parts) == 1
+    assert "two modes beat" in found.parts[0].warning
+    omega, damping = found.estimates
+    ends = sorted((math.tau * 3.2, math.tau * second))
+    assert omega.low < ends[0]
+    assert ends[1] < omega.high
+    assert omega.high - omega.low < 1.02 * (ends[1] - ends[0])
+    assert damping.low < zeta
+    assert 1.2 * zeta < damping.high
+    with pytest.raises(ValueError, match="two modes beat"):
+        _ = found.errors
+
+
+def test_two_pushes_of_close_modes_are_two_ring_downs():
+    t = np.arange(0, 50, 0.005)
+    first = two_modes(t, 3.2, 3.5, 0.006, 0.8)
+    tip = np.where(t < 26, first, two_modes(t - 25, 3.2, 3.5, 0.006, 0.8))
+    found = beam(qa.Recording(t, tip=noisy(tip, 0.01)))
+    assert [part.cause for part in found.parts] == ["close", "close"]
+
+
+@pytest.mark.parametrize(
+    ("drift", "noise", "zeta"),
+    [(3e-4, 0.05, 0.001), (1e-3, 0.05, 0.002), (0.01, 0.02, 0.002), (0.2, 0.01, 0.003)],
+)
+def test_a_frequency_that_drifts_along_a_swing_is_inside_the_interval(drift, noise, zeta):
+    t = np.arange(0, 60, 0.005)
+    phase = math.tau * (3.2 * t + drift * t**2 / 120)
+    swing = 20 * np.exp(-zeta * math.tau * 3.2 * t) * np.cos(phase)
+    found = beam(qa.Recording(t, tip=noisy(swing, noise, seed=1)))
+    # told until the swing is an eighth
+    last = min(60.0, math.log(8) / (zeta * math.tau * 3.2))
+    (omega, *_) = found.estimates
+    assert omega.low < math.tau * 3.2
+    assert omega.high > math.tau * (3.2 + drift * last / 60)
+
+
+@pytest.mark.parametrize("count", [4, 10])
+def test_a_frequency_that_drifts_among_files_is_inside_the_next_swings_interval(count):
+    hertz = 3.2 + 0.02 * np.arange(count + 1) / count
+    found = beam(*(rung(one, seed=seed) for seed, one in enumerate(hertz[:-1])))
+    omega = found.estimates[0]
+    assert omega.next_low < math.tau * 3.2
+    assert omega.next_high > math.tau * hertz[-1]  # that of the next
+
+
+def test_the_first_frequency_of_a_pendulum_is_inside_the_interval():
+    # 0.97 Hz at small amplitudes; from 1.2 rad on the period is that of the elliptic integral
+    found = beam(pendulum(0.97, 0.002, 0.0, 1.2, 119))
+    from scipy.special import ellipk
+
+    first = 0.97 * math.pi / 2 / ellipk(math.sin(0.6) ** 2)
+    omega = found.estimates[0]
+    assert omega.low < math.tau * first
+    assert omega.high > math.tau * 0.96
+
+
+def test_a_sample_that_lacks_is_no_rounding_of_the_stamps():
+    t = np.arange(0, 8, 0.002)
+    tip = noisy(released(t, 2.3, 0.016), 0.01)
+    lacking = np.delete(np.arange(len(t)), 2111)
+    recording = qa.Recording(t[lacking], tip=tip[lacking])
+    assert recording.time == pytest.approx(t[lacking], abs=1e-12)
+    assert recording.mended == {}

@@ -173,6 +173,17 @@ RECORDERS = {
     "named.txt": ("tip_mm\n", "%.3f\n", (TIP,), "--rate 0.2kHz"),
     "counts.csv": ("time_ms,tip_counts\n", "%.1f,%.0f\n", (1e3 * TIME, 100 * TIP),
                    "--tip tip_counts --scale time=1e-3,tip=1e-5"),
+    "bars.txt": ("time (min)|load|tip (mm)\n", "%.8f|1|%.4f\n", (TIME / 60, TIP),
+                 "--time 0 --tip 2"),
+    "frame.txt": ("| time [minutes] | tip [mm] |\n|---|---:|\n", "| %.8f | %.4f |\n",
+                  (TIME / 60, TIP), "--time 0 --tip 1"),
+    "query.txt": (" time_min | tip_mm \n----------+--------\n", " %.8f | %.4f\n",
+                  (TIME / 60, TIP), "--time 0 --tip 1"),
+    "apart.txt": ("# Time (min) Load (N) Tip (mm)\n", "%.8f 1 %.4f\n", (TIME / 60, TIP),
+                  "--time 0 --tip 2"),
+    "words.txt": ("Time since start (min) Tip deflection (mm)\n", "%.8f %.4f\n",
+                  (TIME / 60, TIP), "--time 0 --tip 1"),
+    "mixed.txt": ("Time [ms], Tip [mm]\n", "%.1f %.4f\n", (1e3 * TIME, TIP), "--time 0 --tip 1"),
 }  # fmt: skip
 
 
@@ -191,7 +202,14 @@ def test_signals_of_a_simulink_structure_go_by_their_labels(push, done, refused)
     same(done, "identify scope.mat flexible-beam --tip tip_mm")
     same(done, "identify scope.mat flexible-beam --tip Scope.tip_mm --time Scope.time")
     said = refused("identify scope.mat flexible-beam --tip w")
-    assert "from 0, are Scope.time, Scope.tip_mm, Scope.theta" in said
+    assert "by number from 0, are Scope.time, Scope.tip_mm, Scope.theta" in said
+
+
+def test_columns_of_a_matrix_are_listed_by_name_in_every_message(push, refused):
+    savemat(push / "matrix.mat", {"X": np.stack([0 * TIME, TIP], axis=1)})
+    for tip in ("w", "X:2"):  # no such column; no time
+        said = refused(f"identify matrix.mat flexible-beam --tip {tip}")
+        assert "its columns, by name or by number from 0, are X:1, X:2" in said
 
 
 def test_a_first_column_that_counts_rows_is_no_time(push, refused):

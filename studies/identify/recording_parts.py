@@ -1,0 +1,216 @@
+"""The parts of a recording that tell of its machine: ring-downs, each fitted alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from quietarm.studies.identify.fitting import Fit
+from quietarm.studies.identify.hub_swing import with_hub
+from quietarm.studies.identify.machine import Part
+from quietarm.studies.identify.part_fitter import PartFitter
+from quietarm.studies.identify.recording import LEAST_ROWS
+from quietarm.studies.identify.ring_down_fit import fit_ring_down
+from quietarm.studies.identify.ring_downs import (
+    LEAST_PERIODS,
+    find_ring_downs,
+    find_swings,
+    moves,
+)
+from quietarm.studies.identify.swing_changes import (
+    fit_close_modes,
+    has_changes,
+    with_both,
+    with_changes,
+)
+from quietarm.studies.identify.well_damped import find_well_damped
+from quietarm.studies.identify.whole_recording import wide_range
+from quietarm.studies.identify.words import say
+
+Spans = Sequence[tuple[float, float]]
+POOR = 0.2
+"""Misfit, from which on a swing may be one that is damped well, or of two modes."""
+
+
+def fit_parts(fitter: PartFitter, by_hand: Spans = ()) -> tuple[list[Part], str]:
+    """The ring-downs of a recording, or why there are none; some may be chosen by hand."""
+    recording = fitter.recording
+    parts = list[Part]()
+    why = say("recording.silent")
+    if fitter.frequency:
+        parts, why = _periodic(fitter, by_hand)
+        doubtful = all(part.misfit > POOR or _is_doubted(part) for part in parts)
+        if doubtful and not by_hand:
+            parts = _with_fast_beats(fitter, parts)
+    if all(part.misfit > POOR for part in parts):
+        parts = _well_damped(fitter, by_hand) or parts
+    if moves(recording) and not by_hand:
+        parts = with_hub(fitter, parts, slice(None))
+    elif moves(recording):
+        parts = [
+            with_motion
+            for part in parts
+            for with_motion in with_hub(fitter, [part], fitter.rows(part))
+        ]
+    return parts, "" if parts else why
+
+
+def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
+    """Ring-downs of several periods, or why there are none."""
+    if by_hand:
+        spans = [fitter.recording.rows(*ends) for ends in by_hand]
+        spans = [rows for rows in spans if rows.stop - rows.start >= LEAST_ROWS]
+    else:
+        spans = find_ring_downs(fitter.recording, fitter.frequency)
+    parts = list[Part]()
+    why = _no_ring_down(fitter)
+    earliest = 0
+    after_beat = 0
+    for k, rows in enumerate(spans):
+        if k < after_beat:
+            continue
+        part, best = fit_ring_down(fitter, rows, earliest, bool(by_hand))
+        earliest = rows.stop
+        if has_changes(fitter, part, best):
+            among = spans[: k + 1] if by_hand else spans
+            beat, after_beat = _beat(fitter, among, k, best)
+            if beat:
+                if after_beat == k + 1:
+                    changes = with_changes(fitter, part, best, rows)
+                    beat = with_both(fitter, beat, changes)
+                parts.append(beat)
+                earliest = spans[after_beat - 1].stop
+                continue
+            part = with_changes(fitter, part, best, rows)
+        last = parts[-1] if parts and not by_hand else None
+        whole = _joined(fitter, last, part) if last else None
+        if whole:
+            parts[-1] = whole
+        elif part.misfit < 1 or by_hand:
+            parts.append(part)
+        else:
+            facts = {"begin": part.begin, "end": part.end, "frequency": fitter.frequency}
+            why = say("recording.free", **facts)
+    return parts, why
+
+
+def _beat(
+    fitter: PartFitter, spans: Sequence[slice], first: int, best: Fit
+) -> tuple[Part | None, int]:
+    """One swing of two modes from a span on, and the number of the span after it.
+
+    Where two modes beat, the swing grows again and again without a push: what looks like several
+    ring-downs is one.
+    """
+
+    def until(last: int) -> Part | None:
+        rows = slice(spans[first].start, spans[last].stop)
+        return fit_close_modes(fitter, rows, best.p)
+
+    end = len(spans) - 1
+    if part := until(end):
+        return part, end + 1
+    longest = None
+    after = first
+    for last in range(first + 1, end):
+        part = until(last)
+        if part is None:
+            break
+        longest = part
+        after = last + 1
+    if longest is None and first < end and (part := until(first)):
+        return part, first + 1
+    return longest, after
+
+
+def _with_fast_beats(fitter: PartFitter, parts: Sequence[Part]) -> list[Part]:
+    """The parts, and swings of two modes in whose fast beats no ring-down is found, or a false one.
+
+    A part inside such a swing is no part of its own.
+    """
+    start = min(
+        fitter.starts(np.array([fitter.frequency])),
+        key=lambda p: abs(fitter.frequency_of(p) - fitter.frequency),
+    )
+    spans = find_swings(fitter.recording, fitter.frequency)
+    fits = [fit_close_modes(fitter, rows, start) for rows in spans]
+    beats = [part for part in fits if part]
+    others = list[Part]()
+    for part in parts:
+        inside = [k for k, beat in enumerate(beats) if _overlap(beat, part)]
+        for k in inside:
+            beats[k] = with_both(fitter, beats[k], part)
+        if not inside:
+            others.append(part)
+    return sorted([*others, *beats], key=lambda part: part.begin)
+
+
+def _is_doubted(part: Part) -> bool:
+    return bool(part.warning) and part.cause != "close"
+
+
+def _overlap(first: Part, second: Part) -> bool:
+    return first.begin < second.end and second.begin < first.end
+
+
+def _well_damped(fitter: PartFitter, by_hand: Spans) -> list[Part]:
+    """Swings that are over after a period or two, of all of the recording or of parts of it."""
+    recording = fitter.recording
+    much_damping = 0.06  # from which on a swing is over too soon for an envelope to show it
+    usual = fitter.frequency
+    parts = list[Part]()
+    spans = [recording.rows(*ends) for ends in by_hand] or [slice(None)]
+    for span in spans:
+        piece = recording.part(span)
+        if moves(piece):
+            continue
+        swings = find_well_damped(piece)
+        if by_hand and len(swings) > 1:  # a part by hand is one ring-down
+            continue
+        for rows, frequency in swings:
+            fitter.frequency = frequency
+            begin = float(piece.time[rows.start])
+            end = float(piece.time[rows.stop - 1])
+            part = fitter.part(recording.rows(begin, end))
+            starts = fitter.starts(wide_range(frequency))
+            part, _ = fitter.fit(part, min(starts, key=fitter.model(part).cost))
+            is_damped = fitter.damping_of(part) > much_damping
+            if is_damped and part.misfit < max(POOR, 2 * part.noise):
+                parts.append(part)
+    if not parts:
+        fitter.frequency = usual
+    return parts
+
+
+def _joined(fitter: PartFitter, first: Part, second: Part) -> Part | None:
+    """Two parts as one ring-down, where one swing meets both: samples between them lack."""
+    more = 1.25  # times what is left of parts by themselves, that one swing may leave of them
+    if second.amplitude >= first.amplitude:
+        return None
+    rows = slice(fitter.rows(first).start, fitter.rows(second).stop)
+    if moves(fitter.recording.part(rows)):
+        return None
+    model = fitter.model(fitter.part(rows))
+    start = min((first.vector, second.vector), key=model.cost)
+    whole, best = fitter.fit(fitter.part(rows), start)
+    time = best.model.time
+    for part in (first, second):
+        alone = fitter.model(part)
+        residual = (alone.values - alone.fitted(part.vector)).std(axis=0)
+        inside = (time >= part.begin) & (time <= part.end)
+        if (best.residual[inside].std(axis=0) > more * residual).any():
+            return None
+    if has_changes(fitter, whole, best):
+        return with_changes(fitter, whole, best, rows)
+    return whole
+
+
+def _no_ring_down(fitter: PartFitter) -> str:
+    frequency = fitter.frequency
+    recording = fitter.recording
+    periods = float(np.ptp(recording.time)) * frequency
+    few = ""
+    if periods < LEAST_PERIODS:
+        few = f": it lasts {periods:.2g} periods of {frequency:.3g} Hz"
+    angle = "" if recording.angle is not None else ", or the joint's angle, too"
+    return say("recording.short", few=few, angle=angle)
