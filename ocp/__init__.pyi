@@ -43,7 +43,6 @@ from .profiles.networks import CycloidGaussians as CycloidGaussians
 from .profiles.networks import CycloidNetwork as CycloidNetwork
 from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
 from .record import Record as Record
-from .record import SolveSettings as SolveSettings
 from .record import Verification as Verification
 from .robustness import Figures as Figures
 from .robustness import Robustness as Robustness
@@ -51,6 +50,9 @@ from .robustness import Sensitivity as Sensitivity
 from .robustness import Sweep as Sweep
 from .robustness import Worst as Worst
 from .robustness import evaluate_robustness as evaluate_robustness
+from .solvers.ipopt import Ipopt as Ipopt
+from .solvers.solver import Solver as Solver
+from .solvers.sqp import Sqp as Sqp
 from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
 from .simulation.rollout import SymbolicRollout as SymbolicRollout

@@ -55,7 +55,7 @@ def test_residual_and_energy_are_those_of_samples_and_assumed_plant(plan):
 
 @pytest.mark.slow
 def test_ipopt_finds_the_same(task, plan):
-    other = qa.plan_move(task, starts=1, solver="ipopt")
+    other = qa.plan_move(task, starts=1, solver=qa.Ipopt())
     assert other.record.method == "ipopt"
     assert other.excess <= plan_move.EXCESS
     assert other.energy == pytest.approx(plan.energy, rel=1e-2)
