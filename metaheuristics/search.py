@@ -11,7 +11,7 @@ from math import inf, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, Preset, preset_of
+from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset, preset_of
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import instance, takes, whole
 from quietarm.ocp.planning.choose_profile import choose_profile

@@ -50,14 +50,14 @@ from .robustness import Sensitivity as Sensitivity
 from .robustness import Sweep as Sweep
 from .robustness import Worst as Worst
 from .robustness import evaluate_robustness as evaluate_robustness
-from .solvers.ipopt import Ipopt as Ipopt
-from .solvers.solver import Solver as Solver
-from .solvers.sqp import Sqp as Sqp
 from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
 from .simulation.rollout import SymbolicRollout as SymbolicRollout
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .simulation.trajectory import Trajectory as Trajectory
+from .solvers.ipopt import Ipopt as Ipopt
+from .solvers.solver import Solver as Solver
+from .solvers.sqp import Sqp as Sqp
 from .task import ModalState as ModalState
 from .task import PointToPoint as PointToPoint
 from .task import task_difference as task_difference

@@ -80,7 +80,8 @@ def test_the_doors_are_found():
     names = {door.id for door in DOORS}
     assert {
         "plan_move-task", "plan_move-profile", "plan_moves-tasks", "fastest_move-profile",
-        "epsilon_front-task", "plan_move-solver", "polish_front-solver", "sweep-solver", "weighted_front-profile", "search-start", "sweep-profile",
+        "plan_move-solver", "polish_front-solver", "sweep-solver",
+        "epsilon_front-task", "weighted_front-profile", "search-start", "sweep-profile",
         "evaluate_coefficients-task", "energy_floor-task", "cross_check-front",
         "polish_front-front", "shaped_cycloid-task", "evaluate_robustness-profile",
         "Candidate.of_profile-profile", "PointToPoint-plant", "PointToPoint-energy",

@@ -109,7 +109,13 @@ def _better(
         coefficients = None if guess is None else guess.coefficients
         setup = Setup(solver, bound, starts, SEED, steps, coefficients)
         # not `plan_move`: a front's residual is that at the samples of an uncertain plant
-        plan, _ = plan_from_starts(front.task, front.profile, setup, point.residual)
+        plan, _ = plan_from_starts(
+            front.task,
+            front.profile,
+            setup,
+            point.residual,
+            setup.start_coefficients(front.profile),
+        )
     except QuietarmError:
         return point
     found = FrontPoint(plan.coefficients, plan.residual, plan.energy)

@@ -12,7 +12,6 @@ it refuses the task.
 from __future__ import annotations
 
 import time
-from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +19,8 @@ from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.least_time import fitting_spline, least_time
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.plan_along import limit_of, plan_along
+from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -52,59 +52,62 @@ def more_terms(task: PointToPoint) -> CycloidPolynomial:
     return CycloidPolynomial(_OF_ONE_MODE if task.plant.modes == 1 else _OF_SEVERAL_MODES)
 
 
-def plan_on_chosen_profile(task: PointToPoint, setup: Setup, residual_limit: float | None) -> Plan:
+def plan_on_chosen_profile(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> Plan:
     """The plan along the profile that a task takes, or along a richer one where it finds none.
 
     InfeasibleTaskError, where no profile does, has the duration that would do.
     """
-    limit = limit_of(task, residual_limit)
-    best = _plan_quickly(task, setup, residual_limit)
-    if best is not None and (best.residual_limit or 0.0) <= limit:
+    best = _plan_quickly(task, setup, limit)
+    if best is not None and (best.residual_limit or 0.0) <= limit.size:
         return best
     # no motion was found, or the default residual limit was out of reach
-    on_spline = _plan_on_spline(task, setup, residual_limit)
+    on_spline = _plan_on_spline(task, setup, limit)
     if on_spline is not None and (best is None or _left(on_spline) < _left(best)):
         return on_spline
     if best is not None:
         return best
+    profile = more_terms(task)
     try:
-        plan = plan_along(task, more_terms(task), replace(setup, starts=1), residual_limit)
-        return _stating_terms(plan)
+        return _stating_terms(plan_along(task, profile, replace(setup, starts=1), limit))
     except InfeasibleTaskError as error:
-        duration = _feasible_duration(task, setup, residual_limit)
-        remedy = f"a duration of {duration:g} s will also do" if duration else ""
-        what = error.what
-        if task.limits and setup.bound is None:
-            amount = more_terms(task).amount
-            what = what.replace(f"motion of {amount}", f"motion of {amount} or on a spline", 1)
-        raise InfeasibleTaskError(what, remedy) from None
+        raise _with_a_duration(error, task, setup, limit, profile.amount) from None
 
 
-def _plan_quickly(task: PointToPoint, setup: Setup, residual_limit: float | None) -> Plan | None:
+def _plan_quickly(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> Plan | None:
     """Six terms without limits, and more where these find no motion; within limits more."""
-    with suppress(SolverFailedError):
-        if task.limits:
-            return _plan_with_more_terms(task, setup, residual_limit)
-        with suppress(SolverFailedError):
-            return plan_along(task, SIX, setup, residual_limit)
-        plan = plan_along(task, more_terms(task), setup, residual_limit, quick=True)
+    if task.limits:
+        return _plan_with_more_terms(task, setup, limit)
+    plan = _try(task, SIX, setup, limit, quick=False)
+    if plan is None and (plan := _try(task, more_terms(task), setup, limit)) is not None:
         return _stating_terms(plan)
-    return None
+    return plan
 
 
-def _plan_on_spline(task: PointToPoint, setup: Setup, residual_limit: float | None) -> Plan | None:
+def _try(
+    task: PointToPoint,
+    profile: JointProfile,
+    setup: Setup,
+    limit: ResidualLimit,
+    *,
+    quick: bool = True,
+) -> Plan | None:
+    """The plan along a profile; None where no motion was found."""
+    try:
+        return plan_along(task, profile, setup, limit, quick=quick)
+    except SolverFailedError:
+        return None
+
+
+def _plan_on_spline(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> Plan | None:
     """The plan on a spline that keeps the limits; None where none was found."""
     if not task.limits or setup.bound is not None:
         return None
-    fitted = fitting_spline(task, limit_of(task, residual_limit), None)
+    fitted = fitting_spline(task, limit.size, None)
     if fitted is None:
         return None
     spline, coefficients = fitted
     from_fit = replace(setup, starts=1, guess=tuple(coefficients.tolist()))
-    try:
-        return plan_along(task, spline, from_fit, residual_limit, quick=True)
-    except SolverFailedError:
-        return None
+    return _try(task, spline, from_fit, limit)
 
 
 def _left(plan: Plan) -> float:
@@ -112,28 +115,25 @@ def _left(plan: Plan) -> float:
     return plan.residual if plan.worst is None else plan.worst.residual
 
 
-def _plan_with_more_terms(task: PointToPoint, setup: Setup, residual_limit: float | None) -> Plan:
+def _plan_with_more_terms(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> Plan | None:
     """The plan of the number of terms for limits; its record states what six would cost.
 
-    One start does, the plain cycloid; another is what six terms give, where it leads nowhere.
+    One start does, the plain cycloid; another is what six terms give, where it leads nowhere, or
+    where they are cheaper. None where no motion was found.
     """
     began = time.perf_counter()
     profile = more_terms(task)
-    six = _solve_with_six(task, setup, residual_limit or 0.0)
+    six = _solve_with_six(task, setup, 0.0 if limit.adapts else limit.size)
     from_cycloid = replace(setup, starts=1)
-    padded = np.pad(six.coefficients, (0, profile.size - SIX.size)).tolist()
-    from_six = replace(from_cycloid, guess=tuple(padded))
-    try:
-        best = plan_along(task, profile, from_cycloid, residual_limit, quick=True)
-    except SolverFailedError:
-        if not six.status.solved:
-            raise
-        best = plan_along(task, profile, from_six, residual_limit, quick=True)
-    else:
-        if six.status.solved and task.uncertainty is None and six.energy < best.energy:
-            with suppress(SolverFailedError):
-                other = plan_along(task, profile, from_six, residual_limit, quick=True)
-                best = other if other.energy < best.energy else best
+    best = _try(task, profile, from_cycloid, limit)
+    cheaper = best is None or (task.uncertainty is None and six.energy < best.energy)
+    if six.status.solved and cheaper:
+        padded = np.pad(six.coefficients, (0, profile.size - SIX.size))
+        from_six = _try(task, profile, replace(from_cycloid, guess=tuple(padded.tolist())), limit)
+        if best is None or (from_six is not None and from_six.energy < best.energy):
+            best = from_six
+    if best is None:
+        return None
     stated: dict[str, Setting] = {"starts": setup.starts}
     if six.status.solved and task.uncertainty is None:
         stated[OF_SIX] = six.energy
@@ -166,21 +166,28 @@ def _solve_with_six(task: PointToPoint, setup: Setup, residual_limit: float) -> 
     return six
 
 
-def _feasible_duration(
-    task: PointToPoint, setup: Setup, residual_limit: float | None
-) -> float | None:
-    """A duration [s] for which there is a plan, hardly longer than the least one; None if none."""
+def _with_a_duration(
+    error: InfeasibleTaskError, task: PointToPoint, setup: Setup, limit: ResidualLimit, amount: str
+) -> InfeasibleTaskError:
+    """The error with the duration that would do, where a longer one does."""
     if not task.limits or setup.bound is not None:
-        return None
+        return InfeasibleTaskError(error.what, "")
+    duration = _feasible_duration(task, setup, limit)
+    remedy = f"a duration of {duration:g} s will also do" if duration else ""
+    what = error.what.replace(f"motion of {amount}", f"motion of {amount} or on a spline", 1)
+    return InfeasibleTaskError(what, remedy)
+
+
+def _feasible_duration(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> float | None:
+    """A duration [s] for which there is a plan, hardly longer than the least one; None if none."""
     try:
-        least = least_time(task, limit_of(task, residual_limit), None, _LEAST_TIME_TO)
+        least = least_time(task, limit.size, None, _LEAST_TIME_TO)
     except ValueError:
         return None
     from_least = replace(setup, starts=1, guess=tuple(least.coefficients.tolist()))
     for longer in _LONGER:
         duration = float(f"{(1 + longer) * least.duration:.3g}")
         lasting = replace(task, duration=duration)
-        with suppress(SolverFailedError):
-            plan_along(lasting, least.profile, from_least, residual_limit, quick=True)
+        if _try(lasting, least.profile, from_least, limit) is not None:
             return duration
     return None

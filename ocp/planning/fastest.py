@@ -16,7 +16,8 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.least_time import LeastTime, least_time, rigid_duration
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.plan_along import limit_of, plan_along
+from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.rigid_motion import assumed_bounds, largest_deflection, rigid_motion
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -114,7 +115,7 @@ def fastest_move(
     if task.uncertainty is not None and residual_limit is None:
         residual_limit = fastest_residual_limit(task)
     begin = time.perf_counter()
-    limit = limit_of(task, residual_limit)
+    limit = ResidualLimit.of(task, residual_limit)
     if profile is None:
         fastest = _fastest_on_spline(task, setup, limit, duration_tolerance)
     else:
@@ -144,11 +145,11 @@ def fastest_residual_limit(task: PointToPoint) -> float:
 
 
 def _fastest_on_spline(
-    task: PointToPoint, setup: Setup, residual_limit: float, tolerance: float
+    task: PointToPoint, setup: Setup, residual_limit: ResidualLimit, tolerance: float
 ) -> Fastest:
     """The plan of least energy in the least time on a spline, or in hardly more."""
     try:
-        least = least_time(task, residual_limit, setup.bound, tolerance / 2)
+        least = least_time(task, residual_limit.size, setup.bound, tolerance / 2)
     except ValueError as error:
         raise InfeasibleTaskError(f"no duration was found: {error}") from None
     failed = {least.too_short: _why_too_short(task, least)}
@@ -217,7 +218,7 @@ class _Search:
         task: PointToPoint,
         profile: JointProfile,
         setup: Setup,
-        residual_limit: float,
+        residual_limit: ResidualLimit,
     ) -> None:
         self.task = task
         self.profile = profile

@@ -15,7 +15,7 @@ from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
-from quietarm.ocp.planning.plan_along import limit_of
+from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
@@ -108,7 +108,7 @@ def plan_moves(
         profile = choose_profile(tasks[0]) if tasks else SIX
     setup = Setup(solver, bound, starts, seed)
     _check(tasks, profile)
-    limit = limit_of(tasks[0], residual_limit)
+    limit = ResidualLimit.of(tasks[0], residual_limit).size
     problems = [
         Problem.of(transcription, limit, setup.bound)
         for transcription in transcribe(tasks, profile, _steps(tasks, profile))

@@ -13,16 +13,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import not_negative
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import best_of_starts, solve_from_starts
 from quietarm.ocp.planning.certify import OVERRUN, certify_one
 from quietarm.ocp.planning.plan import Plan
+from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, Verification
-from quietarm.ocp.robustness import Worst, peaks_between, quiet_residual
+from quietarm.ocp.robustness import Worst, peaks_between
 from quietarm.ocp.solvers.problem import Problem, Transcription
 from quietarm.ocp.task import PointToPoint
 
@@ -39,67 +39,44 @@ _TIGHTENINGS = 4
 Array = NDArray[np.float64]
 
 
-def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
-    """The residual limit that is given, or the largest that is taken by default.
-
-    Of an uncertain task `quiet_residual`; ValueError where that, or what is given, is 0 or less.
-    """
-    if residual_limit is not None:
-        residual_limit = not_negative("residual limit", residual_limit, "m")
-    if task.uncertainty is None:
-        return residual_limit or 0.0
-    if residual_limit is None:
-        residual_limit = quiet_residual(task)
-        if residual_limit == 0:
-            raise ValueError(
-                "the plain cycloid does not bend this plant, so that 5 % of that is no limit; give "
-                "a residual limit above 0"
-            )
-    if residual_limit == 0:
-        raise ValueError(
-            "residual limit is 0, but no motion arrives at rest in all scenarios; omit it "
-            "(default: 5 % of the plain cycloid's largest deflection) or give one above 0"
-        )
-    return residual_limit
-
-
 def plan_along(
     task: PointToPoint,
     profile: JointProfile,
     setup: Setup,
-    residual_limit: float | None,
+    residual_limit: ResidualLimit,
     *,
     quick: bool = False,
 ) -> Plan:
-    """The plan along a profile within a residual limit, or within the default one of a task.
+    """The plan along a profile within a residual limit.
 
     A quick one fails without saying what would be feasible.
     """
     began = time.perf_counter()
-    limit = limit_of(task, residual_limit)
-    if task.uncertainty is not None and residual_limit is None:
-        plan = _hold_default(task, profile, setup, limit)
+    starts = setup.start_coefficients(profile)
+    if residual_limit.adapts:
+        plan = _adapt_limit(task, profile, setup, residual_limit.size, starts)
     else:
-        plan = _hold(task, profile, setup, limit, quick=quick)
+        plan = _hold(task, profile, setup, residual_limit.size, starts, quick=quick)
         if plan.worst is not None and (plan.excess or 0.0) > OVERRUN:
             unit = task.plant.tip_unit
             raise SolverFailedError(
                 f"the residual is {plan.worst.residual:.4g} {unit} in the worst case, above its "
-                f"limit of {limit:g} {unit}: give a larger residual limit, more {profile.term}s "
-                "or a smaller uncertainty"
+                f"limit of {residual_limit.size:g} {unit}: give a larger residual limit, more "
+                f"{profile.term}s or a smaller uncertainty"
             )
     return plan.restated(seconds=time.perf_counter() - began)
 
 
-def _hold_default(task: PointToPoint, profile: JointProfile, setup: Setup, limit: float) -> Plan:
+def _adapt_limit(
+    task: PointToPoint, profile: JointProfile, setup: Setup, limit: float, starts: list[Array]
+) -> Plan:
     """The plan within the default limit, at most the worst case of the nominal plant's plan.
 
     If neither is feasible, the limit is near the least residual over the scenarios; if that does
     not hold between them, it is the worst case of the plan.
     """
-    starts = setup.start_coefficients(profile)
     try:
-        nominal = _hold(task.certain, profile, setup, 0.0).on(task)
+        nominal = _hold(task.certain, profile, setup, 0.0, starts).on(task)
     except SolverFailedError:  # only other motions may keep the limits
         nominal = None
     reached = np.inf
@@ -110,13 +87,10 @@ def _hold_default(task: PointToPoint, profile: JointProfile, setup: Setup, limit
     try:
         plan = _hold(task, profile, setup, min(limit, most), starts)
     except InfeasibleTaskError:
-        transcription = Transcription.of(task, profile, setup.steps)
-        problem = Problem.of(transcription, bound=setup.bound, minimise={RESIDUAL: 1.0})
-        (stillest,) = best_of_starts([problem], [starts], setup.solver)
-        if not stillest.status.solved:
+        least = _least_residual(task, profile, setup, starts)
+        if least is None:
             raise
-        near_least = min((1 + EXCESS) * stillest.residual, most)
-        plan = _hold(task, profile, setup, near_least, starts)
+        plan = _hold(task, profile, setup, min((1 + EXCESS) * least, most), starts)
     assert plan.worst is not None
     if plan.excess is None or plan.excess <= OVERRUN:
         return plan
@@ -126,12 +100,22 @@ def _hold_default(task: PointToPoint, profile: JointProfile, setup: Setup, limit
     return replace(plan, residual_limit=plan.worst.residual)
 
 
+def _least_residual(
+    task: PointToPoint, profile: JointProfile, setup: Setup, starts: list[Array]
+) -> float | None:
+    """The least residual over the scenarios [m]; None where no start was solved."""
+    transcription = Transcription.of(task, profile, setup.steps)
+    problem = Problem.of(transcription, bound=setup.bound, minimise={RESIDUAL: 1.0})
+    (stillest,) = best_of_starts([problem], [starts], setup.solver)
+    return stillest.residual if stillest.status.solved else None
+
+
 def _hold(
     task: PointToPoint,
     profile: JointProfile,
     setup: Setup,
     limit: float,
-    starts: Sequence[Array] | None = None,
+    starts: list[Array],
     *,
     quick: bool = False,
 ) -> Plan:
@@ -141,13 +125,10 @@ def _hold(
     scenarios, and the motions that were found are the next starts. The remaining excess is
     then subtracted from the limit; where that does not settle it, they become scenarios as well.
     """
-    plan, others = plan_from_starts(task, profile, setup, limit, starts, quick=quick)
-    if task.uncertainty is None:
-        return plan
+    plan, others, peaks = _solve_and_look_between(task, profile, setup, limit, starts, quick=quick)
     tightened = limit
     rounds = tightenings = 0
-    peaks = peaks_between(plan.task, profile, plan.coefficients, _ADDED)
-    while True:
+    while peaks:
         plan = replace(plan, worst=peaks[0])
         excess = peaks[0].residual / limit - 1
         more = _new_scenarios(task, [peak for peak in peaks if peak.residual > limit])
@@ -172,16 +153,30 @@ def _hold(
         else:
             break
         try:
-            plan, others = plan_from_starts(
+            plan, others, peaks = _solve_and_look_between(
                 task, profile, next_setup, next_limit, starts, quick=quick or tightenings > 0
             )
         except SolverFailedError:
             if not tightenings:
                 raise
             tightenings = _TIGHTENINGS  # a tighter limit leads nowhere: more scenarios may
-        else:
-            peaks = peaks_between(plan.task, profile, plan.coefficients, _ADDED)
     return replace(plan, residual_limit=limit)
+
+
+def _solve_and_look_between(
+    task: PointToPoint,
+    profile: JointProfile,
+    setup: Setup,
+    limit: float,
+    starts: list[Array],
+    *,
+    quick: bool,
+) -> tuple[Plan, list[Array], list[Worst]]:
+    """As `plan_from_starts`, and the peaks of the residual between the scenarios, if it has any."""
+    plan, others = plan_from_starts(task, profile, setup, limit, starts, quick=quick)
+    if task.uncertainty is None:
+        return plan, others, []
+    return plan, others, peaks_between(plan.task, profile, plan.coefficients, _ADDED)
 
 
 def plan_from_starts(
@@ -189,22 +184,20 @@ def plan_from_starts(
     profile: JointProfile,
     setup: Setup,
     residual_limit: float,
-    starts: Sequence[Array] | None = None,
+    starts: Sequence[Array],
     *,
     quick: bool = False,
 ) -> tuple[Plan, list[Array]]:
-    """The plan from starts, by default those of the setup, whose limit holds in all scenarios.
+    """The plan from starts, whose limit holds in all scenarios.
 
     And the coefficients of all that were solved, cheapest first. Errors are those of
     `solve_from_starts` and `certify`.
     """
     began = time.perf_counter()
-    solver = setup.solver
-    starts = setup.start_coefficients(profile) if starts is None else starts
     transcription = Transcription.of(task, profile, setup.steps)
     problem = Problem.of(transcription, residual_limit, setup.bound)
-    best, solved = solve_from_starts(problem, starts, solver, quick=quick)
-    certified = certify_one(problem, best, solver)
+    best, solved = solve_from_starts(problem, starts, setup.solver, quick=quick)
+    certified = certify_one(problem, best, setup.solver)
     assert isinstance(certified.checked, Candidate)  # one alone is judged by CVODES
     solution = certified.solution
     motion = certified.checked.motion
@@ -217,7 +210,7 @@ def plan_from_starts(
         verification=Verification.between(
             certified.steps, solution.energy, solution.residual, motion
         ),
-        record=setup.record(solver.name, solution.iterations, time.perf_counter() - began),
+        record=setup.record(setup.solver.name, solution.iterations, time.perf_counter() - began),
         residual_limit=residual_limit,
         shadow_prices=solution.shadow_prices,
     )

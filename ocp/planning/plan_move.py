@@ -10,11 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from quietarm.ocp.checks import not_negative, takes
+from quietarm.ocp.checks import takes
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.choose_profile import plan_on_chosen_profile
 from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -89,15 +90,14 @@ def plan_move(
         When no motion of this profile is feasible, with what would be; when no start ended at an
         optimum for another reason.
     """
-    if residual_limit is not None:
-        residual_limit = not_negative("residual limit", residual_limit, "m")
     setup = Setup(solver, bound, starts, seed, steps)
-    if profile is None and guess is None:
-        return plan_on_chosen_profile(task, setup, residual_limit)
-    if profile is None:
+    if profile is None and guess is not None:
         profile = CycloidPolynomial.of_size(np.size(guess))
-    if profile.size == 0:
+    if profile is not None and profile.size == 0:
         return only_motion(task, profile, residual_limit)
+    limit = ResidualLimit.of(task, residual_limit)
+    if profile is None:
+        return plan_on_chosen_profile(task, setup, limit)
     if guess is not None:
         setup = replace(setup, guess=profile.checked(guess))
-    return plan_along(task, profile, setup, residual_limit)
+    return plan_along(task, profile, setup, limit)

@@ -90,6 +90,9 @@ class Course(NamedTuple):
     log: bool = False
 
 
+COURSE = Course()
+
+
 @dataclass(frozen=True)
 class Ended:
     """Where the rows ended: points (rows, n), multipliers, why, after how many iterations (rows,).
@@ -113,7 +116,7 @@ def minimise(
     equalities: int = 0,
     linear: int = 0,
     groups: Index | None = None,
-    course: Course = Course(),
+    course: Course = COURSE,
 ) -> Ended:
     """Minimise every row from its start, with so many equalities and lower <= v <= upper.
 

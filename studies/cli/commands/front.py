@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
@@ -68,7 +69,7 @@ def front(given: Given) -> None:
     if given.polish is not None:
         return _polish(given)
     wanted = "points"
-    asked = given.pick("bound", "starts", "seed") | {"solver": given.read_solver()}
+    asked: dict[str, Any] = given.pick("bound", "starts", "seed") | {"solver": given.read_solver()}
     if given.weights:
         if given.method != "weighted":
             raise ValueError(f"--weights is for weighted, not for {given.method}; leave it out")

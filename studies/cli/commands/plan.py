@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from typing import Any
 
 from quietarm.ocp import Plan, SolverFailedError, energy_floor, fastest_move, plan_move
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
@@ -78,7 +79,7 @@ def plan(given: Given) -> None:
             return _plan_freely(given)
     task, notes = given.read_task(**{"duration": _BEGIN} if fastest else {}), list[str]()
     motions = None if chooses_terms(given.profile, given.terms) else given.read_profile(task)
-    asked = given.pick("bound", "seed") | {
+    asked: dict[str, Any] = given.pick("bound", "seed") | {
         "residual_limit": given.read_residual_limit(task.plant),
         "solver": given.read_solver(),
     }
