@@ -73,6 +73,7 @@ def right():
         "task": task, "one": task, "other": task, "tasks": [task], "plant": link,
         "profile": qa.CycloidPolynomial(1), "coefficients": [0.0], "target": 0.5, "duration": 0.8,
         "plans": {}, "fronts": [], "quantity": "speed", "floor": object.__new__(qa.Floor),
+        "front": object.__new__(qa.Front),
     }  # fmt: skip
 
 
