@@ -135,15 +135,15 @@ def serve() -> None:
         print(json.dumps({"seconds": seconds, "energy": energy}), flush=True)
 
 
-def plans(qa: Any, move: Move, solver: str = "sqp") -> Callable[[], float]:
+def plans(qa: Any, move: Move, **solver: Any) -> Callable[[], float]:
     """A plan at rest on arrival."""
     task = qa.PointToPoint(getattr(qa, move.plant)(), move.target, move.duration)
-    return lambda: qa.plan_move(task, bound=move.bound, starts=1, solver=solver).energy
+    return lambda: qa.plan_move(task, bound=move.bound, starts=1, **solver).energy
 
 
 def ipopt_plans(qa: Any, move: Move) -> Callable[[], float]:
     """The same by IPOPT."""
-    return plans(qa, move, "ipopt")
+    return plans(qa, move, solver=qa.Ipopt() if hasattr(qa, "Ipopt") else "ipopt")
 
 
 def fronts(qa: Any, move: Move) -> Callable[[], float]:

@@ -294,7 +294,7 @@ def main() -> None:
         sides["yapss"] = by_yapss
     screen = console()
     screen.print(machine("rockit-meco", *(["yapss"] if yapss else [])))
-    floor = energy_floor(TASK, tolerance=1e-4)
+    floor = energy_floor(TASK, energy_tolerance=1e-4)
     screen.print(
         f"reference {floor.energy:.6f} J, {floor.free.steps} intervals, "
         f"error {floor.discretisation_error:.1e} J"

@@ -121,7 +121,7 @@ def hypervolume_by_time(
     for name, method in METHODS.items():
         for seed in SEEDS:
             records: list[SearchProgress] = []
-            front = search(task, method, profile=PROFILE, bound=bound, seed=seed,
+            front = search(task, PROFILE, algorithm=method, bound=bound, seed=seed,
                            report=records.append)  # fmt: skip
             fronts.append(front)
             curves[name].append(np.array([(r.seconds, r.hypervolume) for r in records]))

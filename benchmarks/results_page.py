@@ -81,7 +81,7 @@ def hard_problem(name: str, folder: Path) -> qa.NamedProblem:
     task, profile, bound = hard_tasks()[name]
     if not path.exists():
         fronts = [
-            qa.search(task, method, profile=profile, bound=bound, evaluations=30_000, seed=seed)
+            qa.search(task, profile, algorithm=method, bound=bound, evaluations=30_000, seed=seed)
             for method in ("gde3", "cmopso") for seed in (1000,)
         ]  # fmt: skip
         for find in (partial(qa.epsilon_front, points=60, starts=12), multistart_front):

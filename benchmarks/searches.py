@@ -68,7 +68,7 @@ def times(repetitions: int) -> Table:
             began = perf_counter()
             processor, _ = timed(
                 lambda method=method, condition=condition, seed=seed: search(
-                    condition.task, method, bound=condition.bound, seed=seed
+                    condition.task, algorithm=method, bound=condition.bound, seed=seed
                 ),
                 process_time,
             )
@@ -89,7 +89,7 @@ def times(repetitions: int) -> Table:
 
 
 def searched(condition: Case, method: str, seed: int) -> Front:
-    return search(condition.task, method, bound=condition.bound, seed=seed)
+    return search(condition.task, algorithm=method, bound=condition.bound, seed=seed)
 
 
 def energies(seeds: int, workers: int) -> Table:

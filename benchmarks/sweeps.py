@@ -28,9 +28,9 @@ from statistics import median
 import numpy as np
 import xarray as xr
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, PointToPoint, SolveSettings, plan_move, plan_moves
+from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move, plan_moves
 from quietarm.studies.sweep.cells import plan_chunk
-from quietarm.studies.sweep.definition import Definition
+from quietarm.studies.sweep.definition import Definition, PlanSettings
 from quietarm.studies.sweep.grid import Axis, Grid
 
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
@@ -45,7 +45,7 @@ def speed() -> None:
             durations = np.linspace(0.6, 1.4, steps + 1).tolist()
             axes = Axis("target", tuple(targets), "rad"), Axis("duration", tuple(durations), "s")
             grid = Grid(PointToPoint(plant, 1.0, 1.0), axes)
-            sweep = Definition(grid, CycloidPolynomial(), SolveSettings(starts=1))
+            sweep = Definition(grid, CycloidPolynomial(), PlanSettings())
             middle = len(sweep.chunks) // 2
             tasks = sweep.grid.tasks(sweep.chunks[middle])
             in_grid, unchecked, alone = list[float](), list[float](), list[float]()

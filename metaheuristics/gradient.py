@@ -17,8 +17,10 @@ from quietarm.ocp.cost import COST, Cost
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
-from quietarm.ocp.planning.best_of_starts import SOLVERS, SolverName
-from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
+from quietarm.ocp.solvers.solver import NAME, OPTIONS, Solver
+from quietarm.ocp.solvers.sqp import Sqp
 
 
 def multistart_front(
@@ -26,9 +28,9 @@ def multistart_front(
     profile: JointProfile,
     *,
     bound: float,
-    seed: int = 0,
-    solver: SolverName = "sqp",
     starts: int = 100,
+    seed: int = 0,
+    solver: Solver = Sqp(),
 ) -> Front:
     """Solve from random starts, one for each of as many residual limits, drawn at random.
 
@@ -36,8 +38,8 @@ def multistart_front(
     """
     starts = whole("starts", starts, 2)
     began = time.perf_counter()
-    settings = SolveSettings(bound=bound, starts=1, seed=seed, solver=solver)
-    curve, random = Curve.begin(task, profile, settings), np.random.default_rng(seed)
+    curve = Curve.begin(task, profile, Setup(solver, bound, 1, seed))
+    random = np.random.default_rng(seed)
     begins = random.uniform(*profile.box(bound), (starts, profile.size))
     (cheapest,) = curve.solver.solve([curve.problem()], [begins[0]])
     limits = random.uniform(0.0, cheapest.residual, starts - 1)
@@ -56,6 +58,8 @@ _FRONTS: Mapping[str, tuple[Callable[..., Front], str]] = {
 """By name, and what each may be set to."""
 GRADIENT = tuple(f"{name}{'' if s == 'sqp' else ':' + s}" for name in _FRONTS for s in SOLVERS)
 """Names of the methods of the gradient; without a solver it is the own SQP."""
+SOLVER_OPTIONS = tuple(f"{NAME}_{option}" for option in OPTIONS)
+"""Settings of a method that are options of its solver."""
 
 
 def gradient_front(
@@ -68,23 +72,39 @@ def gradient_front(
     settings: Mapping[str, Any],
 ) -> Front:
     """The front of a method of `GRADIENT`, with its cost as its only mark."""
-    name, _, solver = method.partition(":")
-    find, own = _FRONTS[name]
-    for one in settings:
-        if one != own:
-            raise ValueError(has_no(method, "setting", one, [own]))
+    name, _, solver_name = method.partition(":")
+    find, size = _FRONTS[name]
+    options, others = split_solver_options(settings)
+    for setting in others:
+        if setting != size:
+            raise ValueError(has_no(method, "setting", setting, [size, *SOLVER_OPTIONS]))
+    solver = solver_with(options, solver_name)
     before, began = COST.copy(), time.thread_time()
-    front = find(task, profile, bound=bound, seed=seed, solver=solver or "sqp", **settings)
+    front = find(task, profile, bound=bound, seed=seed, solver=solver, **others)
     return _with_cost(front.restated(method=method), before, began)
 
 
-def polished(front: Front) -> Front:
+def split_solver_options(
+    settings: Mapping[str, Any],
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Options of a method's solver, as solver_tolerance, and the method's other settings."""
+    options = {name: value for name, value in settings.items() if name in SOLVER_OPTIONS}
+    others = {name: value for name, value in settings.items() if name not in SOLVER_OPTIONS}
+    return options, others
+
+
+def solver_with(options: Mapping[str, Any], name: str = "") -> Solver:
+    """The solver of a name, by default the own SQP, with options as a record states them."""
+    return stated_solver({NAME: name or Sqp.name, **options}) or Sqp()
+
+
+def polished(front: Front, solver: Solver = Sqp()) -> Front:
     """The front of a search, each point improved at its own residual; one mark more."""
     before, began = COST.copy(), time.thread_time()
     method = f"{front.record.method}+polish"
     if not front.points:
         return front.restated(method=method)
-    better = polish_front(front).front
+    better = polish_front(front, solver=solver).front
     return _with_cost(better.restated(method=method), before, began, front.record.seconds)
 
 

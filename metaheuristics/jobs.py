@@ -12,7 +12,13 @@ from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
-from quietarm.metaheuristics.gradient import GRADIENT, gradient_front, polished
+from quietarm.metaheuristics.gradient import (
+    GRADIENT,
+    gradient_front,
+    polished,
+    solver_with,
+    split_solver_options,
+)
 from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError
@@ -54,7 +60,8 @@ class Job:
         have converged, and have none.
     settings : mapping, optional
         Of the method: what `search` takes, ``population`` too; ``points`` of a front by the
-        gradient, ``starts`` of multistart.
+        gradient, ``starts`` of multistart; of a gradient method and of a polish also the options
+        of its solver, as ``solver_tolerance``.
 
     Raises
     ------
@@ -124,8 +131,11 @@ class Job:
             return gradient_front(problem.task, method=method, settings=settings, **asked)
         population: Any = settings.pop("population", None)
         size, polish = 100, False
+        options = dict[str, Any]()
         if isinstance(method, str):
             method, polish = method.removesuffix(POLISH), method.endswith(POLISH)
+            if polish:
+                options, settings = split_solver_options(settings)
             size = PRESETS[method].evaluations(population or PRESETS[method].population, 1)
         budget = min(budget, _REHEARSAL * size) if rehearse else budget
         if _is_function(method):
@@ -134,10 +144,10 @@ class Job:
                 method(function, self.seed, budget)
             return function.front(self.label, self.seed)
         front = search(
-            problem.task, method, population=population, settings=settings, evaluations=budget,
-            reference=problem.reference(), **asked,
+            problem.task, algorithm=method, population=population, settings=settings,
+            evaluations=budget, reference=problem.reference(), **asked,
         )  # fmt: skip
-        return polished(front) if polish else front
+        return polished(front, solver_with(options)) if polish else front
 
 
 def method_name(method: Method) -> str:
@@ -188,12 +198,16 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
     if isinstance(method, str) and method in GRADIENT:
         if budget is not None:
             raise ValueError(f"{method} ends by itself; leave its budget out")
+        solver_with(split_solver_options(settings)[0])  # refuses what is out of range
         return None
     if isinstance(method, str):
         search_name = method.removesuffix(POLISH)
         if search_name not in PRESETS:
             raise ValueError(unknown("method", method, [*PRESETS, *GRADIENT], f", NAME{POLISH}"))
         preset, own = preset_of(search_name), dict(settings)
+        if method.endswith(POLISH):
+            options, own = split_solver_options(settings)
+            solver_with(options)  # refuses what is out of range
         population: Any = own.pop("population", preset.population)
         preset.checked(population, own)
         if budget is None:

@@ -11,9 +11,9 @@ from math import inf, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, Preset, preset_of
+from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset, preset_of
 from quietarm.ocp import Front, JointProfile, PointToPoint
-from quietarm.ocp.checks import takes, whole
+from quietarm.ocp.checks import instance, takes, whole
 from quietarm.ocp.planning.choose_profile import choose_profile
 
 if TYPE_CHECKING:
@@ -59,12 +59,12 @@ class SearchProgress:
     tip_unit: str = "m"
 
 
-@takes(task=PointToPoint, profile=JointProfile, start=Front)
+@takes(task=PointToPoint, start=Front)
 def search(
     task: PointToPoint,
-    algorithm: str | Algorithm = "nsga2",
-    *,
     profile: JointProfile | None = None,
+    *,
+    algorithm: str | Algorithm = "nsga2",
     bound: float | None = None,
     population: int | None = None,
     generations: int | None = None,
@@ -82,13 +82,13 @@ def search(
     ----------
     task : PointToPoint
         The move; its limits become constraints.
+    profile : JointProfile, optional
+        How the joint moves; by default the polynomial that `plan_move` takes for the task: of six
+        terms without limits, of 18 or 24 within.
     algorithm : str or pymoo Algorithm
         A name of `PRESETS`: ``"nsga2-paper"`` and ``"vepso"`` have the paper's settings, the others
         pymoo's. Or any multi-objective algorithm of pymoo that was not run yet; it is copied, so
         the one given stays as it is.
-    profile : JointProfile, optional
-        How the joint moves; by default the polynomial that `plan_move` takes for the task: of six
-        terms without limits, of 18 or 24 within.
     bound : float
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
     population, generations : int, optional
@@ -125,6 +125,7 @@ def search(
     from quietarm.metaheuristics.problems.pymoo_problem import MoveProblem
     from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
 
+    profile = choose_profile(task) if profile is None else _profile_of(profile)
     if generations is not None and evaluations is not None:
         raise ValueError("evaluations stand in place of generations; leave one of them out")
     if isinstance(algorithm, str):
@@ -143,7 +144,6 @@ def search(
     else:
         evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
         generations, limits = -(-evaluations // size), {"evaluations": evaluations}
-    profile = choose_profile(task) if profile is None else profile
     bound = profile.default_bound if bound is None else bound
     if bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
@@ -164,6 +164,13 @@ def search(
             if report is not None:
                 report(_progress(function, done, generations))
     return function.front(method, seed, {**limits, **own})
+
+
+def _profile_of(profile: object) -> JointProfile:
+    """A profile; TypeError that says where a method belongs, if one stands in its place."""
+    if (isinstance(profile, str) and profile in PRESETS) or hasattr(profile, "infill"):
+        raise TypeError(f"profile is {profile!r}; a method is given as algorithm=...")
+    return instance("profile", profile, JointProfile)
 
 
 def _set_up(
@@ -259,8 +266,7 @@ def _own(
         raise ValueError(f"give an algorithm, as {given.__name__}(), not its class")
     if not isinstance(given, PymooAlgorithm):
         raise TypeError(
-            f"algorithm is {given!r}; give a name, as 'nsga2', or an algorithm of pymoo; a profile "
-            "is given as profile=..."
+            f"algorithm is {given!r}; give a name, as 'nsga2', or an algorithm of pymoo"
         )
     chosen = own_algorithm(algorithm)
     for name, value in (("population", population), ("settings", settings)):

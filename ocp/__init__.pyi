@@ -44,7 +44,6 @@ from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
 from .profiles.term_profile import MAX_TERMS as MAX_TERMS
 from .profiles.term_profile import TermProfile as TermProfile
 from .record import Record as Record
-from .record import SolveSettings as SolveSettings
 from .record import Verification as Verification
 from .robustness import Figures as Figures
 from .robustness import Robustness as Robustness
@@ -57,6 +56,9 @@ from .simulation.objective import Motion as Motion
 from .simulation.rollout import SymbolicRollout as SymbolicRollout
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .simulation.trajectory import Trajectory as Trajectory
+from .solvers.ipopt import Ipopt as Ipopt
+from .solvers.solver import Solver as Solver
+from .solvers.sqp import Sqp as Sqp
 from .task import ModalState as ModalState
 from .task import PointToPoint as PointToPoint
 from .task import task_difference as task_difference

@@ -6,7 +6,6 @@ import platform
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
@@ -17,11 +16,9 @@ from quietarm.ocp.checks import (
     NotNegative,
     Positive,
     finite,
-    not_negative,
     positive,
     whole,
 )
-from quietarm.ocp.simulation.grid import MOST_STEPS
 from quietarm.ocp.simulation.objective import Motion
 
 Setting = str | bool | int | float | None
@@ -97,45 +94,6 @@ class Record:
             object.__setattr__(self, "bound", coefficient_bound(self.bound))
         object.__setattr__(self, "settings", dict(self.settings))
         object.__setattr__(self, "versions", dict(self.versions))
-
-
-@dataclass(frozen=True)
-class SolveSettings:
-    """What was asked of the solver beyond the task, as `quietarm.ocp.plan_move` takes it."""
-
-    residual_limit: float = 0.0
-    bound: float | None = None
-    starts: int = 4
-    seed: int = 0
-    steps: int | None = None
-    guess: tuple[float, ...] | None = None
-    solver: Literal["sqp", "ipopt"] = "sqp"
-    log: bool = field(default=False, compare=False)
-
-    def __post_init__(self) -> None:
-        if self.solver not in ("sqp", "ipopt"):
-            raise ValueError(f"solver is {self.solver!r}; give 'sqp' or 'ipopt'")
-        checked: dict[str, Any] = {
-            "residual_limit": not_negative("residual limit", self.residual_limit, "m"),
-            "starts": number_of_starts(self.starts),
-            "seed": whole("seed", self.seed, 0),
-        }
-        if self.bound is not None:
-            checked["bound"] = coefficient_bound(self.bound)
-        if self.steps is not None:
-            finer = "finer ones differ by rounding alone"
-            checked["steps"] = whole("steps", self.steps, 2, MOST_STEPS, finer)
-        if self.guess is not None:
-            checked["guess"] = tuple(finite("guess", a) for a in self.guess)
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
-
-    def record(self, method: str, iterations: int, seconds: float, **also: Setting) -> Record:
-        """What found an answer with these settings, and with others of the method's own."""
-        own = {"starts": self.starts, "steps": self.steps, "solver": self.solver, **also}
-        if self.guess is not None:
-            own["guess"] = ", ".join(map(digits, self.guess))
-        return Record(method, own, self.bound, self.seed, iterations=iterations, seconds=seconds)
 
 
 def digits(number: float) -> str:

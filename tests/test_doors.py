@@ -11,13 +11,15 @@ import quietarm as qa
 
 # Of these classes; `Motions` is what the pictures of motions take.
 KINDS = (
-    "PointToPoint", "JointProfile", "Plant", "Energy", "Front", "Plan", "Floor", "Motions",
+    "PointToPoint", "JointProfile", "Plant", "Energy", "Solver", "Front", "Plan", "Floor",
+    "Motions",
 )  # fmt: skip
 WRONG = {
     "PointToPoint": ("link", "'link'; give a task, as PointToPoint(SingleLinkManipulator(), "),
     "JointProfile": ("spline", "'spline'; give an object, as CycloidSpline()"),
     "Plant": ("single_link", "'single_link'; give an object, as SingleLinkManipulator()"),
     "Energy": ("copper", "'copper'; give an object, as CopperLoss(motor_constant)"),
+    "Solver": ("ipopt", "solver is 'ipopt'; give an object, as Ipopt()"),
     "Front": ("front.json", "'front.json'; give Front.load('front.json')"),
     "Plan": ("plan.json", "'plan.json'; give Plan.load('plan.json')"),
     "Floor": ("floor.json", "'floor.json'; give Floor.load('floor.json')"),
@@ -79,6 +81,7 @@ def right():
         "task": task, "one": task, "other": task, "tasks": [task], "plant": link,
         "profile": qa.CycloidPolynomial(1), "coefficients": [0.0], "target": 0.5, "duration": 0.8,
         "plans": {}, "fronts": [], "quantity": "speed", "floor": object.__new__(qa.Floor),
+        "front": object.__new__(qa.Front),
     }  # fmt: skip
 
 
@@ -86,6 +89,7 @@ def test_the_doors_are_found():
     names = {door.id for door in DOORS}
     assert {
         "plan_move-task", "plan_move-profile", "plan_moves-tasks", "fastest_move-profile",
+        "plan_move-solver", "polish_front-solver", "sweep-solver",
         "epsilon_front-task", "weighted_front-profile", "search-start", "sweep-profile",
         "evaluate_coefficients-task", "energy_floor-task", "cross_check-front",
         "polish_front-front", "shaped_cycloid-task", "evaluate_robustness-profile",
@@ -167,7 +171,7 @@ def test_numbers_stand_in_lists_and_by_names(make, told):
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        (lambda task: qa.search(task, qa.CycloidPolynomial(6), bound=0.2), "profile=..."),
+        (lambda task: qa.search(task, "nsga2", bound=0.2), "a method is given as algorithm=..."),
         (lambda task: qa.motion_figure("plan.json"), "give Plan.load('plan.json')"),
         (lambda task: qa.motion_figure(6), "give a plan, as Plan.load('plan.json')"),
         (lambda task: qa.draw_quantity([], "sped"), "did you mean 'speed'?"),
@@ -175,7 +179,7 @@ def test_numbers_stand_in_lists_and_by_names(make, told):
         (lambda task: qa.epsilon_front(task, at=0.1), "at is 0.1; give a list of residuals"),
         (lambda task: qa.weighted_front(task, weights=0.3), "give pairs of residual and energy"),
         (lambda task: qa.perturb_plant(task.plant, 0.1), "by name, as {'frequency': 0.1}"),
-        (lambda task: qa.sweep(task, {"target": 0.1}, "x.zarr"), "give a list of values"),
+        (lambda task: qa.sweep(task, axes={"target": 0.1}, path="x.zarr"), "give a list of values"),
         (lambda task: qa.compare_plans([task]), "give them by name, as {'mine': plan}"),
         (lambda task: qa.compare_plans({}, "zv", task=task), "give a list of names"),
         (lambda task: qa.ShapedCycloid("zv", 10.0, [0.1]), "frequencies is 10.0; give a list"),

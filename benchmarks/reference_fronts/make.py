@@ -25,9 +25,11 @@ from quietarm.ocp import (
     non_dominated,
 )
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.planning.best_of_starts import SolverName
-from quietarm.ocp.planning.plan_move import plan_from_starts
-from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.planning.plan_along import plan_from_starts
+from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.solvers.ipopt import Ipopt
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
 
 POINTS = 300
 """Points of a reference front, beside those at `LEVELS`: with motions between them, the hypervolume
@@ -76,9 +78,9 @@ def exact_front(
     # every branch of minima is followed to both sides; by IPOPT, whose barrier leads past corners
     # where the residual passes from one sample to the next, 1e-4 above the front at worst
     for i in inner:
-        points[i] = _better(front, points[i], bound, "ipopt", guess=points[i - 1])
+        points[i] = _better(front, points[i], bound, Ipopt(), guess=points[i - 1])
     for i in reversed(inner):
-        points[i] = _better(front, points[i], bound, "ipopt", guess=points[i + 1])
+        points[i] = _better(front, points[i], bound, Ipopt(), guess=points[i + 1])
     points = [point for point in points if _keeps_limits(front, point)]
     front, _ = polished(replace(front, points=non_dominated(points)), bound)
     return front
@@ -96,7 +98,7 @@ def _better(
     front: Front,
     point: FrontPoint,
     bound: float,
-    solver: SolverName = "sqp",
+    solver: Solver = Sqp(),
     starts: int = 1,
     guess: FrontPoint | None = None,
 ) -> FrontPoint:
@@ -104,12 +106,16 @@ def _better(
     steps = front.record.settings["steps"]
     assert isinstance(steps, int)
     try:
-        settings = SolveSettings(
-            point.residual, bound, starts, SEED, steps,
-            guess=None if guess is None else guess.coefficients, solver=solver,
-        )  # fmt: skip
+        coefficients = None if guess is None else guess.coefficients
+        setup = Setup(solver, bound, starts, SEED, steps, coefficients)
         # not `plan_move`: a front's residual is that at the samples of an uncertain plant
-        plan, _ = plan_from_starts(front.task, front.profile, settings)
+        plan, _ = plan_from_starts(
+            front.task,
+            front.profile,
+            setup,
+            point.residual,
+            setup.start_coefficients(front.profile),
+        )
     except QuietarmError:
         return point
     found = FrontPoint(plan.coefficients, plan.residual, plan.energy)

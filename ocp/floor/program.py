@@ -20,8 +20,10 @@ from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, Step, step
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.rollout import march
-from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
+from quietarm.ocp.solvers.ipopt import Ipopt
+from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, options_of, run_ipopt
 from quietarm.ocp.solvers.problem import ENERGY
+from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.task import PointToPoint
 
 _AT_AN_END, _SHRINK = 3, 4.0
@@ -34,9 +36,13 @@ _SHORTEST = 4e-5
 _SCALE_STEPS = 40
 _ROOM = 1e-2
 """How far the two parts of the power start inside their bounds, as a share of its peak."""
-COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400, "mumps_pivot_order": 0}
+_LARGER = 10
+"""A floor's tolerance is so many times that of its solver."""
+_MOST_ITERATIONS = 400
+_MOST_ITERATIONS_WARM = 150
+COLD = {**OPTIONS, "tol": 1e-8, "max_iter": _MOST_ITERATIONS, "mumps_pivot_order": 0}
 """The systems are sparse and have no dense columns: minimum degree makes them a quarter faster."""
-_WARM = {**COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 150}
+_WARM = {**COLD, "mu_strategy": "monotone", "mu_init": 1e-6}
 """From a coarser grid's solution; with a larger barrier the solver would move away from it."""
 
 Array = NDArray[np.float64]
@@ -104,14 +110,14 @@ class FreeSolution:
 
 
 class FloorProgram:
-    """A task, to be solved on any grid.
+    """A task, to be solved on any grid by IPOPT, with the options of a solver.
 
     Unknowns are the largest value of each limited quantity, and of every interval its column (see
     `_interval`) and both parts of the power at the nodes, scaled by what the plain cycloid reaches.
     """
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
-    def __init__(self, task: PointToPoint, smooth: bool) -> None:
+    def __init__(self, task: PointToPoint, smooth: bool, solver: Solver = Ipopt()) -> None:
         jerk = task.limit_of("jerk")
         if jerk is not None and not smooth:
             raise ValueError(
@@ -119,6 +125,7 @@ class FloorProgram:
                 "smooth floor (smooth=True, or --smooth)"
             )
         self.task, self.smooth, self._limits = task, smooth, task.limits
+        self._options = solver
         self._states = 2 + smooth + 2 * task.plant.modes
         self._parts = NODES if task.energy.absolute else 0
         quantities = [limit.quantity for limit in task.limits]
@@ -169,7 +176,17 @@ class FloorProgram:
             "g": ca.vertcat(*map(ca.vec, [*equal, *positive])),
         }
         counts = [sum(rows.numel() for rows in kind) for kind in (equal, positive)]
-        return compile_nlp(problem, _WARM if warm else COLD), np.repeat([0.0, np.inf], counts)
+        return compile_nlp(problem, self._ipopt(warm)), np.repeat([0.0, np.inf], counts)
+
+    def _ipopt(self, warm: bool) -> dict[str, str | int | float]:
+        """Options of IPOPT; a floor takes a larger tolerance, and fewer iterations."""
+        most = _MOST_ITERATIONS_WARM if warm else _MOST_ITERATIONS
+        return {
+            **(_WARM if warm else COLD),
+            **options_of(self._options),
+            "tol": _LARGER * self._options.tolerance,
+            "max_iter": min(most, self._options.iterations),
+        }
 
     def along(self, path: JointPath, fractions: Array) -> FreeMotion:
         """A motion of this kind on a grid whose speed at the grid is that of a path."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,7 +19,7 @@ from quietarm.ocp.checks import CountFromOne, Positive, positive, takes, whole
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.planning.best_of_starts import SAME, least_peaks, true_peaks, unmet
+from quietarm.ocp.planning.best_of_starts import SAME, Sought, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.certify import excess_error, tighten
 from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -30,6 +30,8 @@ from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 FIRST_INTERVALS = 80
@@ -153,14 +155,15 @@ class Floor(MotionAnswer):
 
 
 @one_at_a_time
-@takes(task=PointToPoint)
+@takes(task=PointToPoint, solver=Solver)
 def energy_floor(
     task: PointToPoint,
     *,
     smooth: bool = False,
     starts: int = 4,
     seed: int = 0,
-    tolerance: float = 0.005,
+    solver: Solver = Sqp(),
+    energy_tolerance: float = 0.005,
 ) -> Floor:
     """Find the best motion without a parametrisation: an upper estimate of the least energy.
 
@@ -175,7 +178,10 @@ def energy_floor(
         Whether the acceleration is continuous, and zero at both ends.
     starts, seed : int
         How many starts: the plain cycloid, the plan of six terms, then random motions of the seed.
-    tolerance : float
+    solver : Solver
+        What plans the six terms. The floor itself is by IPOPT, with the options of this solver; its
+        tolerance is ten times larger.
+    energy_tolerance : float
         Relative change of the energy at which the refinement of the grid ends.
 
     Returns
@@ -193,9 +199,10 @@ def energy_floor(
         When no start ended at an optimum for another reason.
     """
     starts, seed = number_of_starts(starts), whole("seed", seed, 0)
-    tolerance, began = positive("tolerance", tolerance), time.perf_counter()
-    program = FloorProgram(task, smooth)
-    solved = _solve_from_starts(program, starts, seed)
+    tolerance = positive("energy tolerance", energy_tolerance)
+    began = time.perf_counter()
+    program = FloorProgram(task, smooth, solver)
+    solved = _solve_from_starts(program, _paths(task, starts, seed, solver))
     improved = _refine_each(program, solved)
     levels = [min(solved, key=_by_energy), min(improved, key=_by_energy)]
     _refine(program, levels, tolerance)
@@ -210,8 +217,14 @@ def energy_floor(
         status=best.status,
         verification=Verification.between(best.free.steps, best.energy, 0.0, motion),
         tolerance=tolerance,
-        record=Record(method, {"starts": starts}, None, seed, seconds=time.perf_counter() - began),
+        record=_record(method, starts, seed, solver, time.perf_counter() - began),
     )
+
+
+def _record(method: str, starts: int, seed: int, solver: Solver, seconds: float) -> Record:
+    """What found a floor; of its solver what is not the default."""
+    options = {} if solver.stated == Sqp().stated else solver.stated
+    return Record(method, {"starts": starts, **options}, None, seed, seconds=seconds)
 
 
 def _first_fractions(task: PointToPoint) -> NDArray[np.float64]:
@@ -224,22 +237,23 @@ def _first_fractions(task: PointToPoint) -> NDArray[np.float64]:
     return first_grid(steps)
 
 
-def _paths(task: PointToPoint, starts: int, seed: int) -> Iterator[JointPath]:
+def _paths(task: PointToPoint, starts: int, seed: int, solver: Solver) -> Iterator[JointPath]:
     """Motions to start from: plain cycloid, the plan of six terms, random ones."""
     random, profile = np.random.default_rng(seed), CycloidPolynomial()
     drawn = [random.uniform(*profile.start_box(None)) for _ in range(starts)]
     drawn[0] = profile.plain
     if starts > 1:
         with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
-            drawn[1] = np.array(plan_move(task.certain, profile, starts=1).coefficients)
+            plan = plan_move(task.certain, profile, starts=1, solver=solver)
+            drawn[1] = np.array(plan.coefficients)
     return (profile.path(coefficients, *task.move) for coefficients in drawn)
 
 
-def _solve_from_starts(program: FloorProgram, starts: int, seed: int) -> list[FreeSolution]:
+def _solve_from_starts(program: FloorProgram, paths: Iterable[JointPath]) -> list[FreeSolution]:
     """The solutions from all starts; where there are none, from motions of least peaks."""
     task, limits = program.task, program.task.limits
     fractions = _first_fractions(task)
-    guesses = [program.along(path, fractions) for path in _paths(task, starts, seed)]
+    guesses = [program.along(path, fractions) for path in paths]
     tried = [program.solve(free, limits) for free in guesses]
     least = dict[str, FreeSolution]()
     if not any(found.status.solved for found in tried):
@@ -255,10 +269,12 @@ def _solve_from_starts(program: FloorProgram, starts: int, seed: int) -> list[Fr
         peaks = true_peaks(
             limits, least, lambda found: Candidate.of_free_motion(task.certain, found.free)
         )
-        raise unmet(
-            "motion at all", limits, tried, peaks, "a longer duration",
+        sought = Sought(
+            "motion at all",
+            "a longer duration",
             otherwise="try another seed, more starts or a longer duration.",
-        )  # fmt: skip
+        )
+        raise unmet(sought, limits, tried, peaks)
     return solved
 
 
@@ -317,7 +333,7 @@ def _certify(program: FloorProgram, found: FreeSolution) -> tuple[FreeSolution, 
         if not again.status.solved:
             break
         found, motion = again, Candidate.of_free_motion(task, again.free)
-    remedy = "the grid is too coarse for this motion; give a smaller tolerance"
+    remedy = "the grid is too coarse for this motion; give a smaller energy tolerance"
     if error := excess_error(motion, limits, remedy):
         raise error
     return found, motion.motion

@@ -11,10 +11,12 @@ from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.planning.best_of_starts import SolverName
 from quietarm.ocp.planning.certify import OVERRUN, judge
 from quietarm.ocp.record import number_of_points
+from quietarm.ocp.solvers.choice import other_solver, stated_solver
 from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
 
 _SAME = 1e-6
 """Energies that differ by no more than this share agree."""
@@ -42,13 +44,13 @@ class CrossCheck:
 
     Attributes
     ----------
-    solver : str
+    solver : Solver
         The other solver.
     points : tuple of Compared
         From the smallest residual to the least energy.
     """
 
-    solver: str
+    solver: Solver
     points: tuple[Compared, ...]
 
     @property
@@ -58,16 +60,25 @@ class CrossCheck:
 
 
 @one_at_a_time
-@takes(front=Front)
-def cross_check(front: Front, points: int = 7, report: Report = no_report) -> CrossCheck:
+@takes(front=Front, solver=Solver)
+def cross_check(
+    front: Front,
+    *,
+    checked_points: int = 7,
+    solver: Solver | None = None,
+    report: Report = no_report,
+) -> CrossCheck:
     """Solve points of a front by the solver that did not find them, from the plain cycloid.
 
     Parameters
     ----------
     front : Front
-        A front of any method; if its settings name no solver, IPOPT checks it.
-    points : int
+        A front of any method.
+    checked_points : int
         How many points: both ends, and others spread evenly between.
+    solver : Solver, optional
+        What checks it; by default the solver that did not find it, with the same options, and
+        IPOPT if the front's settings name none.
     report : callable, optional
         Called with the number of points done and of all.
 
@@ -80,11 +91,13 @@ def cross_check(front: Front, points: int = 7, report: Report = no_report) -> Cr
     Raises
     ------
     ValueError
-        When the front has no point, or `points` is out of range.
+        When the front has no point, or `checked_points` is out of range.
     """
-    count = min(number_of_points(points), len(front.points))
-    solver: SolverName = "sqp" if front.record.settings.get("solver") == "ipopt" else "ipopt"
-    curve, found = curve_of(front, starts=_STARTS, solver=solver), list[Compared]()
+    count = min(number_of_points(checked_points), len(front.points))
+    if solver is None:
+        solver = other_solver(stated_solver(front.record.settings) or Sqp())
+    curve = curve_of(front, starts=_STARTS, solver=solver)
+    found = list[Compared]()
     for i in np.linspace(0, len(front.points) - 1, count).round().astype(int):
         found.append(_compare(curve, front.points[i]))
         report(len(found), count)

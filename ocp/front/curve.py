@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.limits import Limit
-from quietarm.ocp.planning.best_of_starts import SolverName, solver_of, start_coefficients
 from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
+from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import Setting, SolveSettings
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution, Solver, Transcription
+from quietarm.ocp.record import Setting
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution, Transcription
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
@@ -45,13 +47,13 @@ class Curve:
     """A task along its profile, whose residual is limited or weighted."""
 
     transcription: Transcription
-    settings: SolveSettings
+    setup: Setup
 
     @classmethod
-    def begin(cls, task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Curve:
-        """On the steps that the settings or the task ask for."""
+    def begin(cls, task: PointToPoint, profile: JointProfile, setup: Setup) -> Curve:
+        """On the steps that the setup or the task asks for."""
         profile.refuse_no_choice()
-        return cls(Transcription.of(task, profile, settings.steps), settings)
+        return cls(Transcription.of(task, profile, setup.steps), setup)
 
     @property
     def task(self) -> PointToPoint:
@@ -61,12 +63,12 @@ class Curve:
     @property
     def solver(self) -> Solver:
         """What solves its problems."""
-        return solver_of(self.settings)
+        return self.setup.solver
 
     @cached_property
     def starts(self) -> list[Array]:
         """Coefficients to start from."""
-        return start_coefficients(self.transcription.profile, self.settings)
+        return self.setup.start_coefficients(self.transcription.profile)
 
     @property
     def tolerances(self) -> Tolerances:
@@ -77,7 +79,7 @@ class Curve:
         self, residual_limit: float = np.inf, minimise: Mapping[str, float] = LEAST_ENERGY
     ) -> Problem:
         """The problem at a residual limit [m]."""
-        return Problem.of(self.transcription, residual_limit, self.settings.bound, minimise)
+        return Problem.of(self.transcription, residual_limit, self.setup.bound, minimise)
 
     def certify(
         self,
@@ -130,7 +132,7 @@ class Curve:
             task=self.task,
             profile=self.transcription.profile,
             points=non_dominated(one.point for one in found if isinstance(one.point, FrontPoint)),
-            record=self.settings.record(
+            record=self.setup.record(
                 method,
                 iterations + sum(one.iterations for one in found),
                 seconds,
@@ -146,10 +148,10 @@ class Curve:
 
 
 def curve_of(
-    front: Front, *, starts: int, steps: int | None = None, solver: SolverName = "sqp"
+    front: Front, *, starts: int, steps: int | None = None, solver: Solver = Sqp()
 ) -> Curve:
     """The curve of a front that is there already, within its bound; it must have a point."""
     front.smallest_residual()
     bound, seed = front.record.bound, front.record.seed or 0
-    settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)
-    return Curve.begin(front.task, front.profile, settings)
+    setup = Setup(solver, bound, starts, seed, steps)
+    return Curve.begin(front.task, front.profile, setup)

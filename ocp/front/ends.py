@@ -97,7 +97,7 @@ def _least_residual(curve: Curve, cheapest: Solution) -> tuple[Solution, Certifi
     Limits are tightened while the residual is minimised: at the least residual there is no room to
     tighten them in.
     """
-    least = least_peaks_of(curve.problem(), curve.starts).get(RESIDUAL)
+    least = least_peaks_of(curve.problem(), curve.starts, curve.solver).get(RESIDUAL)
     if least is None:
         return cheapest, _certify_cheapest(curve, cheapest)
     transcription, asked = curve.problem(minimise={RESIDUAL: 1.0})
@@ -125,9 +125,7 @@ def _of_scenarios(curve: Curve) -> Ends:
     Its energy is that of the nominal plant, so the cheapest motion is the same. Neither rest in all
     scenarios nor the least residual is asked for: both would cost any energy.
     """
-    nominal = find_ends(
-        Curve.begin(curve.task.certain, curve.transcription.profile, curve.settings)
-    )
+    nominal = find_ends(Curve.begin(curve.task.certain, curve.transcription.profile, curve.setup))
     steps = nominal.curve.transcription.steps
     curve = replace(curve, transcription=Transcription(
         curve.task, curve.transcription.profile, steps))  # fmt: skip

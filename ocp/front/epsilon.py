@@ -14,11 +14,14 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.planning.best_of_starts import SolverName, best_of_starts, better
+from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.planning.choose_profile import choose_profile
+from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import SolveSettings, digits, number_of_points
+from quietarm.ocp.record import digits, number_of_points
 from quietarm.ocp.solvers.problem import STILL, Solution
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
@@ -37,7 +40,7 @@ Best = Mapping[float, Solution]
 
 
 @one_at_a_time
-@takes(task=PointToPoint, profile=JointProfile)
+@takes(task=PointToPoint, profile=JointProfile, solver=Solver)
 def epsilon_front(
     task: PointToPoint,
     profile: JointProfile | None = None,
@@ -48,8 +51,8 @@ def epsilon_front(
     starts: int = 4,
     seed: int = 0,
     steps: int | None = None,
+    solver: Solver = Sqp(),
     report: Report = no_report,
-    solver: SolverName = "sqp",
 ) -> Front:
     """Find the front of residual and energy by the gradient, with the epsilon-constraint method.
 
@@ -88,8 +91,8 @@ def epsilon_front(
     profile = choose_profile(task) if profile is None else profile
     points = number_of_points(points)
     at = [positive("residual", one, "m") for one in several("at", at, "residuals")]
-    settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)
-    began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, settings))
+    setup = Setup(solver, bound, starts, seed, steps)
+    began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, setup))
     wanted = _limits_at(ends, at)
     total = points + len(wanted)
     report(2, total)

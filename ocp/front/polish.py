@@ -11,7 +11,10 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report,
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.problem import Solution
+from quietarm.ocp.solvers.solver import NAME, Solver
+from quietarm.ocp.solvers.sqp import Sqp
 
 
 @dataclass(frozen=True)
@@ -49,16 +52,22 @@ class Polish:
 
 
 @one_at_a_time
-@takes(front=Front)
-def polish_front(front: Front, *, steps: int | None = None, report: Report = no_report) -> Polish:
+@takes(front=Front, solver=Solver)
+def polish_front(
+    front: Front,
+    *,
+    steps: int | None = None,
+    solver: Solver = Sqp(),
+    report: Report = no_report,
+) -> Polish:
     """Start the gradient from every point of a front, with the point's residual as the limit.
 
     Parameters
     ----------
     front : Front
         A front of any method; the bound of its record is kept.
-    steps : int, optional
-        Steps of the solver's discretisation, as for `plan_move`.
+    steps, solver
+        As for `plan_move`.
     report : callable, optional
         Called with the number of points done and of all.
 
@@ -73,11 +82,12 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     ValueError
         When the front has no point.
     """
-    began, curve = time.perf_counter(), curve_of(front, starts=1, steps=steps)
+    began = time.perf_counter()
+    curve = curve_of(front, starts=1, steps=steps, solver=solver)
     problems = [curve.problem(point.residual) for point in front.points]
     starts = [np.array(point.coefficients) for point in front.points]
     tried = list[list[Certificate]]()
-    solved = curve.solver.solve(problems, starts)
+    solved = solver.solve(problems, starts)
     for point, solution in zip(front.points, solved):
         tried.append(_improve(curve, point, solution))
         report(len(tried), len(front.points))
@@ -87,14 +97,18 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
         polished, reference=front.reference, history=front.history,
         record=replace(
             record, method=f"{record.method}, polished",
-            settings={**record.settings, "polish": curve.settings.solver,
-                      "steps": curve.transcription.steps},
+            settings={**record.settings, **_stated(solver), "steps": curve.transcription.steps},
             iterations=record.iterations + polished.record.iterations,
             versions=polished.record.versions,
             seconds=record.seconds + polished.record.seconds,
         ),
     )  # fmt: skip
     return Polish(polished, tuple(map(_gain, front.points, tried)))
+
+
+def _stated(solver: Solver) -> dict[str, Setting]:
+    """What a record says of the solver that polished, beside the one that found the front."""
+    return {name.replace(NAME, "polish", 1): value for name, value in solver.stated.items()}
 
 
 def _improve(curve: Curve, point: FrontPoint, solution: Solution) -> list[Certificate]:

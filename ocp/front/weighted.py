@@ -14,11 +14,14 @@ from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.planning.best_of_starts import SolverName, best_of_starts, objective_of
+from quietarm.ocp.planning.best_of_starts import best_of_starts, objective_of
 from quietarm.ocp.planning.choose_profile import choose_profile
+from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import SolveSettings, digits, number_of_points
+from quietarm.ocp.record import digits, number_of_points
 from quietarm.ocp.solvers.problem import ENERGY, Solution
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 _FLAT = 1e-5
@@ -29,7 +32,7 @@ Minimum = tuple[Solution, Asked]
 
 
 @one_at_a_time
-@takes(task=PointToPoint, profile=JointProfile)
+@takes(task=PointToPoint, profile=JointProfile, solver=Solver)
 def weighted_front(
     task: PointToPoint,
     profile: JointProfile | None = None,
@@ -40,8 +43,8 @@ def weighted_front(
     starts: int = 4,
     seed: int = 0,
     steps: int | None = None,
+    solver: Solver = Sqp(),
     report: Report = no_report,
-    solver: SolverName = "sqp",
 ) -> Front:
     """Find points of the front by the gradient, as minima of weighted sums of both objectives.
 
@@ -52,7 +55,7 @@ def weighted_front(
 
     Parameters
     ----------
-    task, profile, bound, seed, steps, report, solver
+    task, profile, bound, seed, steps, solver, report
         As for `epsilon_front`.
     points : int
         Most points, the ends included.
@@ -75,8 +78,8 @@ def weighted_front(
     profile = choose_profile(task) if profile is None else profile
     points = number_of_points(points)
     chosen = None if weights is None else _pairs(weights)
-    settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)
-    began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, settings))
+    setup = Setup(solver, bound, starts, seed, steps)
+    began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, setup))
     found, gaps = list[Minimum](), list[tuple[float, float]]()
     if chosen is None and not ends.are_one:
         found, gaps = _along_chords(ends, points, report)

@@ -5,43 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
-from typing import Literal, Protocol, TypeVar, get_args
+from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.limits import Limit, Ranged
 from quietarm.ocp.planning.certify import certify_one, judge
-from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import ENERGY, STILL, Problem, Scalarization, Solution, Solver
-from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.solvers.choice import stand_in
+from quietarm.ocp.solvers.problem import ENERGY, STILL, Problem, Scalarization, Solution
+from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
-SolverName = Literal["sqp", "ipopt"]
-SOLVERS: tuple[str, ...] = get_args(SolverName)
 SAME = 1e-5
 """Solutions whose objectives differ by less than this share count as one motion."""
 _ROOM = 1.001
 """A least value is quoted with this margin, so that a user who asks for it gets a plan."""
-
-
-def solver_of(settings: SolveSettings) -> Solver:
-    """The solver that settings ask for."""
-    if settings.solver == "sqp":
-        return Sqp(log=settings.log)
-    return Ipopt(print_level=5 if settings.log else 0)
-
-
-def start_coefficients(profile: JointProfile, settings: SolveSettings) -> list[Array]:
-    """Coefficients to start from: the guess or the plain cycloid, then random ones of the seed."""
-    random = np.random.default_rng(settings.seed)
-    within = profile.start_box(settings.bound)
-    count = (settings.starts - 1) * profile.random_starts
-    others = [random.uniform(*within) for _ in range(count)]
-    first = profile.plain if settings.guess is None else np.array(settings.guess)
-    return [first, *others]
 
 
 def objective_of(solution: Solution, scalarization: Scalarization) -> float:
@@ -87,7 +66,8 @@ def solve_from_starts(
 ) -> tuple[Solution, list[Solution]]:
     """The best solution from several starts, and all, the best first.
 
-    Where none of them leads to a solution, motions of least peaks are tried as starts, then IPOPT.
+    Where none of them leads to a solution, motions of least peaks are tried as starts, then what
+    stands in for the solver.
     InfeasibleTaskError says what would be feasible; SolverFailedError has another reason. A quick
     solve ends with its starts, and says nothing of that.
     """
@@ -98,10 +78,10 @@ def solve_from_starts(
         if quick:
             return
         if problem.scalarization.limits:
-            least.update(least_peaks_of(problem, starts[:2]))
+            least.update(least_peaks_of(problem, starts[:2], solver))
             yield solver, [one.coefficients for one in least.values()]
-        if not isinstance(solver, Ipopt):
-            yield Ipopt(), starts[:2]
+        if (substitute := stand_in(solver)) is not None:
+            yield substitute, starts[:2]
 
     for by, guesses in attempts():
         if not guesses:
@@ -116,7 +96,7 @@ def solve_from_starts(
     if not solved and quick:
         raise InfeasibleTaskError(f"no start was solved: {tried[0].reason}")
     if not solved:
-        raise explain(problem, tried, least)
+        raise explain(problem, tried, least, solver)
     return replace(solved[0], iterations=sum(one.iterations for one in tried)), solved
 
 
@@ -150,13 +130,15 @@ def least_peaks(
     return best
 
 
-def least_peaks_of(problem: Problem, starts: Sequence[NDArray[np.float64]]) -> dict[str, Solution]:
+def least_peaks_of(
+    problem: Problem, starts: Sequence[Array], solver: Solver
+) -> dict[str, Solution]:
     """The same of a problem, from several starts."""
     transcription, asked = problem
 
     def solve_least(others: Sequence[Limit], name: str) -> list[Solution]:
         alone = Problem(transcription, asked._replace(limits=tuple(others), minimise={name: 1.0}))
-        return Sqp().solve([alone] * len(starts), starts)
+        return solver.solve([alone] * len(starts), starts)
 
     return least_peaks(asked.limits, solve_least)
 
@@ -176,7 +158,10 @@ def true_peaks(
 
 
 def explain(
-    problem: Problem, tried: Sequence[Solution], least: Mapping[str, Solution]
+    problem: Problem,
+    tried: Sequence[Solution],
+    least: Mapping[str, Solution],
+    solver: Solver,
 ) -> SolverFailedError:
     """The error for a problem that no start solved; other arguments as for `unmet`."""
     transcription, asked = problem
@@ -185,59 +170,64 @@ def explain(
         limit.name: peaks[limit.name]
         for limit in asked.limits
         if limit.name in peaks
-        and _has_a_plan(problem, limit, peaks[limit.name], least[limit.name].coefficients)
+        and _has_a_plan(problem, limit, peaks[limit.name], least[limit.name].coefficients, solver)
     }
-    return unmet(
+    sought = Sought(
         f"motion of {transcription.profile.amount}",
-        asked.limits,
-        tried,
-        confirmed,
         f"more {transcription.profile.term}s or a longer duration",
-        "" if asked.bound is None else f", coefficients within +-{asked.bound:g}",
+        box="" if asked.bound is None else f", coefficients within +-{asked.bound:g}",
     )
+    return unmet(sought, asked.limits, tried, confirmed)
 
 
-def _has_a_plan(problem: Problem, limit: Limit, peak: float, start: Array) -> bool:
+def _has_a_plan(problem: Problem, limit: Limit, peak: float, start: Array, solver: Solver) -> bool:
     """Whether a plan exists with a limit that is as wide as would be offered."""
     transcription, asked = problem
     offered = limit.widened_to(peak * _ROOM)
     limits = tuple(offered if other is limit else other for other in asked.limits)
     relaxed = Problem(transcription, asked._replace(limits=limits))
-    (solution,) = Sqp().solve([relaxed], [start])
+    (solution,) = solver.solve([relaxed], [start])
     if not solution.status.solved:
         return False
     try:
-        certify_one(relaxed, solution, Sqp())
+        certify_one(relaxed, solution, solver)
     except SolverFailedError:
         return False
     return True
 
 
+class Sought(NamedTuple):
+    """What was looked for, in words, and what may help where nothing else does.
+
+    The box is what is added where coefficients are bounded; `otherwise` helps where a solver did
+    not end at an infeasible motion.
+    """
+
+    motion: str
+    remedy: str
+    box: str = ""
+    otherwise: str = ""
+
+
 def unmet(
-    motion: str,
-    limits: Sequence[Limit],
-    runs: Sequence[Attempt],
-    least: Mapping[str, float],
-    remedy: str,
-    box: str = "",
-    otherwise: str = "",
+    sought: Sought, limits: Sequence[Limit], runs: Sequence[Attempt], least: Mapping[str, float]
 ) -> SolverFailedError:
     """The error for limits that no start met, in words, to be raised by the caller."""
     statuses = [run.status for run in runs]
     if SolveStatus.INFEASIBLE not in statuses:
         ended = statuses[0].text
-        if otherwise:
-            ended = f"{ended.partition(';')[0]}; {otherwise}"
+        if sought.otherwise:
+            ended = f"{ended.partition(';')[0]}; {sought.otherwise}"
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
-    asked = ", ".join(
-        f"{one.label} {'<=' if one.is_peak else 'within'} {one.bounds}"
-        for one in limits
-        if one.size < np.inf
+    bounds = ", ".join(
+        f"{limit.label} {'<=' if limit.is_peak else 'within'} {limit.bounds}"
+        for limit in limits
+        if limit.size < np.inf
     )
     remedies = [
-        f"{one.label} limit {one.describe(least[one.name] * _ROOM)}"
-        for one in limits
-        if one.name in least and not one.keeps(least[one.name], at_rest=STILL)
+        f"{limit.label} limit {limit.describe(least[limit.name] * _ROOM)}"
+        for limit in limits
+        if limit.name in least and not limit.keeps(least[limit.name], at_rest=STILL)
     ]
     feasible = (
         f"feasible with all else unchanged: {' or '.join(remedies)}"
@@ -245,5 +235,6 @@ def unmet(
         else "removing any single one of these limits does not help, so widen several"
     )
     return InfeasibleTaskError(
-        f"found no {motion} with {asked}{box}; {feasible}", f"{remedy} may also do"
+        f"found no {sought.motion} with {bounds}{sought.box}; {feasible}",
+        f"{sought.remedy} may also do",
     )

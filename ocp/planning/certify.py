@@ -25,11 +25,11 @@ from quietarm.ocp.solvers.problem import (
     STILL_SHARE,
     Problem,
     Solution,
-    Solver,
     Transcription,
     evaluate,
     transcribe,
 )
+from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
 _RESIDUAL_AGREEMENT, _AT_REST = 5e-3, 0.3

@@ -12,18 +12,19 @@ it refuses the task.
 from __future__ import annotations
 
 import time
-from contextlib import suppress
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
-from quietarm.ocp.planning.best_of_starts import best_of_starts, solver_of, start_coefficients
+from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.least_time import fitting_spline, least_time
 from quietarm.ocp.planning.plan import Plan
+from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.residual_limit import ResidualLimit
+from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import Setting, SolveSettings
+from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.problem import Problem, Solution, Transcription
 from quietarm.ocp.task import PointToPoint
 
@@ -36,21 +37,6 @@ CHOSEN, OF_SIX = "chosen_terms", "energy_of_six_terms"
 _LONGER = (0.01, 0.05)
 """Shares by which a duration that is offered is longer than the least time."""
 _LEAST_TIME_TO = 2e-3
-
-
-class PlanOf(Protocol):
-    """The plan of a task along a profile; a quick one fails without a remedy."""
-
-    def __call__(
-        self,
-        task: PointToPoint,
-        profile: JointProfile,
-        settings: SolveSettings,
-        *,
-        quick: bool = False,
-    ) -> Plan:
-        """See `plan_move.plan_within`."""
-        ...
 
 
 def choose_profile(task: PointToPoint) -> CycloidPolynomial:
@@ -66,61 +52,62 @@ def more_terms(task: PointToPoint) -> CycloidPolynomial:
     return CycloidPolynomial(_OF_ONE_MODE if task.plant.modes == 1 else _OF_SEVERAL_MODES)
 
 
-def plan_on_chosen_profile(
-    task: PointToPoint, settings: SolveSettings, residual_limit: float, plan: PlanOf
-) -> Plan:
+def plan_on_chosen_profile(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> Plan:
     """The plan along the profile that a task takes, or along a richer one where it finds none.
 
-    The residual limit is that of the worst case. InfeasibleTaskError, where no profile does, has
-    the duration that would do.
+    InfeasibleTaskError, where no profile does, has the duration that would do.
     """
-    best = _plan_quickly(task, settings, plan)
-    if best is not None and (best.residual_limit or 0.0) <= residual_limit:
+    best = _plan_quickly(task, setup, limit)
+    if best is not None and (best.residual_limit or 0.0) <= limit.size:
         return best
     # no motion was found, or the default residual limit was out of reach
-    on_spline = _plan_on_spline(task, settings, residual_limit, plan)
+    on_spline = _plan_on_spline(task, setup, limit)
     if on_spline is not None and (best is None or _left(on_spline) < _left(best)):
         return on_spline
     if best is not None:
         return best
+    profile = more_terms(task)
     try:
-        return _stating_terms(plan(task, more_terms(task), replace(settings, starts=1)))
+        return _stating_terms(plan_along(task, profile, replace(setup, starts=1), limit))
     except InfeasibleTaskError as error:
-        duration = _feasible_duration(task, settings, residual_limit, plan)
-        remedy = f"a duration of {duration:g} s will also do" if duration else ""
-        what = error.what
-        if task.limits and settings.bound is None:
-            amount = more_terms(task).amount
-            what = what.replace(f"motion of {amount}", f"motion of {amount} or on a spline", 1)
-        raise InfeasibleTaskError(what, remedy) from None
+        raise _with_a_duration(error, task, setup, limit, profile.amount) from None
 
 
-def _plan_quickly(task: PointToPoint, settings: SolveSettings, plan: PlanOf) -> Plan | None:
+def _plan_quickly(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> Plan | None:
     """Six terms without limits, and more where these find no motion; within limits more."""
-    with suppress(SolverFailedError):
-        if task.limits:
-            return _plan_with_more_terms(task, settings, plan)
-        with suppress(SolverFailedError):
-            return plan(task, SIX, settings)
-        return _stating_terms(plan(task, more_terms(task), settings, quick=True))
-    return None
+    if task.limits:
+        return _plan_with_more_terms(task, setup, limit)
+    plan = _try(task, SIX, setup, limit, quick=False)
+    if plan is None and (plan := _try(task, more_terms(task), setup, limit)) is not None:
+        return _stating_terms(plan)
+    return plan
 
 
-def _plan_on_spline(
-    task: PointToPoint, settings: SolveSettings, residual_limit: float, plan: PlanOf
+def _try(
+    task: PointToPoint,
+    profile: JointProfile,
+    setup: Setup,
+    limit: ResidualLimit,
+    *,
+    quick: bool = True,
 ) -> Plan | None:
-    """The plan on a spline that keeps the limits; None where none was found."""
-    if not task.limits or settings.bound is not None:
+    """The plan along a profile; None where no motion was found."""
+    try:
+        return plan_along(task, profile, setup, limit, quick=quick)
+    except SolverFailedError:
         return None
-    fitted = fitting_spline(task, residual_limit, None)
+
+
+def _plan_on_spline(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> Plan | None:
+    """The plan on a spline that keeps the limits; None where none was found."""
+    if not task.limits or setup.bound is not None:
+        return None
+    fitted = fitting_spline(task, limit.size, None)
     if fitted is None:
         return None
     spline, coefficients = fitted
-    from_fit = replace(settings, starts=1, guess=tuple(coefficients.tolist()))
-    try:
-        return plan(task, spline, from_fit, quick=True)
-    except SolverFailedError:
-        return None
+    from_fit = replace(setup, starts=1, guess=tuple(coefficients.tolist()))
+    return _try(task, spline, from_fit, limit)
 
 
 def _left(plan: Plan) -> float:
@@ -128,43 +115,31 @@ def _left(plan: Plan) -> float:
     return plan.residual if plan.worst is None else plan.worst.residual
 
 
-def _plan_with_more_terms(task: PointToPoint, settings: SolveSettings, plan: PlanOf) -> Plan:
+def _plan_with_more_terms(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> Plan | None:
     """The plan of the number of terms for limits; its record states what six would cost.
 
-    One start does, the plain cycloid; another is what six terms give, where it leads nowhere.
+    One start does, the plain cycloid; another is what six terms give, where it leads nowhere, or
+    where they are cheaper. None where no motion was found.
     """
     began = time.perf_counter()
     profile = more_terms(task)
-    six = _solve_with_six(task, settings)
-    from_cycloid = replace(settings, starts=1)
-    padded = np.pad(six.coefficients, (0, profile.size - SIX.size)).tolist()
-    from_six = replace(from_cycloid, guess=tuple(padded))
-    try:
-        best = plan(task, profile, from_cycloid, quick=True)
-    except SolverFailedError:
-        if not six.status.solved:
-            raise
-        best = plan(task, profile, from_six, quick=True)
-    else:
-        if six.status.solved and task.uncertainty is None and six.energy < best.energy:
-            best = _cheaper(best, task, profile, from_six, plan)
-    stated: dict[str, Setting] = {"starts": settings.starts}
+    six = _solve_with_six(task, setup, 0.0 if limit.adapts else limit.size)
+    from_cycloid = replace(setup, starts=1)
+    best = _try(task, profile, from_cycloid, limit)
+    cheaper = best is None or (task.uncertainty is None and six.energy < best.energy)
+    if six.status.solved and cheaper:
+        padded = np.pad(six.coefficients, (0, profile.size - SIX.size))
+        from_six = _try(task, profile, replace(from_cycloid, guess=tuple(padded.tolist())), limit)
+        if best is None or (from_six is not None and from_six.energy < best.energy):
+            best = from_six
+    if best is None:
+        return None
+    stated: dict[str, Setting] = {"starts": setup.starts}
     if six.status.solved and task.uncertainty is None:
         stated[OF_SIX] = six.energy
     return _stating_terms(
         best, stated, six.iterations + best.record.iterations, time.perf_counter() - began
     )
-
-
-def _cheaper(
-    best: Plan, task: PointToPoint, profile: JointProfile, settings: SolveSettings, plan: PlanOf
-) -> Plan:
-    """The plan from other settings where that is cheaper."""
-    try:
-        other = plan(task, profile, settings, quick=True)
-    except SolverFailedError:
-        return best
-    return other if other.energy < best.energy else best
 
 
 def _stating_terms(
@@ -183,36 +158,36 @@ def _stating_terms(
     )
 
 
-def _solve_with_six(task: PointToPoint, settings: SolveSettings) -> Solution:
+def _solve_with_six(task: PointToPoint, setup: Setup, residual_limit: float) -> Solution:
     """What six terms give for the nominal plant, by the solver's own steps."""
-    steps = Transcription.of(task.certain, SIX, settings.steps)
-    problem = Problem.of(steps, settings.residual_limit, settings.bound)
-    starts = start_coefficients(SIX, settings)
-    (six,) = best_of_starts([problem], [starts], solver_of(settings))
+    steps = Transcription.of(task.certain, SIX, setup.steps)
+    problem = Problem.of(steps, residual_limit, setup.bound)
+    (six,) = best_of_starts([problem], [setup.start_coefficients(SIX)], setup.solver)
     return six
 
 
-def _feasible_duration(
-    task: PointToPoint, settings: SolveSettings, residual_limit: float, plan: PlanOf
-) -> float | None:
+def _with_a_duration(
+    error: InfeasibleTaskError, task: PointToPoint, setup: Setup, limit: ResidualLimit, amount: str
+) -> InfeasibleTaskError:
+    """The error with the duration that would do, where a longer one does."""
+    if not task.limits or setup.bound is not None:
+        return InfeasibleTaskError(error.what, "")
+    duration = _feasible_duration(task, setup, limit)
+    remedy = f"a duration of {duration:g} s will also do" if duration else ""
+    what = error.what.replace(f"motion of {amount}", f"motion of {amount} or on a spline", 1)
+    return InfeasibleTaskError(what, remedy)
+
+
+def _feasible_duration(task: PointToPoint, setup: Setup, limit: ResidualLimit) -> float | None:
     """A duration [s] for which there is a plan, hardly longer than the least one; None if none."""
-    if not task.limits or settings.bound is not None:
-        return None
     try:
-        least = least_time(task, residual_limit, None, _LEAST_TIME_TO)
+        least = least_time(task, limit.size, None, _LEAST_TIME_TO)
     except ValueError:
         return None
-    guess = tuple(least.coefficients.tolist())
+    from_least = replace(setup, starts=1, guess=tuple(least.coefficients.tolist()))
     for longer in _LONGER:
         duration = float(f"{(1 + longer) * least.duration:.3g}")
-        try:
-            plan(
-                replace(task, duration=duration),
-                least.profile,
-                replace(settings, starts=1, guess=guess),
-                quick=True,
-            )
-        except SolverFailedError:
-            continue
-        return duration
+        lasting = replace(task, duration=duration)
+        if _try(lasting, least.profile, from_least, limit) is not None:
+            return duration
     return None

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, replace
-from typing import Any
 
 from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
@@ -17,15 +16,17 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.least_time import LeastTime, least_time, rigid_duration
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.plan_move import limit_of, plan_move, plan_within
+from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.rigid_motion import assumed_bounds, largest_deflection, rigid_motion
+from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
-from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.free_vibration import FreeVibration
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
-TOLERANCE = 1e-3
 _SHORTER = (0.97, 0.9, 0.8)
 """Shares of the duration that failed which are tried as well: what is feasible may have gaps."""
 _GROWTH = 1.5
@@ -50,7 +51,7 @@ class Fastest:
         The move of least energy in that duration.
     failed : tuple of (float, str)
         Shorter durations [s] that were tried, the longest first, and why each failed: the first is
-        shorter by no more than the tolerance.
+        shorter by no more than the duration's tolerance.
     """
 
     plan: Plan
@@ -63,16 +64,17 @@ class Fastest:
 
 
 @one_at_a_time
-@takes(task=PointToPoint, profile=JointProfile)
-@one_at_a_time
+@takes(task=PointToPoint, profile=JointProfile, solver=Solver)
 def fastest_move(
     task: PointToPoint,
     profile: JointProfile | None = None,
     *,
     residual_limit: float | None = None,
     bound: float | None = None,
-    tolerance: float = TOLERANCE,
-    **settings: Any,
+    seed: int = 0,
+    steps: int | None = None,
+    solver: Solver = Sqp(),
+    duration_tolerance: float = 1e-3,
 ) -> Fastest:
     """Find the shortest duration in which a move keeps its limits and arrives at rest.
 
@@ -87,9 +89,10 @@ def fastest_move(
     residual_limit : float, optional
         Largest F1 [m]; 0, the default, requires rest on arrival. For an uncertain task the default
         is `fastest_residual_limit`, whatever the duration.
-    bound, **settings
-        As for `plan_move`.
-    tolerance : float
+    bound, seed, steps, solver
+        As for `plan_move`; each duration has one start, the fastest motion on the spline, or the
+        last feasible one.
+    duration_tolerance : float
         Share of the duration to which it is found.
 
     Returns
@@ -104,19 +107,21 @@ def fastest_move(
     InfeasibleTaskError
         When no duration is feasible.
     """
-    positive("tolerance", tolerance)
+    positive("duration tolerance", duration_tolerance)
+    setup = Setup(solver, bound, 1, seed, steps)
     if not task.limits:
         names = ", ".join(QUANTITIES)
         raise ValueError(f"nothing limits how fast the move may be; give a limit of {names}")
     if task.uncertainty is not None and residual_limit is None:
         residual_limit = fastest_residual_limit(task)
     begin = time.perf_counter()
-    settings = {"residual_limit": residual_limit, "bound": bound, **{"starts": 1, **settings}}
+    limit = ResidualLimit.of(task, residual_limit)
     if profile is None:
-        fastest = _fastest_on_spline(task, tolerance, settings)
+        fastest = _fastest_on_spline(task, setup, limit, duration_tolerance)
     else:
         profile.refuse_no_choice()
-        fastest = _fastest_along(task, profile, tolerance, settings)
+        search = _Search(task, profile, setup, limit)
+        fastest = _fastest_along(search, duration_tolerance)
     plan = fastest.plan.restated(seconds=time.perf_counter() - begin)
     return Fastest(plan, fastest.failed)
 
@@ -139,26 +144,25 @@ def fastest_residual_limit(task: PointToPoint) -> float:
     return limit
 
 
-def _fastest_on_spline(task: PointToPoint, tolerance: float, settings: dict[str, Any]) -> Fastest:
+def _fastest_on_spline(
+    task: PointToPoint, setup: Setup, residual_limit: ResidualLimit, tolerance: float
+) -> Fastest:
     """The plan of least energy in the least time on a spline, or in hardly more."""
-    limit = limit_of(task, settings["residual_limit"])
     try:
-        least = least_time(task, limit, settings["bound"], tolerance / 2)
+        least = least_time(task, residual_limit.size, setup.bound, tolerance / 2)
     except ValueError as error:
         raise InfeasibleTaskError(f"no duration was found: {error}") from None
     failed = {least.too_short: _why_too_short(task, least)}
-    guess = tuple(least.coefficients.tolist())
-    given: dict[str, Any] = {**settings, "residual_limit": limit, "guess": guess}
-    from_least = SolveSettings(**given)
+    from_least = replace(setup, guess=tuple(least.coefficients.tolist()))
     shortest = _LONGER[0] if task.uncertainty is None else _LONGER_IF_UNCERTAIN
     for longer in (share for share in _LONGER if share >= shortest):
         duration = (1 + longer) * least.duration
         try:
-            plan = plan_within(
+            plan = plan_along(
                 replace(task, duration=duration),
                 least.profile,
                 from_least,
-                settings["residual_limit"],
+                residual_limit,
                 quick=True,
             )
         except SolverFailedError as error:
@@ -178,11 +182,8 @@ def _why_too_short(task: PointToPoint, least: LeastTime) -> str:
     return f"every motion found exceeds a limit by {max(least.excess, 1e-6):.1g} of it or more"
 
 
-def _fastest_along(
-    task: PointToPoint, profile: JointProfile, tolerance: float, settings: dict[str, Any]
-) -> Fastest:
+def _fastest_along(search: _Search, tolerance: float) -> Fastest:
     """The plan in the shortest duration along a profile."""
-    search = _Search(task, profile, settings)
     _narrow(search, tolerance)
     assert search.best is not None  # the bracket found one
     shorter = [
@@ -216,11 +217,13 @@ class _Search:
         self,
         task: PointToPoint,
         profile: JointProfile,
-        settings: dict[str, Any],
+        setup: Setup,
+        residual_limit: ResidualLimit,
     ) -> None:
         self.task = task
         self.profile = profile
-        self.settings = settings
+        self.setup = setup
+        self.residual_limit = residual_limit
         self.best: Plan | None = None
         self.failed: dict[float, str] = {}
 
@@ -229,7 +232,8 @@ class _Search:
         task = replace(self.task, duration=duration)
         guess = None if self.best is None else self.best.coefficients
         try:
-            plan = plan_move(task, self.profile, guess=guess, **self.settings)
+            from_best = replace(self.setup, guess=guess)
+            plan = plan_along(task, self.profile, from_best, self.residual_limit)
         except SolverFailedError as error:
             self.failed[duration] = str(error)
             return False

@@ -12,19 +12,17 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
-from quietarm.ocp.planning.best_of_starts import (
-    SolverName,
-    best_of_starts,
-    solver_of,
-    start_coefficients,
-)
+from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
+from quietarm.ocp.planning.residual_limit import ResidualLimit
+from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
-from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem, Solution, Solver, first_steps, transcribe
+from quietarm.ocp.solvers.choice import stand_in
+from quietarm.ocp.solvers.problem import Problem, Solution, first_steps, transcribe
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
@@ -69,16 +67,17 @@ class Moves:
 
 
 @one_at_a_time
-@takes(tasks=[PointToPoint], profile=JointProfile)
+@takes(tasks=[PointToPoint], profile=JointProfile, solver=Solver)
 def plan_moves(
     tasks: Sequence[PointToPoint],
     profile: JointProfile | None = None,
     *,
-    residual_limit: float = 0.0,
+    residual_limit: float | None = None,
     bound: float | None = None,
-    starts: int = 1,
+    starts: int = 4,
     seed: int = 0,
-    solver: SolverName = "sqp",
+    neighbours: bool = True,
+    solver: Solver = Sqp(),
 ) -> Moves:
     """Find the motions of least energy of many moves of one plant.
 
@@ -87,9 +86,11 @@ def plan_moves(
     tasks : sequence of PointToPoint
         Moves of one plant, none of them uncertain, with the same quantities limited.
     profile, residual_limit, bound, starts, seed, solver
-        As for `plan_move`. With one start, the default, every eighth move starts from the plain
-        cycloid and the others from the nearest of these. A move that is not solved is tried from
-        the plain cycloid, from three random starts, then by IPOPT.
+        As for `plan_move`.
+    neighbours : bool
+        Whether every eighth move is solved from the plain cycloid first, and the others from the
+        nearest of these; the starts are then for moves that are not solved so. Without it every
+        move is solved from all its starts. What is not solved either way is tried by IPOPT.
 
     Returns
     -------
@@ -105,39 +106,45 @@ def plan_moves(
     """
     if profile is None:
         profile = choose_profile(tasks[0]) if tasks else SIX
-    settings = SolveSettings(residual_limit, bound, starts, seed, solver=solver)
+    setup = Setup(solver, bound, starts, seed)
     _check(tasks, profile)
+    limit = ResidualLimit.of(tasks[0], residual_limit).size
     problems = [
-        Problem.of(one, residual_limit, bound)
-        for one in transcribe(tasks, profile, _steps(tasks, profile))
+        Problem.of(transcription, limit, setup.bound)
+        for transcription in transcribe(tasks, profile, _steps(tasks, profile))
     ]
-    chosen, first = solver_of(settings), start_coefficients(profile, settings)
-    random = start_coefficients(profile, replace(settings, starts=4))[1:]
-    attempts: list[tuple[Solver, list[Array]]]
-    attempts = [(chosen, first), (chosen, random), (Ipopt(), first[:1])]
-    if starts == 1:
-        best = _from_neighbours(problems, first[0], chosen, seed)
+    plain, *random = guesses = setup.start_coefficients(profile)
+    if neighbours:
+        best = _from_neighbours(problems, plain, setup)
+        attempts = [(solver, [plain]), (solver, random)]
     else:
-        best = best_of_starts(problems, [first] * len(problems), chosen)
-        attempts = attempts[1:]
-    for by, guesses in attempts:
-        unsolved = [i for i, one in enumerate(best) if not one.status.solved]
-        if not unsolved or not guesses:
-            continue
-        own = [problems[i] for i in unsolved]
-        found = best_of_starts(own, [guesses] * len(own), by)
-        for i, one in zip(unsolved, found):
-            if one.status.solved:
-                best[i] = one
-    return _moves_of(problems, best, chosen, [*first[:1], *random])
+        best = best_of_starts(problems, [guesses] * len(problems), solver)
+        attempts = []
+    if (substitute := stand_in(solver)) is not None:
+        attempts.append((substitute, [plain]))
+    for solves, own_starts in attempts:
+        _solve_the_unsolved(problems, best, own_starts, solves)
+    return _moves_of(problems, best, solver, guesses)
 
 
-def _from_neighbours(
-    problems: Sequence[Problem], start: Array, solver: Solver, seed: int
-) -> list[Solution]:
+def _solve_the_unsolved(
+    problems: Sequence[Problem], best: list[Solution], starts: Sequence[Array], solver: Solver
+) -> None:
+    """Solve what has no solution yet from these starts."""
+    unsolved = [i for i, solution in enumerate(best) if not solution.status.solved]
+    if not unsolved or not starts:
+        return
+    again = [problems[i] for i in unsolved]
+    for i, solution in zip(unsolved, best_of_starts(again, [starts] * len(again), solver)):
+        if solution.status.solved:
+            best[i] = solution
+
+
+def _from_neighbours(problems: Sequence[Problem], start: Array, setup: Setup) -> list[Solution]:
     """Solve a share of the moves from one start, then all of them from the nearest of these."""
+    solver = setup.solver
     count = len(problems)
-    pilots = np.random.default_rng(seed).permutation(count)[: -(-count // _PILOTS)].tolist()
+    pilots = np.random.default_rng(setup.seed).permutation(count)[: -(-count // _PILOTS)].tolist()
     found = solver.solve([problems[i] for i in pilots], [start] * len(pilots))
     solved = [k for k, one in enumerate(found) if one.status.solved]
     if not solved:

@@ -21,6 +21,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,8 +38,8 @@ SHARP = (0.0,)
 """The widths for a start next to a minimum."""
 _FINE = 1e-2
 """A stage ends where the model promises less than this share of its width."""
-_OPTIMAL, _MET = 1e-9, 1e-10
-"""A row is solved where the model promises less than this share of f; no violation is larger."""
+_MET = 1e-10
+"""A row is solved with no larger violation."""
 FEASIBLE = 1e-7
 """A row that ends otherwise is feasible with no larger violation."""
 _NEAR = 1e-3
@@ -74,6 +75,24 @@ class End(Enum):
     AGREED = "stopped, since another start led to the same point, or others agreed"
 
 
+class Course(NamedTuple):
+    """How rows are led to their minima.
+
+    The objective is smoothed over the widths, one after another, the last of them 0. Trust regions
+    have the radius `reach` at first. A row is solved where the model promises less than the
+    `tolerance`, as a share of f; it has at most so many iterations. With a `log` each is a line.
+    """
+
+    widths: tuple[float, ...] = WIDTHS
+    reach: float = 0.25
+    tolerance: float = 1e-9
+    iterations: int = 500
+    log: bool = False
+
+
+COURSE = Course()
+
+
 @dataclass(frozen=True)
 class Ended:
     """Where the rows ended: points (rows, n), multipliers, why, after how many iterations (rows,).
@@ -97,27 +116,22 @@ def minimise(
     equalities: int = 0,
     linear: int = 0,
     groups: Index | None = None,
-    widths: tuple[float, ...] = WIDTHS,
-    reach: float = 0.25,
-    most: int = 500,
-    log: bool = False,
+    course: Course = COURSE,
 ) -> Ended:
     """Minimise every row from its start, with so many equalities and lower <= v <= upper.
 
     The last `linear` entries of v are linear and kept from the start on. Rows of one number in
     `groups` are starts of one program: once half of them, and more than one, agree on the least f,
-    the others are stopped. The objective is smoothed over the widths, one after another, the last
-    of them 0; trust regions have the radius `reach` at first, rows at most `most` iterations. `log`
-    prints a line for each.
+    the others are stopped.
     """
     with note_interrupts() as came:  # a step is whole, then Ctrl-C ends the work
-        run = _Run(evaluate, x, lower, upper, equalities, linear, groups, widths, reach)
-        if log:
+        run = _Run(evaluate, x, lower, upper, equalities, linear, groups, course)
+        if course.log:
             print(_LOG_HEAD)
-        for number in range(most):
+        for number in range(course.iterations):
             if came or not len(run.going):
                 break
-            if log:
+            if course.log:
                 print(run.log_line(number))
             run.iterate()
     if came:
@@ -138,11 +152,13 @@ class _Run:
         equalities: int,
         linear: int,
         groups: Index | None,
-        widths: tuple[float, ...],
-        reach: float,
+        course: Course,
     ) -> None:
         self.evaluate, self.x, self.lower, self.upper = evaluate, x.copy(), lower, upper
-        self.linear, self.groups, self.widths = linear, groups, np.array(widths)
+        self.linear = linear
+        self.groups = groups
+        self.widths = np.array(course.widths)
+        self.tolerance = course.tolerance
         rows, k = lower.shape
         self.going, self.stage = np.arange(rows), np.zeros(rows, dtype=int)
         self.ends: list[End | None] = [None] * rows
@@ -153,7 +169,7 @@ class _Run:
         self.f = self.model.objective.copy()
         self.violation = self._violation(self.going, self.model)
         self.funnel = np.maximum(0.1, 1.1 * self.violation)
-        self.radius = np.full(rows, reach)
+        self.radius = np.full(rows, course.reach)
         self.mark, self.marked = self.f.copy(), np.zeros(rows, dtype=int)
 
     def width(self, rows: Index) -> Array:
@@ -189,7 +205,7 @@ class _Run:
         self._move(good, for_f, step, trial)
         self.stage[rows] += sharper & good
         self.mark[rows[sharper]] = np.inf
-        small = (np.abs(promised) <= _OPTIMAL * np.abs(model.objective)) & ~bound & step.met
+        small = (np.abs(promised) <= self.tolerance * np.abs(model.objective)) & ~bound & step.met
         self._end(small & ~sharper & (self.violation[rows] <= _MET) & (width == 0))
 
     def _sharper(self, step: Steps, promised: Array) -> Flags:

@@ -31,8 +31,9 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.simulation.objective import integrated
 from quietarm.ocp.simulation.rollout import Simulation, SymbolicRollout
-from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
+from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, options_of, run_ipopt
 from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
+from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.uncertainty import Scenario
 
 Array = NDArray[np.float64]
@@ -44,9 +45,10 @@ _OPTIONS = {
     "hessian_approximation": "limited-memory", "limited_memory_max_history": 50,
     # There a second-order correction leads to and fro across the kink, for hundreds of iterations.
     "max_soc": 0,
-    # And there it ends within the constraints when the objective has hardly changed three times.
+    # And there it ends within the constraints when the objective has hardly changed three times:
+    # by less than a tenth of the tolerance.
     "acceptable_tol": 1e3, "acceptable_dual_inf_tol": 1e10, "acceptable_constr_viol_tol": 1e-9,
-    "acceptable_compl_inf_tol": 1e-5, "acceptable_obj_change_tol": 1e-10, "acceptable_iter": 3,
+    "acceptable_compl_inf_tol": 1e-5, "acceptable_iter": 3,
 }  # fmt: skip
 _WARM = {
     **_OPTIONS, "mu_strategy": "monotone", "mu_init": 1e-8, "bound_push": 1e-9,
@@ -56,15 +58,14 @@ _WARM = {
 
 
 @dataclass(frozen=True)
-class Ipopt:
+class Ipopt(Solver):
     """IPOPT (Waechter and Biegler, 2006), one problem after another.
 
-    Its `print_level`, 0 to 12, is how much of its log is printed; 5 shows every iteration.
+    Its tolerance is `tol` of IPOPT, of the scaled optimality conditions. Options are those of
+    `Solver`.
     """
 
     name: ClassVar[str] = "ipopt"
-
-    print_level: int = 0
 
     @keep_interrupts()  # casadi loses a Ctrl-C
     def solve(
@@ -75,10 +76,10 @@ class Ipopt:
         warm: bool = False,
         groups: Sequence[int] | None = None,
     ) -> list[Solution]:
-        """Solve each problem from its start, as `Sqp.solve` does; groups are not used."""
+        """Solve each problem from its start; see `Solver.solve`. Groups are not used."""
         del groups
         pairs = zip(problems, starts)
-        return [_Run(one, warm, self.print_level).solve(start) for one, start in pairs]
+        return [_Run(problem, warm, self).solve(start) for problem, start in pairs]
 
 
 class _Program(NamedTuple):
@@ -93,26 +94,42 @@ class _Program(NamedTuple):
     figures: ca.Function
 
 
+class _Form(NamedTuple):
+    """What two problems of one task along one profile have in common if one program serves both.
+
+    Rows of tip displacements are those of each scenario.
+    """
+
+    scenarios: tuple[Scenario, ...]
+    tip_rows: tuple[int, ...]
+    at_rest: bool
+    bounds_residual: bool
+    peak: str | None
+
+    @classmethod
+    def of(cls, problem: Problem) -> _Form:
+        """The form of a problem."""
+        transcription, asked = problem
+        return cls(
+            scenarios=transcription.task.scenarios,
+            tip_rows=tuple(map(len, transcription.tip_rows)),
+            at_rest=asked.at_rest,
+            bounds_residual=asked.bounds_residual,
+            peak=asked.peak,
+        )
+
+
 @lru_cache(maxsize=16)
-def compile_program(
-    simulation: Simulation,
-    scenarios: tuple[Scenario, ...],
-    tip_rows: tuple[int, ...],
-    at_rest: bool,
-    bounds_residual: bool,
-    peak: str | None,
-    warm: bool,
-    print_level: int,
-) -> _Program:
+def compile_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bool) -> _Program:
     """The program in symbols; whatever else differs between problems is a parameter of it."""
     modes, quantities = 2 * simulation.plant.modes, simulation.quantities
-    a, p = ca.MX.sym("a", simulation.profile.size), ca.MX.sym("p", peak is not None)
-    row, wanted = ca.MX.sym("row", 3 + modes), ca.MX.sym("wanted", modes, len(scenarios))
-    tips = [ca.MX.sym("tips", rows, modes) for rows in tip_rows]
+    a, p = ca.MX.sym("a", simulation.profile.size), ca.MX.sym("p", form.peak is not None)
+    row, wanted = ca.MX.sym("row", 3 + modes), ca.MX.sym("wanted", modes, len(form.scenarios))
+    tips = [ca.MX.sym("tips", rows, modes) for rows in form.tip_rows]
     scale, scales = ca.MX.sym("scale", modes), ca.MX.sym("scales", 1 + len(quantities))
     sides, weights, width = ca.MX.sym("sides", 2), ca.MX.sym("weights", 2), ca.MX.sym("width")
 
-    rollouts = [simulation.rollout(a, ca.vertsplit(row), errors) for errors in scenarios]
+    rollouts = [simulation.rollout(a, ca.vertsplit(row), errors) for errors in form.scenarios]
     nominal, arrival = rollouts[0], ca.horzcat(*(one.arrival.T for one in rollouts))
     missed = arrival - wanted
     energy = ca.if_else(width > 0, _round_off(simulation.energy, nominal, width), nominal.energy)
@@ -121,20 +138,24 @@ def compile_program(
         counted = rollouts if quantity.in_scenarios else rollouts[:1]
         values[quantity.name] = ca.veccat(*(ca.horzcat(*one.values(quantity)) for one in counted))
 
-    constraints = {"arrival": missed[:, 0] / scale if at_rest else ca.MX(0, 1)}
+    constraints = {"arrival": missed[:, 0] / scale if form.at_rest else ca.MX(0, 1)}
     for k, (name, value) in enumerate(values.items()):
-        if name == peak:
+        if name == form.peak:
             constraints["below peak"] = value / scales[k] - sides[1] * p
             constraints["above peak"] = value / scales[k] - sides[0] * p
-        elif name != RESIDUAL or bounds_residual:
+        elif name != RESIDUAL or form.bounds_residual:
             constraints[name] = value / scales[k]
     nlp = {
         "x": ca.veccat(a, p),
         "p": ca.veccat(row, wanted, *tips, scale, scales, sides, weights, width),
-        "f": weights[0] * energy + (weights[1] * p if peak else 0.0),
+        "f": weights[0] * energy + (weights[1] * p if form.peak else 0.0),
         "g": ca.vertcat(*constraints.values()),
     }
-    options = {**(_WARM if warm else _OPTIONS), "print_level": print_level}
+    options = {
+        **(_WARM if warm else _OPTIONS),
+        **options_of(solver),
+        "acceptable_obj_change_tol": solver.tolerance / 10,
+    }
     return _Program(
         compile_nlp(nlp, options),
         {name: value.numel() for name, value in constraints.items()},
@@ -155,14 +176,12 @@ def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
 class _Run:
     """A problem's numbers: parameters and bounds of its program, and what its solution means."""
 
-    def __init__(self, problem: Problem, warm: bool, print_level: int) -> None:
+    def __init__(self, problem: Problem, warm: bool, solver: Ipopt) -> None:
         self.problem, self.widths = problem, _WIDTHS[-1:] if warm else _WIDTHS
         (transcription, asked), task = problem, problem.transcription.task
         tips = transcription.tip_rows
-        self.program = compile_program(
-            transcription.batch.simulation, task.scenarios, tuple(map(len, tips)), asked.at_rest,
-            asked.bounds_residual, asked.peak, warm, print_level,
-        )  # fmt: skip
+        simulation = transcription.batch.simulation
+        self.program = compile_program(simulation, _Form.of(problem), solver, warm)
         shape = len(task.scenarios), transcription.wanted.size
         wanted = np.broadcast_to(transcription.wanted - asked.offset, shape)
         self.given = [task.row, wanted.T, *tips]

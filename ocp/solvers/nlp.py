@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.cost import COST
 from quietarm.ocp.interrupts import keep_interrupts, silent_errors
+from quietarm.ocp.solvers.solver import Solver
 
 Options = Mapping[str, str | int | float]
 OPTIONS: dict[str, str | int | float] = {
@@ -31,6 +32,19 @@ OPTIONS: dict[str, str | int | float] = {
     "expect_infeasible_problem": "yes",
 }
 _THREADS = "OPENBLAS_NUM_THREADS"
+
+
+_SHOWS_ITERATIONS = 5
+"""IPOPT's print level."""
+
+
+def options_of(solver: Solver) -> dict[str, str | int | float]:
+    """IPOPT's options that say what a solver's say."""
+    return {
+        "tol": solver.tolerance,
+        "max_iter": solver.iterations,
+        "print_level": _SHOWS_ITERATIONS if solver.log else 0,
+    }
 
 
 class Stop(NamedTuple):

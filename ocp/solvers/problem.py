@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import daqp
 import numpy as np
@@ -313,18 +313,3 @@ def price_of_rest(multipliers: NDArray[np.float64], rows: NDArray[np.float64]) -
     limit, steepest = np.ones(len(table)), np.abs(slope).max() or 1.0
     state, *_ = daqp.solve(_LITTLE * np.eye(len(slope)), -slope / steepest, table, limit, -limit)
     return float(slope @ np.asarray(state))
-
-
-class Solver(Protocol):
-    """What solves problems: `Sqp` or `Ipopt`."""
-
-    def solve(
-        self,
-        problems: Sequence[Problem],
-        starts: Sequence[NDArray[np.float64]],
-        *,
-        warm: bool = False,
-        groups: Sequence[int] | None = None,
-    ) -> list[Solution]:
-        """Solve each problem from its start; see `Sqp.solve`."""
-        ...

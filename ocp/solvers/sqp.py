@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, End, Ended, minimise
+from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, Course, End, Ended, minimise
 from quietarm.ocp.solvers.problem import Problem, Solution, evaluate, shadow_prices
 from quietarm.ocp.solvers.programs import Programs
+from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
 Prices = dict[str, float]
@@ -34,15 +35,13 @@ _STATUS = {
 
 
 @dataclass(frozen=True)
-class Sqp:
+class Sqp(Solver):
     """Sequential quadratic programming, as `funnel` has it; all problems of one form at once.
 
-    With a `log` a line is printed for each iteration.
+    Its log is about the start with the least objective. Options are those of `Solver`.
     """
 
     name: ClassVar[str] = "sqp"
-
-    log: bool = False
 
     def solve(
         self,
@@ -52,25 +51,7 @@ class Sqp:
         warm: bool = False,
         groups: Sequence[int] | None = None,
     ) -> list[Solution]:
-        """Solve each problem from its start.
-
-        Parameters
-        ----------
-        problems : sequence of Problem
-            Of any tasks, steps and scalarizations.
-        starts : sequence of ndarray, each of shape (profile.size,)
-            Coefficients to start from.
-        warm : bool
-            Whether the starts are beside minima.
-        groups : sequence of int, optional
-            Problems of one number are one problem from several starts: once half of them, and more
-            than one, agree on the least objective, the others are stopped.
-
-        Returns
-        -------
-        list of Solution
-            In the order of the problems.
-        """
+        """Solve each problem from its start; see `Solver.solve`."""
         solutions: dict[int, Solution] = {}
         for places in _group_by_form(problems):
             own = [problems[i] for i in places]
@@ -87,9 +68,13 @@ class Sqp:
                 equalities=programs.equalities,
                 linear=programs.linear,
                 groups=None if groups is None else np.array([groups[i] for i in places]),
-                widths=SHARP if warm else WIDTHS,
-                reach=_WARM_REACH if warm else _REACH,
-                log=self.log,
+                course=Course(
+                    widths=SHARP if warm else WIDTHS,
+                    reach=_WARM_REACH if warm else _REACH,
+                    tolerance=self.tolerance,
+                    iterations=self.iterations,
+                    log=self.log,
+                ),
             )
             solutions.update(zip(places, _in_units(programs, ended, own)))
         return [solutions[i] for i in range(len(problems))]

@@ -10,8 +10,9 @@ import click
 from click.core import ParameterSource
 from quietarm.models import Plant
 from quietarm.models.joint_motion import joint_unit
-from quietarm.ocp import JointProfile, PointToPoint
+from quietarm.ocp import JointProfile, PointToPoint, Solver
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
+from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.cli.plants import (
     Kind,
     build_plant,
@@ -108,6 +109,10 @@ class Given:
         """The plant, with the parameters that were typed."""
         kind = choose_kind(named, self.plant_file)
         return build_plant(kind, single_values(read_parameters(kind, self.parameters)))
+
+    def read_solver(self) -> Solver:
+        """The solver that was typed, with its options: the one place where commands make it."""
+        return SOLVERS[self.solver]()
 
     def read_profile(self, task: PointToPoint) -> JointProfile:
         """The joint profile; where it has many coefficients, a word of how long that takes."""

@@ -13,8 +13,8 @@ import click
 from quietarm.metaheuristics.parallel import scheduler_address
 from quietarm.models import load_plant_file
 from quietarm.ocp.limits import QUANTITIES
-from quietarm.ocp.planning.best_of_starts import SOLVERS
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
+from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.quantities import (
@@ -143,8 +143,11 @@ RESIDUAL_LIMIT = option("--residual-limit", metavar="LENGTH", help="Largest tip 
                         "largest deflection, or less]")  # fmt: skip
 SEED = option("--seed", default=0, help="Seed of the random numbers; the first of several.")
 STARTS = option("--starts", default=4, help="Starts of the solver.")
-SOLVER = option("--solver", type=Named("solver", SOLVERS), default=SOLVERS[0],
-                help="Sequential quadratic programs (quietarm's own, fast), or IPOPT.")  # fmt: skip
+SOLVER = (
+    option("--solver", type=Named("solver", SOLVERS), default=next(iter(SOLVERS)),
+           help="Sequential quadratic programs (quietarm's own, fast), or IPOPT."),
+)  # fmt: skip
+"""What describes a solver: a command with these has `Given.read_solver`."""
 SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "
                        "change with each parameter of the plant.")  # fmt: skip
 METHOD_SETTING = option("--setting", "settings", type=SETTING, multiple=True, metavar="NAME=VALUE",

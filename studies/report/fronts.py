@@ -141,7 +141,7 @@ def _check_line(check: CrossCheck) -> str:
     found = [point.difference for point in check.points if isfinite(point.other)]
     missing = len(check.points) - len(found)
     shares = found or [float("nan")]
-    solver = {"sqp": "sequential quadratic programs", "ipopt": "IPOPT"}[check.solver]
+    solver = {"sqp": "sequential quadratic programs", "ipopt": "IPOPT"}[check.solver.name]
     return (
         f"checked by {solver}, {counted(len(check.points), 'point')} from the plain cycloid: its "
         f"energies differ by {min(shares):+.1g} to {max(shares):+.1g} of their size"

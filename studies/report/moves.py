@@ -22,7 +22,7 @@ from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.limits import QUANTITIES, Limit, quantities_of
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
-from quietarm.ocp.planning.plan_move import EXCESS
+from quietarm.ocp.planning.plan_along import EXCESS
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.studies.report.words import move_of, moved, residual_place, state_words
 from quietarm.studies.tips import tip_words

@@ -262,7 +262,7 @@ def _search(piece: Piece, settings: Mapping[str, Any], folder: Path | None) -> F
         if same and front.record.versions.items() >= versions().items():
             return front
     front = search(
-        case.task, piece.what, profile=profile_with(which), seed=piece.seed,
+        case.task, profile_with(which), algorithm=piece.what, seed=piece.seed,
         bound=None if which in OTHERS else case.bound,  # others have their own
         settings=VEPSO_2002 if which == OLD_CONSTANTS else {}, **settings,
     )  # fmt: skip

@@ -25,6 +25,8 @@ from quietarm.studies.sweep.grid import by_plant
 Cells = Iterator[dict[str, Any]]
 _CHECKED, _COLD_STARTS = 10, 4
 """One cell in so many, at random, is planned from so many starts of its own as well."""
+_FRONT_STARTS = 2
+"""Of the ends of a front, at least."""
 _ABOVE = 1e-4
 """Share of the energy by which none of these may be cheaper; else all of the chunk are."""
 
@@ -42,24 +44,26 @@ def plan_chunk(definition: Definition, number: int) -> tuple[int, pd.DataFrame]:
     return number, cells
 
 
-def plan_cells(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> pd.DataFrame:
+def plan_cells(
+    definition: Definition, tasks: Sequence[PointToPoint], *, cold: bool
+) -> pd.DataFrame:
     """Variables of moves of one plant, a row each; without a plan the status alone."""
     plan = _plan_robust if tasks[0].ranges else _plan_certain
-    cells = pd.DataFrame([*plan(definition, tasks, starts)])
+    cells = pd.DataFrame([*plan(definition, tasks, cold)])
     return cells if "energy" in cells else cells.assign(energy=np.nan)
 
 
 def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) -> pd.DataFrame:
     """Plans from neighbours, and of a tenth the excess over cold plans; the cheaper ones stay."""
-    cells = plan_cells(definition, tasks, definition.settings.starts)
+    cells = plan_cells(definition, tasks, cold=not definition.settings.from_neighbours)
     solved = np.flatnonzero(cells["energy"].notna())
     if not len(solved):
         return cells
     random = np.random.default_rng(seed)
     checked = random.choice(solved, -(-len(solved) // _CHECKED), replace=False)
-    cold = plan_cells(definition, [tasks[k] for k in checked], _COLD_STARTS)["energy"].to_numpy()
+    cold = plan_cells(definition, [tasks[k] for k in checked], cold=True)["energy"].to_numpy()
     if (cells["energy"].to_numpy()[checked] > (1 + _ABOVE) * cold).any():
-        others = plan_cells(definition, tasks, _COLD_STARTS)
+        others = plan_cells(definition, tasks, cold=True)
         cheaper = others["energy"] < cells["energy"].fillna(np.inf)
         both = cells.columns.union(others.columns, sort=False)
         cells = cells.reindex(columns=both).mask(cheaper, others.reindex(columns=both))
@@ -74,10 +78,18 @@ def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) 
     return cells
 
 
-def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Cells:
+def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], cold: bool) -> Cells:
     """Plans of certain plants, all at once."""
-    least, bound = definition.settings.residual_limit, definition.settings.bound
-    moves = plan_moves(tasks, definition.profile, residual_limit=least, bound=bound, starts=starts)
+    settings = definition.settings
+    moves = plan_moves(
+        tasks,
+        definition.profile,
+        residual_limit=settings.residual_limit,
+        bound=settings.bound,
+        starts=max(settings.starts, _COLD_STARTS),
+        neighbours=not cold,
+        solver=settings.solves,
+    )
     for k, status in enumerate(moves.status):
         row: dict[str, Any] = {STATUS: STATES.index(status.value)}
         if np.isfinite(moves.energy[k]):
@@ -88,16 +100,21 @@ def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], starts:
         yield row
 
 
-def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], starts: int) -> Cells:
+def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], cold: bool) -> Cells:
     """Plans of uncertain plants one after another, each from the last one's coefficients."""
-    least, bound = definition.settings.residual_limit or None, definition.settings.bound
+    settings = definition.settings
     guess = None
     for task in tasks:
         try:
             plan = plan_move(
-                task, definition.profile, residual_limit=least, bound=bound, starts=starts,
-                guess=guess if starts == 1 else None,
-            )  # fmt: skip
+                task,
+                definition.profile,
+                residual_limit=settings.residual_limit or None,
+                bound=settings.bound,
+                starts=max(settings.starts, _COLD_STARTS) if cold else 1,
+                guess=None if cold else guess,
+                solver=settings.solves,
+            )
         except QuietarmError as error:
             infeasible = isinstance(error, InfeasibleTaskError)
             status = SolveStatus.INFEASIBLE if infeasible else SolveStatus.ITERATION_LIMIT
@@ -114,9 +131,13 @@ def _front_of(definition: Definition, task: PointToPoint) -> dict[str, Any]:
     settings, points = definition.settings, definition.front
     try:
         front = epsilon_front(
-            task, definition.profile, bound=settings.bound, points=points,
-            starts=max(settings.starts, 2),
-        )  # fmt: skip
+            task,
+            definition.profile,
+            bound=settings.bound,
+            points=points,
+            starts=max(settings.starts, _FRONT_STARTS),
+            solver=settings.solves,
+        )
     except QuietarmError:
         return {}
     names = ("residual", "energy", COEFFICIENTS)

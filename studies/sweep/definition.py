@@ -9,11 +9,13 @@ from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
-from quietarm.ocp import SolveSettings, SolveStatus
-from quietarm.ocp.checks import positive
+from quietarm.ocp import Solver, SolveStatus, Sqp
+from quietarm.ocp.checks import not_negative, positive
 from quietarm.ocp.limits import RESIDUAL, TORQUE_SPEED, quantities_of
+from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness import OF_MODES
+from quietarm.ocp.solvers.choice import stated_solver
 from quietarm.studies.sweep.grid import Grid
 
 STATUS, COEFFICIENTS, JUMP, DIGEST = "status", "coefficients", "jump", "digest"
@@ -35,6 +37,57 @@ class Variable(NamedTuple):
 
 
 @dataclass(frozen=True)
+class PlanSettings:
+    """How every cell of a sweep is planned, as its dataset states it.
+
+    Attributes
+    ----------
+    residual_limit : float
+        Largest F1 [m]; 0 for rest on arrival, or for the default of an uncertain task.
+    bound : float or None
+        Largest absolute coefficient.
+    starts : int
+        1 where cells start from their neighbours; datasets of before may have more.
+    solver : str
+        What solves, by its name.
+    solver_tolerance, solver_iterations : float, int
+        Its options.
+    seed, steps, guess, log
+        Of datasets of before, which state them.
+    """
+
+    residual_limit: float = 0.0
+    bound: float | None = None
+    starts: int = 1
+    seed: int = 0
+    steps: int | None = None
+    guess: tuple[float, ...] | None = None
+    solver: str = Sqp.name
+    log: bool = False
+    solver_tolerance: float = Sqp.tolerance
+    solver_iterations: int = Sqp.iterations
+
+    @classmethod
+    def of(cls, residual_limit: float | None, bound: float | None, solver: Solver) -> PlanSettings:
+        """From neighbours, by a solver; ValueError where a number is out of range."""
+        if residual_limit is None:
+            residual_limit = 0.0
+        of_solver: dict[str, Any] = solver.stated
+        limit = not_negative("residual limit", residual_limit, "m")
+        return cls(limit, Setup(solver, bound).bound, **of_solver)
+
+    @property
+    def solves(self) -> Solver:
+        """What solves."""
+        return stated_solver(vars(self)) or Sqp()
+
+    @property
+    def from_neighbours(self) -> bool:
+        """Whether a cell starts from a neighbour."""
+        return self.starts == 1
+
+
+@dataclass(frozen=True)
 class Definition:
     """What is asked of a sweep.
 
@@ -44,7 +97,7 @@ class Definition:
         The moves.
     profile : JointProfile
         How the joint moves.
-    settings : SolveSettings
+    settings : PlanSettings
         Of every plan.
     front : int
         Points of a front for every move; 0 for none.
@@ -59,7 +112,7 @@ class Definition:
 
     grid: Grid
     profile: JointProfile
-    settings: SolveSettings
+    settings: PlanSettings
     front: int = 0
     margin: float = 0.0
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 from quietarm.models.joint_motion import joint_unit
-from quietarm.ocp import PointToPoint, QuietarmError, SolveSettings
+from quietarm.ocp import PointToPoint, QuietarmError, Solver, Sqp
 from quietarm.ocp.checks import has_no, several, takes
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.sweep.cells import plan_chunk
-from quietarm.studies.sweep.definition import Definition
+from quietarm.studies.sweep.definition import Definition, PlanSettings
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
 from quietarm.studies.sweep.store import Store
 
@@ -25,18 +25,18 @@ if TYPE_CHECKING:
 _REMEDY = "what is done is kept; give the same line again to go on"
 
 
-@takes(task=PointToPoint, profile=JointProfile)
+@takes(task=PointToPoint, profile=JointProfile, solver=Solver)
 def sweep(
     task: PointToPoint,
+    profile: JointProfile | None = None,
+    *,
     axes: Mapping[str, Sequence[float]],
     path: str | Path,
-    *,
-    profile: JointProfile | None = None,
-    residual_limit: float = 0.0,
+    residual_limit: float | None = None,
     bound: float | None = None,
-    starts: int = 1,
-    front: int = 0,
+    front_points: int = 0,
     margin: float = 0.0,
+    solver: Solver = Sqp(),
     workers: int = 1,
     scheduler: str | None = None,
 ) -> xarray.Dataset:
@@ -46,14 +46,14 @@ def sweep(
     ----------
     task : PointToPoint
         What the moves have in common.
+    profile, residual_limit, bound, solver
+        As for `plan_moves`.
     axes : mapping of str to sequence of float
         Values of ``"start"``, ``"target"``, ``"duration"`` and of parameters of the plant, in SI
         units.
     path : str or Path
         The dataset, a folder.
-    profile, residual_limit, bound, starts
-        As for `plan_moves`.
-    front : int
+    front_points : int
         Points of a front for every move; 0 for none.
     margin : float
         Share of each limit that the plans leave unused, so that moves between the cells keep it.
@@ -85,9 +85,9 @@ def sweep(
     order = sorted(axes, key=lambda name: name in OF_MOVES)  # chunks then have few plants
     grid = Grid(task, tuple(Axis(name, tuple(values[name]), units[name])
                             for name in order))  # fmt: skip
-    settings = SolveSettings(residual_limit, bound, starts)
+    settings = PlanSettings.of(residual_limit, bound, solver)
     profile = choose_profile(task) if profile is None else profile
-    store = Store.of(Path(path), Definition(grid, profile, settings, front, margin))
+    store = Store.of(Path(path), Definition(grid, profile, settings, front_points, margin))
     run_sweep(store, workers=workers, scheduler=scheduler)
     return store.dataset
 

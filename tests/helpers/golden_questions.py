@@ -205,8 +205,8 @@ def _plans() -> dict[str, Question]:
         "plan mix": partial(plan, link(energy=mix)),
         "plan initial state": partial(plan, link(initial=state)),
         "plan final state": partial(plan, link(final=final)),
-        "plan ipopt link": partial(plan, SIXTH, bound=0.2, solver="ipopt"),
-        "plan ipopt arm": partial(plan, HALF, bound=0.5, residual_limit=2e-3, solver="ipopt"),
+        "plan ipopt link": partial(plan, SIXTH, bound=0.2, solver=qa.Ipopt()),
+        "plan ipopt arm": partial(plan, HALF, bound=0.5, residual_limit=2e-3, solver=qa.Ipopt()),
     }
     by_ipopt = {name for name in asked if "ipopt" in name}
     limited = {f"plan {name}" for name in PEAKS}  # what is taken off between the nodes may change

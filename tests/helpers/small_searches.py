@@ -21,7 +21,7 @@ METHODS = pytest.mark.parametrize("method", ["nsga2", "vepso"])
 def run(method, task=None, **settings):
     """A small search with what a test does not care about filled in."""
     given = {"bound": BOUNDS[method], "population": 20, "generations": 15, **settings}
-    return search(TASKS[method] if task is None else task, method, **given)
+    return search(TASKS[method] if task is None else task, algorithm=method, **given)
 
 
 @cache

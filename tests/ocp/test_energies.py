@@ -81,11 +81,11 @@ def test_cvodes_and_the_rollout_spend_what_scipy_finds(tasks, name, plant):
 
 
 def test_both_solvers_and_the_floor_agree_with_the_plan(task, solved):
-    plan, other = solved(task), solved(task, solver="ipopt")
+    plan, other = solved(task), solved(task, solver=qa.Ipopt())
     assert (plan.verification.agrees, plan.residual < 1e-8) == (True, True)
     assert plan.energy == pytest.approx(other.energy, rel=1e-6)
     plain = qa.evaluate_coefficients(task, []).energy
-    floor = qa.energy_floor(task, starts=1, tolerance=0.02)
+    floor = qa.energy_floor(task, starts=1, energy_tolerance=0.02)
     assert floor.energy < plan.energy < plain
     assert floor.energy == pytest.approx(floor.levels[-1].energy, rel=1e-3)
 

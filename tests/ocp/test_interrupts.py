@@ -9,7 +9,7 @@ import time
 from dataclasses import replace
 
 import pytest
-from quietarm.ocp import energy_floor, epsilon_front, plan_move
+from quietarm.ocp import Ipopt, energy_floor, epsilon_front, plan_move
 from quietarm.ocp.interrupts import keep_interrupts
 
 
@@ -31,7 +31,7 @@ def test_a_swallowed_ctrl_c_comes_after_the_block_in_place_of_errors_that_it_cau
 
 
 WORK = {
-    "plan": lambda task: plan_move(task, starts=1000, solver="ipopt"),
+    "plan": lambda task: plan_move(task, starts=1000, solver=Ipopt()),
     "front": lambda task: epsilon_front(task, points=5000),
     "floor": lambda task: energy_floor(task, starts=1000),
 }

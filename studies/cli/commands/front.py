@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
@@ -48,7 +49,7 @@ _CHECKED = 7
     option("--weights", type=Parsed("weights", parse_weights), multiple=True, metavar="R:E",
            help="weighted: weights of residual and energy, scaled to the ends of the front, as "
            "1:3; in place of --points."),
-    STARTS, SEED, SOLVER, YES,
+    STARTS, SEED, *SOLVER, YES,
     option("--check", is_flag=True, help="Solve seven points by the other solver as well, from the "
            "plain cycloid, and say by how much the two differ."),
     option("--polish", type=INPUT, metavar="FILE", help="Improve the points of this front, by any "
@@ -68,7 +69,8 @@ def front(given: Given) -> None:
     """  # noqa: D301  # \b is click's: do not rewrap
     if given.polish is not None:
         return _polish(given)
-    wanted, asked = "points", given.pick("bound", "starts", "seed", "solver")
+    wanted = "points"
+    asked: dict[str, Any] = given.pick("bound", "starts", "seed") | {"solver": given.read_solver()}
     if given.weights:
         if given.method != "weighted":
             raise ValueError(f"--weights is for weighted, not for {given.method}; leave it out")
@@ -88,20 +90,20 @@ def front(given: Given) -> None:
     checked = None
     if given.check:
         with counting(_CHECKED, "checked points") as report:
-            checked = cross_check(found, _CHECKED, report)
+            checked = cross_check(found, checked_points=_CHECKED, report=report)
     files = answer_files(given.output, lambda: figures.front_figure([found]), found)
     return finish(files, gradient_lines(found, asked_for, checked))
 
 
 def _polish(given: Given) -> None:
     given.refuse_others(
-        {"polish", "output"},
+        {"polish", "output", *(one.name or "" for one in SOLVER)},
         "is not for --polish, which keeps the task, profile and bound of its front",
     )
     with busy("checking"):
         before = load_front(given.polish)
     with counting(len(before.points), "points") as report:
-        polished = polish_front(before, report=report)
+        polished = polish_front(before, solver=given.read_solver(), report=report)
     lines = polish_lines(before, polished.front, polished.gains)
     files = answer_files(
         given.output, lambda: figures.polish_figure(before, polished), polished.front

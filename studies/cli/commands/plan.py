@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from typing import Any
 
 from quietarm.ocp import Plan, SolverFailedError, energy_floor, fastest_move, plan_move
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
@@ -33,8 +34,8 @@ FREE = {"free": False, "free-smooth": True}
 """Profiles without a parametrisation, and whether the acceleration is continuous."""
 _FASTEST, _BEGIN = "fastest", 1.0
 """In the place of a duration; and the one [s] from which the shortest is looked for."""
-_OF_COEFFICIENTS = ("terms", "bound", "residual_limit", "solver", "sensitivities")
-_OF_SOLVERS = ("starts", "seed")
+_OF_COEFFICIENTS = ("terms", "bound", "residual_limit", "sensitivities")
+_OF_SOLVES = ("starts", "seed", *(one.name or "" for one in SOLVER))
 
 
 @command(
@@ -44,7 +45,7 @@ _OF_SOLVERS = ("starts", "seed")
         words="; a plain cycloid through an input shaper for the plant's frequencies at the "
         "target; or without a parametrisation (free), its acceleration continuous (free-smooth)",
     ),
-    BOUND, RESIDUAL_LIMIT, STARTS, SEED, SOLVER,
+    BOUND, RESIDUAL_LIMIT, STARTS, SEED, *SOLVER,
     option("--from", "dataset", type=INPUT, help="Take the move from this dataset of quietarm "
            "sweep, between its cells, without solving."),
     SENSITIVITIES, YES,
@@ -72,15 +73,17 @@ def plan(given: Given) -> None:
     if given.profile not in families():
         free = given.profile in FREE
         why = f"is not for {given.profile}, only for profiles with coefficients"
-        given.refuse(_OF_COEFFICIENTS if free else (*_OF_COEFFICIENTS[:-1], *_OF_SOLVERS), why)
+        given.refuse(_OF_COEFFICIENTS if free else (*_OF_COEFFICIENTS[:-1], *_OF_SOLVES), why)
         if fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
         if free:
             return _plan_freely(given)
     task, notes = given.read_task(**{"duration": _BEGIN} if fastest else {}), list[str]()
     motions = None if chooses_terms(given.profile, given.terms) else given.read_profile(task)
-    asked = given.pick("bound", "seed", "solver")
-    asked |= {"residual_limit": given.read_residual_limit(task.plant)}
+    asked: dict[str, Any] = given.pick("bound", "seed") | {
+        "residual_limit": given.read_residual_limit(task.plant),
+        "solver": given.read_solver(),
+    }
     if fastest:
         given.refuse(["starts"], "is not for --duration fastest")
         with busy("looking for the shortest duration"):
@@ -107,9 +110,11 @@ def _plan_freely(given: Given) -> None:
     if any(ending_of(path) == ".csv" for path in given.output):
         raise ValueError("a free motion is written as .json or as a picture, not as .csv")
     with busy("refining the grid"):
-        found = energy_floor(task, smooth=FREE[given.profile], **given.pick("starts", "seed"))
+        solver = given.read_solver()
+        smooth = FREE[given.profile]
+        found = energy_floor(task, smooth=smooth, solver=solver, **given.pick("starts", "seed"))
         with suppress(SolverFailedError):
-            beside = plan_move(task)
+            beside = plan_move(task, solver=solver)
     files = answer_files(given.output, lambda: figures.floor_figure(found, beside), found)
     finish(files, floor_rows(found, beside))
 

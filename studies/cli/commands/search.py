@@ -121,7 +121,7 @@ def search(given: Given) -> None:
 def _search(task: PointToPoint, method: str, asked: dict[str, Any], seed: int) -> Front:
     from quietarm.metaheuristics import search
 
-    return search(task, method, seed=seed, **asked)
+    return search(task, algorithm=method, seed=seed, **asked)
 
 
 def _save_at_once(output: Sequence[Path], front: Front) -> None:

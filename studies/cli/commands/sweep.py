@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import click
-from quietarm.ocp import QuietarmError, SolveSettings
+from quietarm.ocp import QuietarmError
 from quietarm.studies.cli.files import (
     DATASET,
     PICTURE,
@@ -20,6 +20,7 @@ from quietarm.studies.cli.options import (
     PART,
     RESIDUAL_LIMIT,
     SCHEDULER,
+    SOLVER,
     TASK,
     WORKERS,
     command,
@@ -36,7 +37,7 @@ _MANY = 1_000_000
 
 
 @command(
-    *TASK, *profile_options(), BOUND, RESIDUAL_LIMIT,
+    *TASK, *profile_options(), BOUND, RESIDUAL_LIMIT, *SOLVER,
     option("--limit-margin", "margin", type=SHARE, default="0%", help="Share of each limit that "
            "plans leave unused, so that moves between the cells keep it."),
     option("--front", type=click.IntRange(2, 1000), metavar="POINTS",
@@ -61,7 +62,7 @@ def sweep(given: Given) -> None:
           --duration 600ms:1s:20ms --torque-limit 1.5 --output payload.zarr --output payload.png
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.studies.report.sweeps import cells_along, sweep_rows
-    from quietarm.studies.sweep.definition import Definition
+    from quietarm.studies.sweep.definition import Definition, PlanSettings
     from quietarm.studies.sweep.run import run_sweep
     from quietarm.studies.sweep.store import Store
 
@@ -79,9 +80,10 @@ def sweep(given: Given) -> None:
             "steps, or --yes"
         )
     motions = given.read_profile(grid.task)
-    residual_limit = given.read_residual_limit(grid.task.plant) or 0.0
-    solve = SolveSettings(residual_limit, given.bound, starts=1)
-    store = Store.of(datasets[0], Definition(grid, motions, solve, given.front or 0, given.margin))
+    residual_limit = given.read_residual_limit(grid.task.plant)
+    settings = PlanSettings.of(residual_limit, given.bound, given.read_solver())
+    definition = Definition(grid, motions, settings, given.front or 0, given.margin)
+    store = Store.of(datasets[0], definition)
     missing, trouble = len(store.missing(given.part)), None
     if not missing:
         store.check()

@@ -15,7 +15,7 @@ KEEPS_LIMITS = [name for name, preset in PRESETS.items() if preset.keeps_limits]
 
 @pytest.mark.parametrize(("name", "task"), IN_TURN)
 def test_the_seed_decides_about_the_front(name, task):
-    one, same, other = (search(task, name, seed=seed, **SMALL) for seed in (2, 2, 3))
+    one, same, other = (search(task, algorithm=name, seed=seed, **SMALL) for seed in (2, 2, 3))
     assert exactly(one) == exactly(same)
     assert one.points != other.points
     assert_is_a_front(one)
@@ -30,11 +30,11 @@ def test_the_seed_decides_about_the_front(name, task):
 @pytest.mark.parametrize("name", sorted(set(PRESETS) - set(KEEPS_LIMITS)))
 def test_a_method_that_passes_over_limits_refuses_them(name):
     with pytest.raises(ValueError, match=f"{name} cannot search a task with limits; "):
-        search(LIMITED["nsga2"], name, **SMALL)
+        search(LIMITED["nsga2"], algorithm=name, **SMALL)
 
 
 def test_what_a_run_leaves_does_not_change_the_next():
     # pymoo's SPEA2 keeps the scale of its first run in a default argument
-    first = search(HALF, "spea2", seed=2, **SMALL)
-    search(dataclasses.replace(HALF, duration=2.0), "spea2", seed=2, **SMALL)
-    assert exactly(search(HALF, "spea2", seed=2, **SMALL)) == exactly(first)
+    first = search(HALF, algorithm="spea2", seed=2, **SMALL)
+    search(dataclasses.replace(HALF, duration=2.0), algorithm="spea2", seed=2, **SMALL)
+    assert exactly(search(HALF, algorithm="spea2", seed=2, **SMALL)) == exactly(first)

@@ -30,7 +30,9 @@ OTHER = pytest.mark.parametrize("name", OTHERS)
 @OTHER
 def test_any_algorithm_of_pymoo(tmp_path, name):
     seen = []
-    front = search(HALF, OTHERS[name](), bound=0.5, generations=5, seed=2, report=seen.append)
+    front = search(
+        HALF, algorithm=OTHERS[name](), bound=0.5, generations=5, seed=2, report=seen.append
+    )
     assert front.record.method == name
     assert len(front.points) > 0
     assert_is_a_front(front)
@@ -44,7 +46,7 @@ def test_any_algorithm_of_pymoo(tmp_path, name):
 
 def test_the_settings_of_any_algorithm_are_in_the_front():
     def settings(algorithm):
-        return dict(search(HALF, algorithm, bound=0.5, generations=2).record.settings)
+        return dict(search(HALF, algorithm=algorithm, bound=0.5, generations=2).record.settings)
 
     found = settings(SMSEMOA(pop_size=12, n_offsprings=3, mutation=PM(eta=30)))
     assert (found["population"], found["offspring"]) == (12, 3)
@@ -62,7 +64,7 @@ def test_the_settings_of_any_algorithm_are_in_the_front():
 @pytest.mark.parametrize("name", ["SMSEMOA", "VEPSO"])
 def test_any_algorithm_keeps_the_limits(name):
     task = dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5, jerk_limit=3000.0)
-    front = search(task, OTHERS[name](), bound=0.5, generations=6, seed=2)
+    front = search(task, algorithm=OTHERS[name](), bound=0.5, generations=6, seed=2)
     assert len(front.points) > 0
     for point in front.points:
         motion = rollout(task, front.profile, point.coefficients).motion
@@ -75,5 +77,5 @@ def test_any_algorithm_keeps_the_limits(name):
 def test_an_algorithm_for_one_objective_is_refused_before_the_work(make):
     seen = []
     with pytest.raises(ValueError, match=f"{make.__name__} minimises one objective"):
-        search(HALF, make(), bound=0.5, generations=3, report=seen.append)
+        search(HALF, algorithm=make(), bound=0.5, generations=3, report=seen.append)
     assert seen == []

@@ -31,7 +31,7 @@ def test_a_population_spends_what_cvodes_finds(tasks, name, energy):
 
 def test_a_search_states_what_cvodes_finds(tasks, energy):
     task = replace(tasks["single link"][0], energy=energy)
-    front = qa.search(task, "nsga2", bound=0.2, population=20, generations=10)
+    front = qa.search(task, algorithm="nsga2", bound=0.2, population=20, generations=10)
     for point in (front.points[0], front.points[-1]):
         motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
         assert point.energy == pytest.approx(motion.energy, rel=1e-5)

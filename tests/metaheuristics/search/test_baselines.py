@@ -14,7 +14,7 @@ TASK = qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8)
 @pytest.mark.parametrize("method", ["random", "lhs"])
 def test_a_baseline_keeps_what_none_of_its_candidates_dominates(method):
     settings = {"bound": 0.2, "population": 50, "seed": 3}
-    short, long = (qa.search(TASK, method, generations=n, **settings) for n in (2, 8))
+    short, long = (qa.search(TASK, algorithm=method, generations=n, **settings) for n in (2, 8))
     assert_is_a_front(long)
     assert (short.record.evaluations, long.record.evaluations) == (100, 400)
     for point in short.points:  # the first generations of both are the same
@@ -25,7 +25,7 @@ def test_a_baseline_keeps_what_none_of_its_candidates_dominates(method):
 
 
 def test_a_latin_hypercube_has_a_candidate_in_every_slice():
-    (front,) = [qa.search(TASK, "lhs", bound=0.2, population=20, generations=1, seed=1)]
+    (front,) = [qa.search(TASK, algorithm="lhs", bound=0.2, population=20, generations=1, seed=1)]
     assert front.record.evaluations == 20
     rows = np.array([point.coefficients for point in front.points])
     slices = np.floor((rows + 0.2) / 0.4 * 20)  # McKay et al.: one of 20 in each, by coordinate
@@ -35,25 +35,25 @@ def test_a_latin_hypercube_has_a_candidate_in_every_slice():
 
 @pytest.mark.parametrize("method", ["vepso", "nsga2", "moead", "random"])
 def test_a_search_ends_exactly_at_its_evaluations(method):
-    front = qa.search(TASK, method, bound=0.2, population=20, evaluations=130)
+    front = qa.search(TASK, algorithm=method, bound=0.2, population=20, evaluations=130)
     assert front.record.evaluations == front.history[-1].evaluations == 130
-    whole = qa.search(TASK, method, bound=0.2, population=20, evaluations=120)
+    whole = qa.search(TASK, algorithm=method, bound=0.2, population=20, evaluations=120)
     assert whole.history[-1].hypervolume <= front.history[-1].hypervolume
 
 
 def test_evaluations_below_a_generation_are_refused():
     settings = {"bound": 0.2, "population": 20}
     with pytest.raises(ValueError, match="in place of generations"):
-        qa.search(TASK, "vepso", evaluations=130, generations=3, **settings)
+        qa.search(TASK, algorithm="vepso", evaluations=130, generations=3, **settings)
     with pytest.raises(ValueError, match="30, less than one generation of vepso, 40"):
-        qa.search(TASK, "vepso", evaluations=30, **settings)
+        qa.search(TASK, algorithm="vepso", evaluations=30, **settings)
 
 
 @pytest.mark.parametrize("given", ["100", math.nan, 100.5])
 def test_a_budget_is_a_whole_number(given):
     problem = qa.problem_of("single-link-30deg-0.8s-2-terms")
     with pytest.raises(ValueError, match=r"evaluations is .*; give a whole number from 1 up"):
-        qa.search(TASK, "nsga2", bound=0.2, evaluations=given)
+        qa.search(TASK, algorithm="nsga2", bound=0.2, evaluations=given)
     with pytest.raises(ValueError, match=r"budget is .*; give a whole number from 1 up"):
         problem.recorded(budget=given)
     with pytest.raises(ValueError, match=r"budget is .*; give a whole number from 1 up"):
@@ -68,13 +68,15 @@ def test_a_recording_has_a_budget_from_one_up(given):
 
 
 def test_a_search_starts_from_the_points_of_a_front():
-    front = qa.search(TASK, "gde3", bound=0.2, population=20, generations=30, seed=4)
-    further = qa.search(TASK, "nsga2", bound=0.2, population=20, generations=2, start=front)
-    alone = qa.search(TASK, "nsga2", bound=0.2, population=20, generations=2)
+    front = qa.search(TASK, algorithm="gde3", bound=0.2, population=20, generations=30, seed=4)
+    further = qa.search(
+        TASK, algorithm="nsga2", bound=0.2, population=20, generations=2, start=front
+    )
+    alone = qa.search(TASK, algorithm="nsga2", bound=0.2, population=20, generations=2)
     first = front.history[-1].hypervolume
     assert further.history[0].hypervolume > 0.9 * first > alone.history[0].hypervolume
     with pytest.raises(ValueError, match="beyond the bound of 1e-06; give a wider one"):
-        qa.search(TASK, "nsga2", bound=1e-6, generations=2, start=front)
+        qa.search(TASK, algorithm="nsga2", bound=1e-6, generations=2, start=front)
     with pytest.raises(ValueError, match="another profile"):
-        qa.search(TASK, "nsga2", bound=0.2, generations=2, start=front,
+        qa.search(TASK, algorithm="nsga2", bound=0.2, generations=2, start=front,
                   profile=qa.CycloidPolynomial(3))  # fmt: skip

@@ -25,7 +25,7 @@ PROFILES = {
 @pytest.mark.parametrize(("kind", "name"), [*zip(PROFILES, TASKS, strict=True)])
 def test_a_search_stays_in_the_profiles_box_and_finds_what_it_says(kind, method, name):
     task, profile = TASKS[name], PROFILES[kind]
-    found = search(task, method, profile=profile, population=20, generations=10, seed=1)
+    found = search(task, profile, algorithm=method, population=20, generations=10, seed=1)
     assert found.profile == profile
     assert found.record.bound == profile.default_bound
     lower, upper = profile.box(profile.default_bound)

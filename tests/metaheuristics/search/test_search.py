@@ -48,7 +48,7 @@ def test_provenance(method):
 def test_a_missing_bound_names_the_papers(method):
     # Eqs (12) and (17).
     with pytest.raises(ValueError, match="bound") as caught:
-        search(TASKS[method], method)
+        search(TASKS[method], algorithm=method)
     assert "0.2 for single-link" in str(caught.value)
     assert "0.5 for arm-on-flexible-link" in str(caught.value)
 

@@ -38,7 +38,7 @@ def assert_reaches(front, energy):
 
 def test_vepso_reaches_the_papers_energy_with_the_papers_settings():
     task, energy = VEPSO_HARD
-    front = search(task, "vepso", bound=PAPER_BOX[task.plant.name])
+    front = search(task, algorithm="vepso", bound=PAPER_BOX[task.plant.name])
     assert front.record.evaluations == 2 * 100 * 200  # section 3.1: particles, iterations
     assert_reaches(front, energy)
 

@@ -20,7 +20,7 @@ def task():
 
 @pytest.fixture(scope="module")
 def searched(task):
-    return search(task, "nsga2", bound=0.5, population=20, generations=4)
+    return search(task, algorithm="nsga2", bound=0.5, population=20, generations=4)
 
 
 def test_residuals_are_those_of_the_worst_sample_by_cvodes(searched, task):

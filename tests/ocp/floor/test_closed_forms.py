@@ -59,7 +59,7 @@ def test_the_floor_of_an_uncertain_task_is_that_of_the_nominal_plant():
     # a robust plan has no residual limit to go by: nothing bends this plant
     uncertain = qa.PointToPoint(rigid(), 1.0, 1.0, uncertainty=qa.Uncertainty({"alpha1": 0.1}))
     floors = [
-        qa.energy_floor(task, starts=1, tolerance=0.5)
+        qa.energy_floor(task, starts=1, energy_tolerance=0.5)
         for task in (qa.PointToPoint(rigid(), 1.0, 1.0), uncertain)
     ]
     assert floors[1].energy == pytest.approx(floors[0].energy, rel=1e-3)

@@ -84,7 +84,7 @@ def test_the_figures_are_those_of_the_independent_integrator():
 
 def test_what_is_left_is_what_finer_grids_gain():
     # Against a much finer grid: the estimate is of the right size, and errs to the safe side.
-    rough, fine = coarse_of(ARM), coarse_of(ARM, tolerance=3e-4)
+    rough, fine = coarse_of(ARM), coarse_of(ARM, energy_tolerance=3e-4)
     assert fine.levels[: len(rough.levels)] == rough.levels
     assert len(fine.levels) > len(rough.levels)
     gained = rough.levels[-1].energy - fine.levels[-1].energy

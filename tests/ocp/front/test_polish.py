@@ -55,7 +55,7 @@ def test_the_points_land_on_the_front(polish):
 
 
 def test_a_polished_front_says_by_what_it_was_found_and_polished():
-    found = qa.epsilon_front(TASK, PROFILE, bound=BOUND, points=3, solver="ipopt")
+    found = qa.epsilon_front(TASK, PROFILE, bound=BOUND, points=3, solver=qa.Ipopt())
     polished = qa.polish_front(found).front
     assert (polished.record.settings["solver"], polished.record.settings["polish"]) == (
         "ipopt",

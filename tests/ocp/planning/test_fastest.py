@@ -67,7 +67,7 @@ def test_what_has_no_shortest_duration_is_refused():
     with pytest.raises(ValueError, match="nothing limits how fast the move may be; give a"):
         fastest_move(replace(LINK, torque_limit=None))
     with pytest.raises(ValueError, match="tolerance is 0"):
-        fastest_move(LINK, tolerance=0)
+        fastest_move(LINK, duration_tolerance=0)
     # 4e-7 rad/s^2 at most: the move takes half an hour, 17000 radians of the link's swing
     with pytest.raises(InfeasibleTaskError, match="no duration was found: duration"):
         fastest_move(replace(LINK, torque_limit=None, acceleration_limit=7e-7))

@@ -71,7 +71,7 @@ def test_errors_of_the_plant_begin_in_the_same_state(ringing):
 def test_both_solvers_fronts_and_the_floor_begin_in_the_same_state(tasks):
     task = _back(tasks["single link"])
     profile, settings = qa.CycloidPolynomial(4), {"bound": 0.3, "starts": 1}
-    plans = [qa.plan_move(task, profile, solver=by, **settings) for by in ("sqp", "ipopt")]
+    plans = [qa.plan_move(task, profile, solver=by, **settings) for by in (qa.Sqp(), qa.Ipopt())]
     assert plans[0].energy == pytest.approx(plans[1].energy, rel=1e-5)
     front = qa.epsilon_front(task, profile, points=3, **settings)
     assert front.points[0].energy == pytest.approx(plans[0].energy, rel=1e-5)
@@ -79,7 +79,7 @@ def test_both_solvers_fronts_and_the_floor_begin_in_the_same_state(tasks):
         exact = qa.Candidate.of_profile(task, profile, point.coefficients).motion
         assert point.energy == pytest.approx(exact.energy, rel=1e-6)
         assert point.residual == pytest.approx(exact.residual, rel=1e-6, abs=1e-8)
-    floor = qa.energy_floor(replace(task, acceleration_limit=40.0), starts=1, tolerance=0.05)
+    floor = qa.energy_floor(replace(task, acceleration_limit=40.0), starts=1, energy_tolerance=0.05)
     limited = qa.plan_move(replace(task, acceleration_limit=40.0), SIX, starts=1)
     assert floor.residual < 1e-6
     assert 0 < floor.energy < limited.energy

@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from quietarm.ocp.planning import plan_move
+from quietarm.ocp.planning import plan_along
 
 import quietarm as qa
 
@@ -55,9 +55,9 @@ def test_residual_and_energy_are_those_of_samples_and_assumed_plant(plan):
 
 @pytest.mark.slow
 def test_ipopt_finds_the_same(task, plan):
-    other = qa.plan_move(task, starts=1, solver="ipopt")
+    other = qa.plan_move(task, starts=1, solver=qa.Ipopt())
     assert other.record.method == "ipopt"
-    assert other.excess <= plan_move.EXCESS
+    assert other.excess <= plan_along.EXCESS
     assert other.energy == pytest.approx(plan.energy, rel=1e-2)
 
 
@@ -83,8 +83,8 @@ def test_where_the_default_is_out_of_reach_the_limit_is_near_the_least_worst_cas
 
 def test_a_limit_that_does_not_hold_is_refused_with_what_is_left(task, monkeypatch):
     # without rounds and tightening nothing holds between the scenarios
-    monkeypatch.setattr(plan_move, "_ROUNDS", 0)
-    monkeypatch.setattr(plan_move, "_TIGHTENINGS", 0)
+    monkeypatch.setattr(plan_along, "_ROUNDS", 0)
+    monkeypatch.setattr(plan_along, "_TIGHTENINGS", 0)
     task = replace(task, uncertainty=qa.Uncertainty({"frequency": 0.2}))
     with pytest.raises(qa.SolverFailedError, match=r"above its limit of 0\.002 m"):
         qa.plan_move(task, residual_limit=2e-3)

@@ -105,7 +105,7 @@ def test_plans_fronts_searches_and_sweeps_choose_alike(limited, tmp_path):
     assert plan_moves([task]).profile == profile
     assert epsilon_front(task, points=2).profile == profile
     assert weighted_front(task, points=2).profile == profile
-    found = search(task, "nsga2", bound=0.2, population=8, generations=1)
+    found = search(task, algorithm="nsga2", bound=0.2, population=8, generations=1)
     assert found.profile == profile
-    dataset = sweep(task, {"target": [0.4, 0.5]}, path=tmp_path / "moves.zarr")
+    dataset = sweep(task, axes={"target": [0.4, 0.5]}, path=tmp_path / "moves.zarr")
     assert dataset.sizes["coefficient"] == profile.size

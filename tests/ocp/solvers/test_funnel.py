@@ -9,7 +9,7 @@ from functools import partial
 import casadi as ca
 import numpy as np
 import pytest
-from quietarm.ocp.solvers.funnel import SHARP, End, minimise
+from quietarm.ocp.solvers.funnel import SHARP, Course, End, minimise
 from quietarm.ocp.solvers.quadratic import Model
 
 INF = np.inf
@@ -45,8 +45,9 @@ class Problem:
     def solved(self, starts, **settings):
         starts = np.atleast_2d(np.array(starts, dtype=float))
         lower, upper = (np.tile(side, (len(starts), 1)) for side in (self.lower, self.upper))
-        settings = {"widths": SHARP, "equalities": self.function.size1_in(1)} | settings
-        return minimise(self.evaluate, starts, lower, upper, **settings)
+        course = Course(settings.pop("widths", SHARP), settings.pop("reach", Course().reach))
+        settings = {"equalities": self.function.size1_in(1)} | settings
+        return minimise(self.evaluate, starts, lower, upper, course=course, **settings)
 
     def objective(self, found):
         rows = np.arange(len(found.x))

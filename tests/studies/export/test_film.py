@@ -75,7 +75,7 @@ def test_a_film_of_a_slow_swing_has_the_whole_move_and_ends_where_it_has_too_man
 
 def test_moves_of_different_durations_share_a_clock(plan, task):
     longer = evaluate_coefficients(PointToPoint(ArmOnFlexibleLink(), 0.5, 1.4), [])
-    floor = energy_floor(task, starts=1, tolerance=0.5)
+    floor = energy_floor(task, starts=1, energy_tolerance=0.5)
     times = np.arange(25) / 10  # 1.4 s and its residual window
     lines = [Line(plan, "short"), Line(longer, "long"), Line(floor, "floor")]
     structures = structures_of(lines, times, 2.4)

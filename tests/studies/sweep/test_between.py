@@ -74,7 +74,7 @@ def test_a_move_of_an_uncertain_plant_is_there_without_solving(
         SingleLinkManipulator(), math.pi / 6, 0.8, uncertainty=Uncertainty({"frequency": 0.08})
     )
     axes = {axis: values, "duration": (0.8, 0.85, 0.9)}
-    dataset = sweep(task, axes, cells, profile=CycloidPolynomial(3)).load()
+    dataset = sweep(task, CycloidPolynomial(3), axes=axes, path=cells).load()
     typed = "--set omega={:.17g}" if axis == "omega" else "--target {:.17g}"
     monkeypatch.setattr(Sqp, "solve", None)
     monkeypatch.setattr(Ipopt, "solve", None)

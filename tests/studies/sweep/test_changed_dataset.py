@@ -24,7 +24,7 @@ def swept(tmp_path_factory):
     path = tmp_path_factory.mktemp("swept") / "few.zarr"
     task = qa.PointToPoint(qa.SingleLinkManipulator(), target=math.radians(60), duration=0.8)
     axes = {"target": [math.radians(30), math.radians(60)], "duration": [0.8, 1.2]}
-    qa.sweep(task, axes, path, profile=qa.CycloidPolynomial(2))
+    qa.sweep(task, qa.CycloidPolynomial(2), axes=axes, path=path)
     MoveLibrary(path).between()
     return path
 

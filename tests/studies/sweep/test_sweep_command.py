@@ -72,11 +72,11 @@ def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, done,
     assert "is of another sweep: it differs in target" in err
     task = qa.PointToPoint(qa.SingleLinkManipulator(), target=math.radians(60), duration=1.0)
     axes = {"target": [math.radians(60), math.radians(30)], "duration": [0.8, 1.2]}
-    made = qa.sweep(task, axes, folder / "made.zarr").load()
+    made = qa.sweep(task, axes=axes, path=folder / "made.zarr").load()
     # the digest is of the task as well, whose duration is another than the command's
     assert same(made.drop_vars("digest"), found.drop_vars("digest"))
     with pytest.raises(ValueError, match="did you mean 'omega'"):
-        qa.sweep(task, {"omga": [9.0, 10.0]}, folder / "other.zarr")
+        qa.sweep(task, axes={"omga": [9.0, 10.0]}, path=folder / "other.zarr")
 
 
 def test_parameters_are_axes_and_what_cannot_be_has_a_reason(done, folder):

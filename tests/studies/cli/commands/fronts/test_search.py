@@ -19,7 +19,7 @@ TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
 def directly(method="vepso", seed=0, **settings):
     """What `SMALL` is to find."""
     given = {"bound": 0.2, "population": 8, "generations": 4, **settings}
-    return search(TASK, method, profile=CycloidPolynomial(2), seed=seed, **given)
+    return search(TASK, CycloidPolynomial(2), algorithm=method, seed=seed, **given)
 
 
 def test_one_search_is_shown_and_written(call):

@@ -1,0 +1,35 @@
+"""The solvers by name, the one that a record states, and which one stands in for another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from quietarm.ocp.record import Setting
+from quietarm.ocp.solvers.ipopt import Ipopt
+from quietarm.ocp.solvers.solver import NAME, OPTIONS, Solver
+from quietarm.ocp.solvers.sqp import Sqp
+
+SOLVERS: Mapping[str, type[Solver]] = {Sqp.name: Sqp, Ipopt.name: Ipopt}
+"""By the names that the command line and records have; the first is the default."""
+
+
+def stand_in(solver: Solver) -> Solver | None:
+    """What is tried where a solver fails, with its options: IPOPT; None where that failed."""
+    return None if isinstance(solver, Ipopt) else solver.as_kind(Ipopt)
+
+
+def other_solver(solver: Solver) -> Solver:
+    """The other of the two, with the same options, which checks what this one found."""
+    return stand_in(solver) or solver.as_kind(Sqp)
+
+
+def stated_solver(settings: Mapping[str, Setting]) -> Solver | None:
+    """The solver that the settings of a record state; None where they state none."""
+    kind = SOLVERS.get(str(settings.get(NAME)))
+    if kind is None:
+        return None
+    options: dict[str, Any] = {
+        option: settings[f"{NAME}_{option}"] for option in OPTIONS if f"{NAME}_{option}" in settings
+    }
+    return kind(**options)
