@@ -175,6 +175,14 @@ class PointToPoint:
                 f"target - start is {self.span:g} {way}: there is no move; change one of them by "
                 f"{LEAST_MOVE:g} {way} or more"
             )
+        if self.plant.path_range is not None:
+            least, largest = self.plant.path_range
+            for name, place in (("start", self.start), ("target", self.target)):
+                if not least <= place <= largest:
+                    raise ValueError(
+                        f"{name} is {place:g} and {self.plant.name} is defined from {least:g} to "
+                        f"{largest:g}; give one within that range"
+                    )
         if self.duration < LEAST_DURATION:
             raise ValueError(f"duration is {self.duration:g} s; give at least {LEAST_DURATION:g} s")
         modes = self.plant.modes
