@@ -16,6 +16,7 @@ from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any, ClassVar, final
 
+import casadi as ca
 import numpy as np
 from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.final import refuse_overridden
@@ -37,11 +38,16 @@ def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
 
 
 class Plant(ABC):
-    """A joint with flexible modes: subclass it as a frozen dataclass, in one file.
+    """Joints with flexible modes: subclass it as a frozen dataclass, in one file.
 
     A subclass sets `name` and `modes`, declares its parameters as float fields (with `parameter`)
     and gives three equations: `modal_accelerations`, `torque` and `tip_displacements`; see
     `validate`. They may have no value at some angles; a move must not pass these.
+
+    A plant of several joints moves along a path. What the equations are then given as the joint's
+    angle is the place on the path; it gives `joints`, and `torques` in place of `torque`. Where the
+    tips' displacements depend on the place it gives `tips_at` and `tip_speeds` in place of
+    `tip_displacements`.
 
     Raises
     ------
@@ -64,6 +70,9 @@ class Plant(ABC):
     """Unit of the tips' displacements: m, or rad where they turn, as the load of a shaft does."""
     small_deflection: ClassVar[float | None] = None
     """Largest tip displacement that the equations are made for; None where none is stated."""
+    path_range: ClassVar[tuple[float, float] | None] = None
+    """Least and largest joint angle, or place on the path, that the equations are made for; None
+    where they hold at any. A move must begin and end within it."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
@@ -101,13 +110,47 @@ class Plant(ABC):
         By the joint's motion [rad, rad/s, rad/s^2], the amplitudes W [m] and their rates [m/s].
         """
 
-    @abstractmethod
     def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
-        """Joint torque that the motion needs [N m]; arguments as in `modal_accelerations`."""
+        """Joint torque that the motion needs [N m]; arguments as in `modal_accelerations`.
 
-    @abstractmethod
+        Of several joints by default what their `torques` come to along the path, sum of q' torque.
+        """
+        slopes = [motion.speed for motion in self.joints(JointMotion(joint.angle, 1.0, 0.0))]
+        torques = self.torques(joint, W, dW, ddW)
+        return sum(slope * torque for slope, torque in zip(slopes, torques, strict=True))
+
     def tip_displacements(self, W: Modes) -> Sequence[Expression]:
-        """Displacements of the tips that must come to rest [`tip_unit`], linear in `W`."""
+        """Displacements of the tips that must come to rest [`tip_unit`], linear in `W`.
+
+        By default those at the place 0 of the path.
+        """
+        return self.tips_at(JointMotion(0.0, 0.0, 0.0), W)
+
+    def joints(self, path: JointMotion) -> Sequence[JointMotion]:
+        """Motion of every joint by the motion along the path; by default the one joint's.
+
+        Speeds, accelerations and jerks are time derivatives of the angles. Where the path has no
+        jerk (None), nor have the joints.
+        """
+        return [path]
+
+    def torques(self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Sequence[Expression]:
+        """Torque of every one of the `joints` [N m]; by default the one joint's."""
+        return [self.torque(path, W, dW, ddW)]
+
+    def tips_at(self, path: JointMotion, W: Modes) -> Sequence[Expression]:
+        """Displacements of the tips at a place of the path; by default the same everywhere."""
+        return self.tip_displacements(W)
+
+    def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
+        """Time derivatives of `tips_at` [`tip_unit`/s]; by default where the place has no part."""
+        return self.tip_displacements(dW)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, in the order of `joints`, by which limits and columns name them."""
+        count = len(self.joints(JointMotion(ca.SX.sym("angle"), 0.0, 0.0)))
+        return ("joint",) if count == 1 else tuple(f"joint_{i}" for i in range(1, count + 1))
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The structure seen from above, by default a straight link of 1 m for each tip.
@@ -139,7 +182,7 @@ class Plant(ABC):
     @final
     def tips(self) -> int:
         """How many tip displacements the plant has."""
-        return len(self.tip_displacements([0.0] * self.modes))
+        return len(self.tips_at(JointMotion(ca.SX.sym("angle"), 0.0, 0.0), [0.0] * self.modes))
 
     @final
     def validate(self) -> None:
@@ -150,7 +193,8 @@ class Plant(ABC):
         ValueError
             When an equation fails, mixes candidates or is not finite; the modes are not affine in
             their amplitudes and rates, not at rest with the joint, or unstable; the joint has no
-            inertia, or yields work from rest.
+            inertia, or yields work from rest; rates of several joints or of tips are not those of
+            their angles or displacements.
         """
         check_contract(self)
         check_passive(self)

@@ -13,6 +13,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import Field, is_dataclass
 from functools import lru_cache
+from itertools import pairwise
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,6 +30,10 @@ _WRITE = {
     "modal_accelerations": "(self, joint, W, dW) that returns a list of W'' [m/s^2], one a mode",
     "torque": "(self, joint, W, dW, ddW) that returns one expression, the joint torque [N m]",
     "tip_displacements": "(self, W) that returns a list of tip displacements [m]",
+    "joints": "(self, path) that returns a list of JointMotion, one a joint",
+    "torques": "(self, path, W, dW, ddW) that returns a list of torques [N m], one a joint",
+    "tips_at": "(self, path, W) that returns a list of tip displacements [m]",
+    "tip_speeds": "(self, path, W, dW) that returns a list of tip speeds [m/s]",
 }
 """What every method takes, and what it should return."""
 _RIGHT = math.pi / 2
@@ -42,6 +47,10 @@ _KINDS = np.array([[1, 1, 1, 1], [1, -1, 1, 1], [1, 0, 1, 1], [1, 1, 0, 1], [1, 
 at a turning point, at constant speed and, last, at rest."""
 _TINY = 1e-12
 """What counts as nothing, relative to the values of a moving joint."""
+_SAME = 1e-9
+"""Share by which values may differ from what they should be, by rounding."""
+_EITHER = {"torque": "torques", "tip_displacements": "tips_at"}
+"""Methods of which a plant gives one: for one joint or the same tips at any place, or for all."""
 
 
 def check_contract(plant: Plant) -> None:
@@ -54,7 +63,11 @@ def check_contract(plant: Plant) -> None:
             f"plant {plant.name!r} is no frozen dataclass, or has {modes} modes; write "
             f"@dataclass(frozen=True) above {kind.__name__} and modes: ClassVar[int] = 1 in it"
         )
+    for method, general in _EITHER.items():
+        if not (_gives(plant, method) or _gives(plant, general)):
+            raise _wrong(plant, method, f"is missing, as is {general}")
     _slopes_at_rest(plant)
+    _check_rates(plant)
 
 
 @lru_cache(maxsize=256)
@@ -90,7 +103,7 @@ def eigenvalues_at_rest(plant: Plant, angle: float) -> tuple[complex, ...]:
 @lru_cache(maxsize=256)
 def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
     """Angles that have values, and the slopes there; ValueError where the equations are wrong."""
-    motions = _motions(_ANGLES, plant.modes)
+    motions = _motions(_angles_of(plant), plant.modes)
     values, slopes = _evaluate(plant, motions)
     # an angle at which no motion has a value is none to move to
     defined = np.any(np.isfinite(values).all(axis=2), axis=1)
@@ -104,6 +117,25 @@ def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
     found = motions[first, -1, 0], still.reshape(len(still), motions.shape[2], -1)
     at_rest.check_stable(plant.name, *found)
     return found
+
+
+def _angles_of(plant: Plant) -> Array:
+    """The joint angles, or places on its path, at which a plant is looked at."""
+    if plant.path_range is None:
+        return _ANGLES
+    ends = plant.path_range
+    if len(ends) != 2 or not -math.inf < ends[0] < ends[1] < math.inf:
+        raise ValueError(
+            f"plant {plant.name!r}: path_range is {ends!r}; give the least and the largest place, "
+            "as (0.0, 1.0)"
+        )
+    return np.linspace(*ends, len(_ANGLES))
+
+
+def _gives(plant: Plant, method: str) -> bool:
+    """Whether the plant has a method of its own in place of the contract's."""
+    contract = next(kind for kind in reversed(type(plant).__mro__) if "joints" in vars(kind))
+    return getattr(type(plant), method) is not getattr(contract, method)
 
 
 def _motions(angles: Array, modes: int) -> Array:
@@ -129,7 +161,7 @@ def _equations(plant: Plant) -> ca.Function:
     x = ca.SX.sym("x", size)
     outputs = outputs_of(plant, ca.vertsplit(x))
     for method, output in zip(_methods(plant), outputs):
-        if method != "torque" and not ca.is_linear(output, x[3:]):
+        if method not in ("torque", "torques") and not ca.is_linear(output, x[3:]):
             raise _wrong(plant, method, "is not affine in W and W'", "linearise it")
     column = ca.densify(ca.vertcat(*outputs))
     slopes = ca.densify(ca.vec(ca.jacobian(column, x)))
@@ -138,20 +170,44 @@ def _equations(plant: Plant) -> ca.Function:
 
 def _methods(plant: Plant) -> list[str]:
     """The method that each output is of."""
-    tips = ["tip_displacements"] * plant.tips
-    return ["modal_accelerations"] * plant.modes + ["torque", *tips]
+    torque, tips = (_method_of(plant, method) for method in _EITHER)
+    return ["modal_accelerations"] * plant.modes + [torque] + [tips] * plant.tips
+
+
+def _method_of(plant: Plant, method: str) -> str:
+    """The method by which a plant gives the torque, or the tips."""
+    return method if _gives(plant, method) else _EITHER[method]
 
 
 def outputs_of(plant: Plant, arguments: Sequence[Expression]) -> list[Expression]:
-    """W'', torque and tip displacements, from joint motion, W and W'.
+    """W'', torque along the path and tip displacements, from joint motion, W and W'.
 
     ValueError where a method fails or gives something else than it should.
     """
     joint, modes = JointMotion(*arguments[:3]), plant.modes
     W, dW = list(arguments[3 : 3 + modes]), list(arguments[3 + modes :])
     ddW = _call(plant, "modal_accelerations", joint, W, dW)
-    torque = _call(plant, "torque", joint, W, dW, ddW)
-    return [*ddW, *torque, *_call(plant, "tip_displacements", W)]
+    return [*ddW, _torque(plant, joint, W, dW, ddW), *_tips(plant, joint, W)]
+
+
+def _torque(plant: Plant, path: JointMotion, *modes: list[Expression]) -> Expression:
+    """The torque along the path; ValueError where joints and torques are not as they should be."""
+    if not _gives(plant, "joints"):
+        return _call(plant, _method_of(plant, "torque"), path, *modes)[0]
+    joints = _call(plant, "joints", path)
+    torques = _call(plant, "torques", path, *modes)
+    counts = len(joints), len(torques), len(plant.joint_names)
+    if len(set(counts)) > 1:
+        what = "has {} joints, {} torques and {} joint_names".format(*counts)
+        raise _wrong(plant, "torques", what, "give one of each for every joint")
+    return plant.torque(path, *modes)
+
+
+def _tips(plant: Plant, path: JointMotion, W: list[Expression]) -> list[Expression]:
+    """The tips' displacements."""
+    if _gives(plant, "tips_at"):
+        return _call(plant, "tips_at", path, W)
+    return _call(plant, "tip_displacements", W)
 
 
 def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
@@ -170,7 +226,7 @@ def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
     entries = [found] if method == "torque" else found
     entries = list(entries) if isinstance(entries, list | tuple) else []
     count = plant.modes if method == "modal_accelerations" else max(1, len(entries))
-    kinds = Real | ca.SX | ca.MX | ca.DM
+    kinds = JointMotion if method == "joints" else Real | ca.SX | ca.MX | ca.DM
     if len(entries) != count or not all(isinstance(entry, kinds) for entry in entries):
         raise _wrong(plant, method, f"returns {reprlib.repr(found)}")
     return entries
@@ -195,6 +251,48 @@ def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
         if len(found) > 1 or not np.allclose(found, alone, rtol=1e-9, atol=least):
             remedy = "compute entry by entry: no sum, dot, mtimes or max over entries"
             raise _wrong(plant, method, "mixes motions that are side by side in a matrix", remedy)
+
+
+def _check_rates(plant: Plant) -> None:
+    """Rates of the joints, and of the tips, are the time derivatives of angles and displacements.
+
+    By the chain rule along the path: a time derivative is that by the place, times its speed, and
+    so on; the path's jerk stands for the time derivative of its acceleration.
+    """
+    size = 4 + 2 * plant.modes
+    x = ca.SX.sym("x", size)
+    path, W, dW = JointMotion(*ca.vertsplit(x[:4])), x[4 : 4 + plant.modes], x[4 + plant.modes :]
+    moving = ca.vertcat(path.angle, path.speed, path.acceleration, W)
+    rates = ca.vertcat(path.speed, path.acceleration, path.jerk, dW)
+    pairs = list[tuple[str, Expression, Expression]]()
+    if _gives(plant, "joints"):
+        for joint in _call(plant, "joints", path):
+            for value, rate in pairwise(joint):
+                if rate is None:
+                    raise _wrong(plant, "joints", "gives no jerk where the path has one", "give it")
+                pairs.append(("joints", value, rate))
+    if _gives(plant, "tips_at") or _gives(plant, "tip_speeds"):
+        amplitudes, speeds = ca.vertsplit(W), ca.vertsplit(dW)
+        tips = _tips(plant, path, amplitudes)
+        tip_speeds = _call(plant, "tip_speeds", path, amplitudes, speeds)
+        if len(tips) != len(tip_speeds):
+            what = f"returns {len(tip_speeds)} speeds of {len(tips)} tips"
+            raise _wrong(plant, "tip_speeds", what, "give one for every tip")
+        pairs += (("tip_speeds", tip, speed) for tip, speed in zip(tips, tip_speeds))
+    if not pairs:
+        return
+    angles = _angles_of(plant)
+    random = np.random.default_rng(0).uniform(-1, 1, (len(angles), size))
+    random[:, 0] = angles
+    methods, values, stated = zip(*pairs)
+    due = ca.jtimes(ca.vertcat(*values), moving, rates)
+    both = ca.Function("rates", [x], [ca.densify(due), ca.densify(ca.vertcat(*stated))])
+    should, are = (table.full() for table in both(random.T))
+    largest = np.abs(should).max(axis=1, keepdims=True)
+    for row, column in np.argwhere(~(np.abs(are - should) <= _SAME * np.maximum(largest, 1e-3))):
+        at = f"at {angles[column]:.4g} of the path"
+        what = f"gives a rate of {are[row, column]:.6g} {at} where it is {should[row, column]:.6g}"
+        raise _wrong(plant, methods[row], what, "give the time derivatives along the path")
 
 
 def _check_finite(plant: Plant, motions: Array, table: Array) -> None:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models import Expression, Plant
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp.checks import not_negative
+from quietarm.ocp.sample import Sample, symbolic_sample
 
-Of = Callable[[JointMotion, Sequence[Expression], Expression], Sequence[Expression]]
-"""(joint's motion, tip displacements, joint torque) -> values."""
+ValuesOf = Callable[[Sample], Sequence[Expression]]
+"""A quantity's values by the sample of a plant."""
 
 
 @dataclass(frozen=True)
@@ -25,26 +26,40 @@ class Quantity:
     Attributes
     ----------
     name, unit, label : str
-        Its name, SI unit, and what it is in words.
-    of : callable
-        (joint's motion, tip displacements, joint torque) -> its values.
+        Its name, SI unit of a rotary joint, and what it is in words.
+    values : callable
+        Its values by the sample of a plant.
     derivative : int or None
         Which time derivative of the joint's angle it is; None where it follows from the modes.
+    of_joints : bool
+        Whether it has a value for each joint, so that a task may limit joints by name.
     in_scenarios : bool
         Whether its limit holds in all scenarios of an uncertain task; else for the nominal plant.
+    panel : int
+        Its place among the panels of a picture, from the joint's motion to the torque.
+    always_drawn : bool
+        Whether a picture of a motion has it where no task limits it, too.
     """
 
     name: str
     unit: str
     label: str
-    of: Of
+    values: ValuesOf
     derivative: int | None = None
+    of_joints: bool = False
     in_scenarios: bool = False
+    panel: int = 5
+    always_drawn: bool = False
 
     @property
     def limit(self) -> str:
         """Name of its limit in a task."""
         return f"{self.name}_limit"
+
+    @property
+    def option(self) -> str:
+        """Its limit on the command line."""
+        return f"--{self.name.replace('_', '-')}-limit"
 
     @property
     def peak(self) -> str:
@@ -53,22 +68,68 @@ class Quantity:
 
     def rows(self, plant: Plant) -> int:
         """How many values it has at one time."""
-        still = JointMotion(0.0, 0.0, 0.0, 0.0)
-        return len(self.of(still, plant.tip_displacements([0.0] * plant.modes), 0.0))
+        return len(self.values(symbolic_sample(plant)))
 
 
 QUANTITIES: Mapping[str, Quantity] = {
     quantity.name: quantity
     for quantity in (
-        Quantity("torque", "N m", "joint torque", lambda joint, tips, torque: [torque]),
-        Quantity("speed", "rad/s", "joint speed", lambda joint, *_: [joint[1]], 1),
-        Quantity("acceleration", "rad/s^2", "joint acceleration", lambda joint, *_: [joint[2]], 2),
-        Quantity("jerk", "rad/s^3", "joint jerk", lambda joint, *_: [joint[3]], 3),
-        Quantity("deflection", "m", "tip displacement", lambda joint, tips, _: tips, None, True),
+        Quantity(
+            name="torque",
+            unit="N m",
+            label="joint torque",
+            values=lambda sample: sample.torques,
+            of_joints=True,
+            panel=6,
+            always_drawn=True,
+        ),
+        Quantity(
+            name="speed",
+            unit="rad/s",
+            label="joint speed",
+            values=lambda sample: [joint.speed for joint in sample.joints],
+            derivative=1,
+            of_joints=True,
+            panel=1,
+            always_drawn=True,
+        ),
+        Quantity(
+            name="acceleration",
+            unit="rad/s^2",
+            label="joint acceleration",
+            values=lambda sample: [joint.acceleration for joint in sample.joints],
+            derivative=2,
+            of_joints=True,
+            panel=2,
+            always_drawn=True,
+        ),
+        Quantity(
+            name="jerk",
+            unit="rad/s^3",
+            label="joint jerk",
+            values=lambda sample: [joint.jerk for joint in sample.joints],
+            derivative=3,
+            of_joints=True,
+            panel=3,
+        ),
+        Quantity(
+            name="deflection",
+            unit="m",
+            label="tip displacement",
+            values=lambda sample: sample.tips,
+            in_scenarios=True,
+            panel=4,
+            always_drawn=True,
+        ),
     )
 }
-"""Every quantity by its name; each has fields for its limit in a task and for its peak in a
-`Motion`."""
+"""Every quantity by its name. A new one is one entry here, and the field of its limit in
+`PointToPoint`; solvers, checks, options, pictures and reports read both."""
+
+
+def unit_of(unit: str, joint: str, tip_unit: str) -> str:
+    """A unit as it is of a kind of joint, or of tip: of tips m and m/s, or rad and rad/s."""
+    return tip_unit + unit[1:] if unit.startswith("m") else joint_unit(unit, joint)
 
 
 @lru_cache
@@ -77,7 +138,7 @@ def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
     return {
         name: replace(
             quantity,
-            unit=tip_unit if quantity.unit == "m" else joint_unit(quantity.unit, joint),
+            unit=unit_of(quantity.unit, joint, tip_unit),
             label=joint_label(quantity.label, joint),
         )
         for name, quantity in QUANTITIES.items()
@@ -85,15 +146,85 @@ def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
 
 
 RESIDUAL, TORQUE_SPEED = "residual", "torque_speed"
-_RESIDUAL = Quantity(RESIDUAL, "m", "residual vibration", lambda *_: [], None, True)
+JERK = 3
+"""The derivative of the angle that no plant needs, and that is nowhere where the acceleration
+jumps."""
+_RESIDUAL = Quantity(RESIDUAL, "m", "residual vibration", lambda _: [], in_scenarios=True)
 """It has no values on the way, and follows from the state on arrival."""
-Bounds = float | tuple[float, float]
+Sides = float | tuple[float, float]
 """The largest absolute value, or the least and the largest one."""
+Bounds = Sides | Mapping[str, Sides]
+"""The same for all joints, or of some joints by name."""
+
+
+class ByJoint(Mapping[str, Any]):
+    """What is given of some joints by name, a value that does not change."""
+
+    def __init__(self, entries: Mapping[str, Any]) -> None:
+        self._entries = dict(entries)
+
+    def __getitem__(self, name: str) -> Any:
+        return self._entries[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._entries.items()))
+
+    def __repr__(self) -> str:
+        return repr(self._entries)
+
+
+class JointBounds(NamedTuple):
+    """The bounds of a joint: its name, its place among the joints, least and largest value."""
+
+    name: str
+    place: int
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Values of a quantity of the joints, each between -1 at its least and 1 at its largest."""
+
+    values: ValuesOf
+    bounds: tuple[JointBounds, ...]
+    unit: str
+
+    def __call__(self, sample: Sample) -> Sequence[Expression]:
+        """The shares, of the joints that have bounds."""
+        values = self.values(sample)
+        shares = list[Expression]()
+        for bound in self.bounds:
+            middle = (bound.upper + bound.lower) / 2
+            half = (bound.upper - bound.lower) / 2
+            shares.append((values[bound.place] - middle) / half)
+        return shares
+
+    def __str__(self) -> str:
+        words = (
+            f"{bound.name} {_ends(bound.lower, bound.upper)} {self.unit}" for bound in self.bounds
+        )
+        return ", ".join(words)
+
+
+def sides_of(bounds: Sides) -> tuple[float, float]:
+    """The least and the largest value."""
+    return bounds if isinstance(bounds, tuple) else (-bounds, bounds)
+
+
+def _ends(lower: float, upper: float) -> str:
+    return f"{upper:g}" if lower == -upper else f"{lower:g} to {upper:g}"
 
 
 def ask_for_jerk(quantities: Iterable[Quantity]) -> bool:
     """Whether any of these quantities follows from the joint's jerk, which no plant needs."""
-    return any(quantity.name == "jerk" for quantity in quantities)
+    return any(quantity.derivative == JERK for quantity in quantities)
 
 
 @dataclass(frozen=True)
@@ -159,14 +290,12 @@ class TorqueSpeedLine:
         """The speed at which no torque is left [rad/s]."""
         return min(torque / fall for torque, fall in self._pieces if fall)
 
-    def __call__(
-        self, joint: JointMotion, tips: Sequence[Expression], torque: Expression
-    ) -> Sequence[Expression]:
-        """The torque as shares of what each piece gives, in both directions of the speed."""
-        del tips
+    def __call__(self, sample: Sample) -> Sequence[Expression]:
+        """Each joint's torque as shares of what a piece gives, in both directions of the speed."""
         signs = {True: (1, -1), False: (1,)}
         return [
-            (torque + sign * fall * joint[1]) / most
+            (torque + sign * fall * joint.speed) / most
+            for torque, joint in zip(sample.torques, sample.joints)
             for most, fall in self._pieces
             for sign in signs[fall > 0]
         ]
@@ -207,10 +336,16 @@ class Limit:
     upper: float
 
     @classmethod
-    def within(cls, quantity: Quantity, bounds: Bounds) -> Limit:
-        """Of a task's entry: the largest absolute value, or the least and the largest one."""
-        lower, upper = bounds if isinstance(bounds, tuple) else (-bounds, bounds)
-        return cls(quantity, lower, upper)
+    def within(cls, quantity: Quantity, bounds: Bounds, joints: Sequence[str] = ()) -> Limit:
+        """Of a task's entry and its plant's joints, whose own bounds become shares of these."""
+        if not isinstance(bounds, Mapping):
+            return cls(quantity, *sides_of(bounds))
+        by_joint = tuple(
+            JointBounds(name, list(joints).index(name), *sides_of(sides))
+            for name, sides in bounds.items()
+        )
+        shares = Shares(quantity.values, by_joint, quantity.unit)
+        return cls(replace(quantity, unit="", values=shares), -1.0, 1.0)
 
     @classmethod
     def of_residual(cls, largest: float, tip_unit: str = "m") -> Limit:
@@ -240,7 +375,8 @@ class Limit:
     @property
     def is_peak(self) -> bool:
         """Whether it is of the largest absolute value of a quantity in the diagnostics."""
-        return self.both_ways and self.name in (RESIDUAL, *QUANTITIES)
+        of_one = not isinstance(self.quantity.values, Shares)
+        return of_one and self.both_ways and self.name in (RESIDUAL, *QUANTITIES)
 
     @property
     def size(self) -> float:
@@ -292,10 +428,9 @@ class Limit:
     @property
     def bounds(self) -> str:
         """The bounds in words, as 0.3 N m or -30 to 40 rad/s^2."""
-        if isinstance(self.quantity.of, TorqueSpeedLine):
-            return str(self.quantity.of)
-        ends = f"{self.size:g}" if self.both_ways else f"{self.lower:g} to {self.upper:g}"
-        return f"{ends} {self.quantity.unit}"
+        if isinstance(self.quantity.values, TorqueSpeedLine | Shares):
+            return str(self.quantity.values)
+        return f"{_ends(self.lower, self.upper)} {self.quantity.unit}"
 
     def __str__(self) -> str:
         return f"{self.label} {self.bounds}"

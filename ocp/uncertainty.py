@@ -41,7 +41,7 @@ class ScaledModes(Plant):
     damping: Expression = 1.0
 
     def __post_init__(self) -> None:  # a factor may be a symbol, so no check of numbers
-        for name in ("name", "modes", "joint", "tip_unit", "small_deflection"):
+        for name in ("name", "modes", "joint", "tip_unit", "small_deflection", "path_range"):
             object.__setattr__(self, name, getattr(self.plant, name))
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
@@ -66,6 +66,27 @@ class ScaledModes(Plant):
     def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """Those of the plant [m]."""
         return self.plant.tip_displacements(W)
+
+    def joints(self, path: JointMotion) -> Sequence[JointMotion]:
+        """Those of the plant."""
+        return self.plant.joints(path)
+
+    def torques(self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Sequence[Expression]:
+        """Those of the plant [N m]."""
+        return self.plant.torques(path, W, dW, ddW)
+
+    def tips_at(self, path: JointMotion, W: Modes) -> Sequence[Expression]:
+        """Those of the plant [m]."""
+        return self.plant.tips_at(path, W)
+
+    def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
+        """Those of the plant [m/s]."""
+        return self.plant.tip_speeds(path, W, dW)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Those of the plant."""
+        return self.plant.joint_names
 
 
 @takes(plant=Plant)

@@ -193,10 +193,15 @@ class Plan(MotionAnswer):
         if self.task.plant.joint != ROTARY:
             way, force = "position_m", "force_N"
         unit = way.rpartition("_")[2]
-        header = ["time_s", way, f"speed_{unit}_s", f"acceleration_{unit}_s2", *tip_names]
-        header += [force, "power_W"]
+        of_joint = [way, f"speed_{unit}_s", f"acceleration_{unit}_s2"]
+        names = self.task.plant.joint_names
+        joints = [""] if len(names) == 1 else [f"{name}_" for name in names]
+        header = ["time_s", *(f"{joint}{column}" for joint in joints for column in of_joint)]
+        header += [*tip_names, *(f"{joint}{force}" for joint in joints), "power_W"]
+        sample = sampled.sample
+        moving = [value for joint in sample.joints for value in joint[:3]]
         table = np.column_stack(
-            [sampled.time, sampled.joint, sampled.tips, sampled.torque, sampled.power]
+            [sampled.time, *moving, sampled.tips, *sample.torques, sampled.power]
         )
         text = io.StringIO()
         np.savetxt(text, table, delimiter=",", header=",".join(header), comments="", fmt="%.10g")

@@ -68,21 +68,35 @@ def columns_of(text: str, plant: Plant) -> dict[str, tuple[str, float]]:
 def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     """Columns, as `columns_of` reads them, by their headings, as `angle_deg`, at a rate [Hz].
 
-    The last row is the first tick at or after arrival. Each tip has a column of its own, and of a
-    robust plan in each scenario, which its heading names.
+    The last row is the first tick at or after arrival. Each of several joints has columns of its
+    own, `elbow_angle_deg`; each tip has one, and of a robust plan in each scenario, which its
+    heading names.
     """
     times = times_of(plan, rate)
     motion, tips = plan.sampled(times), _tips(plan, times)
-    values: dict[str, Array] = {
-        "time": motion.time, "angle": motion.joint[:, 0], "speed": motion.joint[:, 1],
-        "acceleration": motion.joint[:, 2], "jerk": motion.jerk, "torque": motion.torque,
-        "power": motion.power,
-    }  # fmt: skip
-    names = {} if plan.task.plant.joint == ROTARY else _LINEAR_NAMES
+    plant, sample = plan.task.plant, motion.sample
+    values: dict[str, list[Array]] = {
+        "time": [motion.time],
+        "angle": [joint.angle for joint in sample.joints],
+        "speed": [joint.speed for joint in sample.joints],
+        "acceleration": [joint.acceleration for joint in sample.joints],
+        "jerk": [joint.jerk for joint in sample.joints],
+        "torque": list(sample.torques),
+        "power": [motion.power],
+    }
+    names = {} if plant.joint == ROTARY else _LINEAR_NAMES
+
+    def by_heading(name: str) -> dict[tuple[str, str], Array]:
+        """A column, or one for each joint, by what stands before and after the unit."""
+        word, columns = names.get(name, name), values[name]
+        if len(columns) == 1:
+            return {(word, ""): columns[0]}
+        return {(f"{joint}_{word}", ""): v for joint, v in zip(plant.joint_names, columns)}
+
     found: dict[str, Array] = {}
     for name, (unit, factor) in columns_of(columns, plan.task.plant).items():
         ending = unit.replace("/", "_").replace("^", "")
-        of_name = tips if name == "tip" else {(names.get(name, name), ""): values[name]}
+        of_name = tips if name == "tip" else by_heading(name)
         found |= {f"{one}_{ending}{after}": factor * v for (one, after), v in of_name.items()}
     return found
 
@@ -126,15 +140,24 @@ def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
 
 
 def ros_text(plan: Plan, rate: float, joint: str) -> str:
-    """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, for one joint."""
+    """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, of all joints.
+
+    A single joint has the name that is given, several those of the plant.
+    """
     motion = plan.sampled(times_of(plan, rate))
-    points = [
-        (divmod(round(time * 1e9), 1_000_000_000), map(_decimal, moving))
-        for time, moving in zip(motion.time, motion.joint)
+    orders = [
+        np.column_stack([joint[order] for joint in motion.sample.joints]).tolist()
+        for order in range(3)
     ]
-    name = joint.replace("'", "''")  # as YAML reads it back
+    points = [
+        (divmod(round(time * 1e9), 1_000_000_000), [map(_decimal, row) for row in moving])
+        for time, *moving in zip(motion.time, *orders)
+    ]
+    own = plan.task.plant.joint_names
+    names = (joint,) if len(own) == 1 else own
+    quoted = ["'" + name.replace("'", "''") + "'" for name in names]  # as YAML reads it back
     texts = templates(keep_trailing_newline=True)
-    return texts.get_template("export/templates/move.yaml").render(joint=f"'{name}'", points=points)
+    return texts.get_template("export/templates/move.yaml").render(joints=quoted, points=points)
 
 
 def _decimal(value: float) -> str:

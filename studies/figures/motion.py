@@ -11,10 +11,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
+from quietarm.models import Plant
+from quietarm.models.joint_motion import ROTARY, joint_label
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.checks import instance, takes, unknown
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES, Shares, unit_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -39,10 +40,17 @@ _LABELS = {
     "power": ("power", "W"),
     **{one.name: (one.label, one.unit) for one in QUANTITIES.values()},
 }
-QUANTITIES_DRAWN = ("angle", "speed", "acceleration", "jerk", "deflection", "torque", "power")
+QUANTITIES_DRAWN = (
+    "angle",
+    *sorted(QUANTITIES, key=lambda name: QUANTITIES[name].panel),
+    "power",
+)
 """What can be drawn: the joint's angle, the quantities that a task may limit, and the power."""
-_WHERE_LIMITED = ("jerk", "power")
-"""These are no panels of a motion, but where a task limits them."""
+_ALWAYS_DRAWN = (
+    "angle",
+    *(name for name, quantity in QUANTITIES.items() if quantity.always_drawn),
+)
+"""These are panels of every motion; others are where a task limits them."""
 PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
@@ -110,7 +118,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
         others = [style for style in (":", "-.", "--") if style != line.style]
         for i, values in enumerate(curves(line.plan, quantity)):
             style = others[(i - 1) % len(others)] if i else line.style
-            label = f"{line.label}, tip {i + 1}" if i else line.label
+            label = line.label + _which(plant, quantity, i)
             ax.plot(line.plan.trajectory.time, values, color=line.colour, linestyle=style,
                     linewidth=1.6, label=label)  # fmt: skip
     for duration in {line.plan.task.duration for line in lines}:
@@ -130,17 +138,27 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
     """A quantity of a motion at the times of its trajectory, a curve each, in the shown unit."""
     at = motion.trajectory
     if quantity in QUANTITIES:
-        columns = QUANTITIES[quantity].of(at.motion, list(at.tips.T), at.torque)
+        columns = QUANTITIES[quantity].values(at.sample)
     else:
-        columns = [at.joint[:, 0] if quantity == "angle" else at.power]
+        angles = [joint.angle for joint in at.sample.joints]
+        columns = angles if quantity == "angle" else [at.power]
     scale = scale_of(quantity, motion.task.plant.tip_unit)
     return [scale * np.asarray(column) for column in columns]
+
+
+def _which(plant: Plant, quantity: str, curve: int) -> str:
+    """Which joint or tip a curve is of, where there are several."""
+    joints = plant.joint_names
+    of_joints = quantity in QUANTITIES and QUANTITIES[quantity].of_joints
+    if len(joints) > 1 and (of_joints or quantity == "angle"):
+        return f", {joints[curve]}"
+    return f", tip {curve + 1}" if curve else ""
 
 
 def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
     """A quantity with the unit that is shown: tip displacement [mm]."""
     label, unit = _LABELS[quantity]
-    unit = tip_scale(tip_unit)[0] if unit == "m" else raised(joint_unit(unit, joint))
+    unit = tip_scale(tip_unit)[0] if unit == "m" else raised(unit_of(unit, joint, tip_unit))
     return f"{joint_label(label, joint)} [{unit}]"
 
 
@@ -177,9 +195,7 @@ def motion_figure(
     lines = lines_of(motions)
     if quantities is None:
         limited = {limit.name for line in lines for limit in line.plan.task.limits}
-        quantities = [
-            name for name in QUANTITIES_DRAWN if name in limited or name not in _WHERE_LIMITED
-        ]
+        quantities = [name for name in QUANTITIES_DRAWN if name in limited or name in _ALWAYS_DRAWN]
     count = len(quantities)
     columns = min(count, 2) if count <= 4 else 3
     rows = -(-count // columns)
@@ -239,7 +255,13 @@ def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list
     """The limits of a quantity that its values come near, in the unit that is shown."""
     limits = [line.plan.task.limit_of(quantity) for line in lines]
     scale = scale_of(quantity, lines[0].plan.task.plant.tip_unit)
-    bounds = {bound for one in limits if one is not None for bound in (one.lower, one.upper)}
+    bounds = set[float]()
+    for limit in limits:
+        if limit is not None and isinstance(limit.quantity.values, Shares):
+            by_joint = limit.quantity.values.bounds
+            bounds |= {level for bound in by_joint for level in (bound.lower, bound.upper)}
+        elif limit is not None:
+            bounds |= {limit.lower, limit.upper}
     return [
         level for level in sorted(scale * bound for bound in bounds)
         if (values * np.sign(level)).max() >= _IN_SIGHT * abs(level)

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.simulation.objective import integrated
+from quietarm.ocp.simulation.objective import PEAKS, integrated
 
 import quietarm as qa
 
@@ -22,13 +22,11 @@ def _compiled(plant, profile, steps, breaks, energy):
         plant, profile, ca.vertsplit(a), move, steps, jerk=True, breaks=breaks,
         initial=ca.vertsplit(initial), energy=energy,
     )  # fmt: skip
-    nodes = list(zip(found.joints, found.states, found.torque, strict=True))
     quantities = [
-        ca.vertcat(*(value for joint, state, torque in nodes
-                     for value in one.of(joint, plant.tip_displacements(state.W), torque)))
-        for one in QUANTITIES.values()
-    ]  # fmt: skip
-    angles = ca.vertcat(*(joint.angle for joint in found.joints))
+        ca.vertcat(*(value for sample in found.samples for value in quantity.values(sample)))
+        for quantity in QUANTITIES.values()
+    ]
+    angles = ca.vertcat(*(sample.path.angle for sample in found.samples))
     net_work = integrated(found.power, found.h)
     outputs = [*quantities, angles, found.arrival, found.energy, net_work]
     return ca.Function("rollout", [a, row], outputs)
@@ -46,7 +44,12 @@ def _of_scenario(task, plant, profile, coefficients, steps):
         energy=energy.item(),
         net_work=net_work.item(),
         overshoot=max(0.0, past_target.max()),
-        **{one.peak: float(np.abs(values).max()) for one, values in peaks},
+        ranges={
+            quantity.name: (float(values.min()), float(values.max()))
+            for quantity, values in zip(QUANTITIES.values(), quantities, strict=True)
+            if quantity.peak not in PEAKS
+        },
+        **{one.peak: float(np.abs(values).max()) for one, values in peaks if one.peak in PEAKS},
     )
     return motion, arrival.ravel()
 
