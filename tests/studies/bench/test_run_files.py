@@ -52,12 +52,16 @@ def lower_residuals(document):
         point["residual"] *= 0.9
 
 
-def better_end(document):
-    document["history"][-1]["quality"]["hypervolume"] = 1.0
-
-
 def better_way(document):
-    document["history"][0]["quality"]["hypervolume"] = 0.999
+    document["entries"]["energies"][0] *= 0.9
+
+
+def earlier_way(document):
+    document["entries"]["candidates"][-1] -= 1
+
+
+def more_candidates(document):
+    document["entries"]["candidates"][-1] = 201
 
 
 def fewer_evaluations(document):
@@ -80,7 +84,7 @@ def other_seed(document):
 
 
 CHANGES = [
-    lower_energies, lower_residuals, better_end, better_way, fewer_evaluations, less_time,
+    lower_energies, lower_residuals, better_way, earlier_way, fewer_evaluations, less_time,
     other_seed,
 ]  # fmt: skip
 
@@ -128,8 +132,9 @@ def test_a_run_of_before_without_a_checksum_is_loaded(runs):
     [
         (lower_energies, "point 1 of .* states energy"),
         (lower_residuals, "point 1 of .* states residual"),
-        (better_end, "states a hypervolume of 1.0000 for its points, and they have 0"),
-        (fewer_evaluations, "states a history in which evaluations fall"),
+        (better_way, r"candidate \d+ states energy"),
+        (more_candidates, "it states candidate 201 of 200"),
+        (fewer_evaluations, r"it states candidate \d+ of 20"),
         (later_start, "states a history in which seconds fall"),
         (other_seed, "states seed 7, and its job has 0"),
     ],
