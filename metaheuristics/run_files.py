@@ -6,13 +6,13 @@ import hashlib
 import json
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from quietarm.metaheuristics.algorithms.presets import PRESETS
 from quietarm.metaheuristics.objective.stated_figures import check_figures
 from quietarm.metaheuristics.score import HYPERVOLUME, filled, objectives
 from quietarm.ocp import Front, Mark
-from quietarm.ocp.saved import plain, typed
+from quietarm.ocp.saved import plain, read_document, stated_part, typed
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.jobs import Job
@@ -26,7 +26,7 @@ _SAME_HYPERVOLUME = 1e-4
 
 def sealed(front: Front, job: Job) -> Front:
     """The front of a job with its checksum, as it is written."""
-    settings = {**front.record.settings, CHECKSUM: _checksum(front, job)}
+    settings = {**front.record.settings, CHECKSUM: _checksum(front, job, plain(front))}
     return front.restated(settings=settings)
 
 
@@ -42,7 +42,8 @@ def check_run(front: Front, job: Job, path: Path) -> None:
     its quality at the end. Its effort and what it says of the way there can only be consistent.
     """
     if is_sealed(front):
-        if front.record.settings[CHECKSUM] != _checksum(front, job):
+        document = read_document(path, Front.kind)
+        if front.record.settings[CHECKSUM] != _checksum(front, job, document):
             raise ValueError(
                 f"{path} is not what a bench wrote for {job.label}, seed {job.seed}: it was "
                 "changed, is another run's, or was measured against another reference front; "
@@ -55,17 +56,17 @@ def check_run(front: Front, job: Job, path: Path) -> None:
         raise ValueError(f"{path} {difference}; {_AGAIN}")
 
 
-def _checksum(front: Front, job: Job) -> str:
-    """A digest of all that a file says but the checksum itself, of its job and its reference."""
+def _checksum(front: Front, job: Job, document: Any) -> str:
+    """A digest of all that a file says but the checksum itself, of its job and its reference.
+
+    What is newer than the file, and which it does not state, is no part of it.
+    """
     settings = front.record.settings.items()
     others = {name: value for name, value in settings if name != CHECKSUM}
-    as_read = plain(typed(plain(front.restated(settings=others)), Front))
-    for mark in as_read["history"]:
-        if "hypervolume" in mark:  # earlier files state what is not known as well
-            mark.setdefault("quality", None)
-            mark.setdefault("between", None)
+    as_read = typed(plain(front.restated(settings=others)), Front)
+    stated = stated_part(plain(as_read, every=True), document)
     scale = objectives(job.problem.reference().front).tolist()
-    text = json.dumps([job.name, scale, as_read], sort_keys=True)
+    text = json.dumps([job.name, scale, stated], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 

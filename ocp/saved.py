@@ -179,6 +179,30 @@ def _check_file(name: str, path: str, sha256: str) -> None:
         )
 
 
+def read_document(path: str | Path, kind: str) -> Any:
+    """What the JSON of a file says; FileFormatError where it is none."""
+    try:
+        return msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise FileFormatError(
+            f"{path} is not a {kind}: it is not whole, valid JSON in UTF-8 ({error}); "
+            f"write the {kind} again, or save it so"
+        ) from None
+
+
+def stated_part(value: Any, document: Any) -> Any:
+    """The entries of a value in JSON's types that a document has, at any depth.
+
+    A file has none of what is newer than itself.
+    """
+    match value, document:
+        case dict(), dict():
+            return {k: stated_part(v, document[k]) for k, v in value.items() if k in document}
+        case list(), list() if value and type(value[0]) not in _LEAVES:
+            return [stated_part(*pair) for pair in zip(value, document)]
+    return value
+
+
 def content_of(
     path: str | Path, document: Any, name: str, version: int, earlier: Collection[int] = ()
 ) -> dict[str, Any]:
@@ -234,14 +258,9 @@ class Saved:
         FileFormatError
             When the file holds something else, is not whole, or of another version.
         """
-        try:
-            document = msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
-        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-            raise FileFormatError(
-                f"{path} is not a {cls.kind}: it is not whole, valid JSON in UTF-8 ({error}); "
-                f"write the {cls.kind} again, or save it so"
-            ) from None
-        content = content_of(path, document, cls.kind, cls.version, cls.earlier)
+        content = content_of(
+            path, read_document(path, cls.kind), cls.kind, cls.version, cls.earlier
+        )
         try:
             return typed(content, cls)
         except (

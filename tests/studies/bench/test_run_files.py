@@ -1,8 +1,10 @@
 """A run's file is believed if it is what the bench wrote for its job, or evaluated again."""
 
+import hashlib
 import json
 import shutil
 
+import numpy as np
 import pytest
 from bench_problems import NAME
 from quietarm.metaheuristics import Job, finished_jobs, run_jobs
@@ -143,6 +145,23 @@ def test_a_run_of_before_is_evaluated_again(runs, edit, words):
     change(runs, edit, checksum=False)
     with pytest.raises(ValueError, match=f"{words}.*; delete that file, and its run is done again"):
         finished_jobs(JOBS, runs)
+
+
+def test_a_run_is_believed_whatever_is_newer_than_its_file(runs):
+    """Of a file without the task's newest entry, with the digest that such a file had."""
+    before = finished_jobs(JOBS, runs)
+    path = path_of(JOB, runs)
+    document = json.loads(path.read_text())
+    del document["task"]["torque_speed"]
+    says = {name: entry for name, entry in document.items() if name not in ("format", "version")}
+    del says["record"]["settings"][CHECKSUM]
+    reference = JOB.problem.fronts()[0]
+    scale = np.column_stack([reference.residuals, reference.energies]).tolist()
+    text = json.dumps([JOB.name, scale, says], sort_keys=True)
+    digest = hashlib.sha256(text.encode()).hexdigest()[:32]
+    says["record"]["settings"][CHECKSUM] = digest
+    path.write_text(json.dumps(document))
+    assert finished_jobs(JOBS, runs)[JOB].points == before[JOB].points
 
 
 def test_the_command_refuses_a_changed_run_in_one_line(call, runs):
