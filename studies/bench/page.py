@@ -111,7 +111,7 @@ def _heading(indicator: Indicator) -> str:
     return f"{indicator.label} [{indicator.unit}]" if indicator.unit else indicator.label
 
 
-def _medians(table: pd.DataFrame) -> dict[str, float]:
+def _medians(table: Any) -> dict[str, float]:
     """Medians over runs of the indicators beside the hypervolume, by their headings."""
     factor = {"%": 100.0}
     return {

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
+from typing import NamedTuple
 
 import moocore
 import numpy as np
@@ -184,10 +185,8 @@ def compare_fronts(
     corner = scale.ideal + CORNER * (scale.nadir - scale.ideal)
     extent = scale.nadir - scale.ideal
     best = within(best_front, levels)
-    measured = [
-        _measured(name, *of_front, scale, levels, best)
-        for name, *of_front in zip(names, fronts, points, between)
-    ]
+    clouds = map(_Cloud, names, fronts, points, between)
+    measured = [_measured(cloud, scale, levels, best) for cloud in clouds]
     groups = [
         Group(label, tuple(measured[i] for i in members), *_surfaces([points[i] for i in members]))
         for label, members in grouped(fronts).items()
@@ -215,26 +214,28 @@ def _scale_of(known: Array, single: Array) -> Scale:
     return Scale(ideal, ideal + extent, stations, whole=CORNER**2)
 
 
-def _measured(
-    name: str,
-    front: Front,
-    points: Array,
-    between: Array,
-    scale: Scale,
-    levels: Sequence[float],
-    best: Array,
-) -> Measured:
+class _Cloud(NamedTuple):
+    """A front, its points, and these with motions between them where such count."""
+
+    name: str
+    front: Front
+    points: Array
+    between: Array
+
+
+def _measured(cloud: _Cloud, scale: Scale, levels: Sequence[float], best: Array) -> Measured:
     """A front with its figures."""
-    energies = within(points, levels)
+    energies = within(cloud.points, levels)
+    energies_between = within(cloud.between, levels)
     return Measured(
-        name=name,
-        front=front,
-        between=between,
-        scores=scale.scores(between),
-        scores_found=scale.scores(points),
+        name=cloud.name,
+        front=cloud.front,
+        between=cloud.between,
+        scores=scale.scores(cloud.between),
+        scores_found=scale.scores(cloud.points),
         energies=tuple(energies.tolist()),
         gaps=tuple((energies / best - 1).tolist()),
-        gaps_between=tuple((within(between, levels) / best - 1).tolist()),
+        gaps_between=tuple((energies_between / best - 1).tolist()),
     )
 
 
