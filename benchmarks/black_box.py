@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
 from quietarm.metaheuristics import PRESETS
-from quietarm.metaheuristics.quality import CORNER, within
+from quietarm.metaheuristics.score import CORNER, within
 from quietarm.ocp.front.points import LEVELS
 from results_page import BUDGET, SEEDS, differences
 from scipy.stats import mannwhitneyu

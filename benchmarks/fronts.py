@@ -32,7 +32,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.metaheuristics import SearchProgress, search
-from quietarm.metaheuristics.quality import objectives
+from quietarm.metaheuristics.score import objectives
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, epsilon_front, plan_move
 from quietarm.studies.compare.staircase import filled

@@ -19,7 +19,7 @@ from .problems.catalogue import problem_of as problem_of
 from .problems.function import MoveFunction as MoveFunction
 from .problems.pymoo_problem import MoveProblem as MoveProblem
 from .problems.recorded import RecordedFunction as RecordedFunction
-from .quality import Reference as Reference
+from .score import Reference as Reference
 from .search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
 from .search import SearchProgress as SearchProgress
 from .search import search as search

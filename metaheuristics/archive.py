@@ -1,4 +1,4 @@
-"""What a search has found, and what it had found on the way."""
+"""What a search finds: every candidate that none before it dominates, and the effort until then."""
 
 from __future__ import annotations
 
@@ -9,21 +9,23 @@ from importlib import metadata
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.quality import Reference
+from quietarm.metaheuristics.score import share_of_box
+from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, reference_corner
 from quietarm.ocp.cost import COST
-from quietarm.ocp.front.points import LEVELS, evaluated
+from quietarm.ocp.front.points import Entries, evaluated
 from quietarm.ocp.record import Record, Setting, versions
 
 Array = NDArray[np.float64]
+Places = NDArray[np.int64]
 _STEP = 10 ** (1 / 24)
 """Evaluations between neighbouring marks: 24 in a decade, at the ends of generations."""
-MOST_POINTS = 100
-"""Points of a search's front: as many as a population has, whatever archive a method keeps."""
+_BLOCK = 512
+"""Candidates that are compared with each other at once: the pairs of as many fit into the cache."""
 
 
 class Archive:
-    """The feasible candidates that no other dominates, and marks on the way.
+    """The feasible candidates that no earlier one dominates, and marks of the effort.
 
     Parameters
     ----------
@@ -31,56 +33,88 @@ class Archive:
         The move.
     variables : int
         Coefficients of a candidate.
-    reference : Reference, optional
-        The scale of the marks' quality.
     """
 
-    def __init__(
-        self, task: PointToPoint, variables: int, reference: Reference | None = None
-    ) -> None:
-        self.evaluations, self.marks = 0, list[Mark]()
+    def __init__(self, task: PointToPoint, variables: int) -> None:
+        self.evaluations = 0
+        self.marks = list[Mark]()
         self.corner = reference_corner(task)
-        self._reference, self._next = reference, 1.0
-        self._X, self._F = np.empty((0, variables)), np.empty((0, 2))
-        self._waiting: list[tuple[Array, Array]] = []
-        self._began, self._own, self._cost = time.thread_time(), 0.0, COST.copy()
+        self._next_mark = 1.0
+        self._coefficients = np.empty((0, variables))
+        self._objectives = np.empty((0, 2))
+        self._entered = list[tuple[Places, Array, Array]]()
+        self._waiting = list[tuple[Places, Array, Array]]()
+        self._waiting_rows = 0
+        self._began = time.thread_time()
+        self._seconds_here = 0.0
+        self._cost = COST.copy()
 
     @property
     def seconds(self) -> float:
         """Processor time since the beginning, without the archive's and compilation's [s]."""
-        apart = self._own + COST.since(self._cost).builds
+        apart = self._seconds_here + COST.since(self._cost).builds
         return time.thread_time() - self._began - apart
 
-    def non_dominated(self) -> tuple[Array, Array]:
-        """Coefficients and objectives of what was found."""
-        if self._waiting:
-            X = np.vstack([self._X, *(part for part, _ in self._waiting)])
-            F = np.vstack([self._F, *(part for _, part in self._waiting)])
-            kept = np.flatnonzero(moocore.is_nondominated(F))
-            self._X, self._F, self._waiting = X[kept], F[kept], []
-        return self._X, self._F
-
     def add(self, X: Array, F: Array, usable: NDArray[np.bool_]) -> None:
-        """Take evaluated candidates, of which those that are usable count as found."""
-        seconds, began = self.seconds, time.thread_time()
+        """Take evaluated candidates, of which those that are usable may enter."""
+        seconds = self.seconds
+        began = time.thread_time()
+        numbers = self.evaluations + 1 + np.flatnonzero(usable)
         self.evaluations += len(X)
-        if usable.any():
-            self._waiting.append((X[usable].copy(), F[usable].copy()))
-        if self.evaluations >= self._next:
+        if len(numbers):
+            self._waiting.append((numbers, X[usable].copy(), F[usable].copy()))
+            self._waiting_rows += len(numbers)
+        if self._waiting_rows >= _BLOCK:
+            self._let_enter()
+        if self.evaluations >= self._next_mark:
             self.mark(seconds)
-            self._next = max(self.evaluations, 1) * _STEP
-        self._own += time.thread_time() - began
+            self._next_mark = max(self.evaluations, 1) * _STEP
+        self._seconds_here += time.thread_time() - began
+
+    def mark(self, seconds: float) -> None:
+        """Note the effort until now."""
+        self.marks.append(Mark(self.evaluations, seconds=seconds))
+
+    def non_dominated(self) -> tuple[Array, Array]:
+        """Coefficients and objectives of what was found, by increasing residual."""
+        self._let_enter()
+        return self._coefficients, self._objectives
 
     def share_of_box(self) -> float:
         """Share of the reference box that is dominated."""
         return share_of_box(self.non_dominated()[1], self.corner)
 
-    def mark(self, seconds: float) -> None:
-        """Note where the search is."""
-        F = self.non_dominated()[1]
-        points = F[spread(F, MOST_POINTS)]  # as many as its front would have
-        quality = None if self._reference is None else self._reference.quality(points)
-        self.marks.append(Mark(self.evaluations, self.share_of_box(), seconds, quality=quality))
+    @property
+    def entries(self) -> Entries:
+        """Every candidate that entered."""
+        self._let_enter()
+        if not self._entered:
+            return Entries()
+        numbers, coefficients, objectives = (
+            np.concatenate(column).tolist() for column in zip(*self._entered)
+        )
+        residuals, energies = zip(*objectives)
+        return Entries(tuple(numbers), tuple(map(tuple, coefficients)), residuals, energies)
+
+    def _let_enter(self) -> None:
+        """Compare what waits with what entered before, and with what waits before it."""
+        if not self._waiting:
+            return
+        columns = [np.concatenate(column) for column in zip(*self._waiting)]
+        self._waiting = []
+        self._waiting_rows = 0
+        for begin in range(0, len(columns[0]), _BLOCK):
+            numbers, X, F = (column[begin : begin + _BLOCK] for column in columns)
+            rows = entering(self._objectives, F)
+            if not len(rows):
+                continue
+            self._entered.append((numbers[rows], X[rows], F[rows]))
+            X = np.vstack([self._coefficients, X[rows]])
+            F = np.vstack([self._objectives, F[rows]])
+            alive = np.flatnonzero(moocore.is_nondominated(F))
+            alive = alive[np.argsort(F[alive, 0])]
+            self._coefficients = X[alive]
+            self._objectives = F[alive]
 
     def front(
         self,
@@ -94,39 +128,34 @@ class Archive:
         failed: int = 0,
         infeasible: int = 0,
     ) -> Front:
-        """What was found, `MOST_POINTS` of it, by CVODES."""
+        """What was found, at most 100 points of it by CVODES, with every candidate that entered."""
         searched = self.seconds
         if not self.marks or self.marks[-1].evaluations < self.evaluations:
             self.mark(searched)
-        X, F = self.non_dominated()
+        coefficients, objectives = self.non_dominated()
         began = time.thread_time()
-        kept = evaluated(task, profile, X[spread(F, MOST_POINTS)], bound)
+        points = evaluated(task, profile, coefficients[thinned(objectives)], bound).points
         return Front(
-            task, profile, kept.points,
+            task, profile, points,
             Record(method, settings, bound, seed, self.evaluations, versions=search_versions(),
                    seconds=searched + time.thread_time() - began),
             self.corner, failed=failed, infeasible=infeasible, history=tuple(self.marks),
+            entries=self.entries,
         )  # fmt: skip
 
 
-def share_of_box(points: Array, corner: tuple[float, float]) -> float:
-    """Share of the box from zero to a corner that points dominate."""
-    if not len(points):
-        return 0.0
-    return float(moocore.hypervolume(points / corner, ref=[1.0, 1.0]))
+def entering(front: Array, candidates: Array) -> Places:
+    """Rows of candidates, in order, that no point of a front and no earlier row weakly dominates.
 
-
-def spread(points: Array, most: int) -> NDArray[np.int64]:
-    """Places of so many points at even distances along a front, with the best at each level."""
-    order = np.argsort(points[:, 0])
-    if len(order) <= most:
-        return order
-    ordered = points[order] / np.ptp(points, axis=0)
-    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(ordered, axis=0).T)))
-    at = np.searchsorted(along, np.linspace(0.0, along[-1], most - len(LEVELS)))
-    levels = np.searchsorted(points[order, 0], LEVELS, side="right") - 1
-    chosen = np.unique(np.concatenate([at, levels[levels >= 0]]).clip(0, len(order) - 1))
-    return order[chosen]
+    The front's points are in order of residual, shape (n, 2).
+    """
+    below = np.searchsorted(front[:, 0], candidates[:, 0], side="right") - 1
+    least = np.append(front[:, 1], np.inf)[below]  # the last is for those with none below
+    rows = np.flatnonzero(candidates[:, 1] < least)
+    energies = candidates[rows, 1]
+    residuals = candidates[rows, 0]
+    as_good = (residuals <= residuals[:, None]) & (energies <= energies[:, None])
+    return rows[~np.tril(as_good, -1).any(axis=1)]
 
 
 def search_versions() -> dict[str, str]:

@@ -9,8 +9,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from quietarm.metaheuristics.archive import search_versions, share_of_box
-from quietarm.metaheuristics.quality import objectives
+from quietarm.metaheuristics.archive import search_versions
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, epsilon_front, weighted_front
 from quietarm.ocp.checks import has_no, whole
 from quietarm.ocp.cost import COST, Cost
@@ -111,10 +110,9 @@ def polished(front: Front, solver: Solver = Sqp()) -> Front:
 def _with_cost(front: Front, before: Cost, began: float, earlier: float = 0.0) -> Front:
     """The front with a mark of what its gradient cost, on top of its last one."""
     spent, seconds = COST.since(before), time.thread_time() - began
-    last = front.history[-1] if front.history else Mark(0, 0.0)
+    last = front.history[-1] if front.history else Mark(0)
     mark = Mark(
         evaluations=last.evaluations + spent.candidates,
-        hypervolume=share_of_box(objectives(front), front.reference),
         seconds=last.seconds + max(seconds - spent.checks - spent.builds, 0.0),
         gradients=last.gradients + spent.gradients,
         hessians=last.hessians + spent.hessians,

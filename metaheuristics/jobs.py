@@ -22,7 +22,6 @@ from quietarm.metaheuristics.gradient import (
 from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError
-from quietarm.metaheuristics.quality import measured
 from quietarm.metaheuristics.run_files import check_run, sealed
 from quietarm.metaheuristics.search import MOST_EVALUATIONS, search
 from quietarm.ocp import FileFormatError, Front, QuietarmError
@@ -104,22 +103,22 @@ class Job:
         return f"{self.problem.name}/{self.label.replace(':', '-by-')}/{spent}seed{self.seed}"
 
     def run(self) -> Front:
-        """Find the front, with its quality during the run; points by CVODES.
+        """Find the front, with its effort during the run; points by CVODES.
 
-        Its ``settings`` name the problem; its last mark has effort and quality at the end. A
-        ``checksum`` says that the file is as it was written.
+        Its ``settings`` name the problem. A ``checksum`` says that the file is as it was written.
         """
-        reference, digest = self.problem.reference(), _digest_of(self.method)
+        digest = _digest_of(self.method)
+        self.problem.reference()  # refuses a third objective before anything is done
         if (self.problem, self.label) not in _rehearsed:
             self._find(rehearse=True)
             _rehearsed.add((self.problem, self.label))
-        found = measured(self._find(), reference)
-        stated = {"problem": self.problem.name, **found.record.settings}
+        front = self._find()
+        stated = {"problem": self.problem.name, **front.record.settings}
         if self.budget is not None:
             stated["budget"] = self.budget
         if digest:
             stated["digest"] = digest
-        return sealed(found.restated(settings=stated), self)
+        return sealed(front.restated(settings=stated), self)
 
     def _find(self, rehearse: bool = False) -> Front:
         problem, budget, settings = self.problem, self.budget, dict(self.settings)
@@ -145,7 +144,7 @@ class Job:
             return function.front(self.label, self.seed)
         front = search(
             problem.task, algorithm=method, population=population, settings=settings,
-            evaluations=budget, reference=problem.reference(), **asked,
+            evaluations=budget, **asked,
         )  # fmt: skip
         return polished(front, solver_with(options)) if polish else front
 
@@ -245,6 +244,7 @@ def run_jobs(
     scheduler: str | None = None,
     part: tuple[int, int] = (1, 1),
     report: Report = lambda job, front, done, total: None,
+    finished: Mapping[Job, Front] | None = None,
 ) -> dict[Job, Front]:
     """Run the jobs that have no file yet.
 
@@ -265,6 +265,8 @@ def run_jobs(
         Which of how many equal parts of the jobs, as ``(2, 8)`` for every eighth from the second.
     report : callable, optional
         Called after each job that is run.
+    finished : mapping of Job to Front, optional
+        What `finished_jobs` gave for the same jobs and folder, where it is known already.
 
     Returns
     -------
@@ -283,7 +285,8 @@ def run_jobs(
     workers = whole("workers", workers, 1, MOST_WORKERS)
     index, parts = whole("part", part[0], 1, part[1]), whole("parts", part[1], 1)
     _refuse_twice(jobs)
-    done, failures = finished_jobs(jobs, folder), dict[str, str]()
+    done = finished_jobs(jobs, folder) if finished is None else dict(finished)
+    failures = dict[str, str]()
     mine = [job for job in jobs[index - 1 :: parts] if job not in done]
     total, count = len(mine), 0
     for _ in range(2):  # once again what a killed worker left

@@ -6,13 +6,13 @@ import hashlib
 import json
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from quietarm.metaheuristics.algorithms.presets import PRESETS
-from quietarm.metaheuristics.objective.claims import check_figures
-from quietarm.metaheuristics.quality import measured, objectives
-from quietarm.ocp import Front, Mark, Quality
-from quietarm.ocp.saved import plain, typed
+from quietarm.metaheuristics.objective.stated_figures import check_figures
+from quietarm.metaheuristics.score import HYPERVOLUME, filled, objectives
+from quietarm.ocp import Front, Mark
+from quietarm.ocp.saved import plain, read_document, stated_part, typed
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.jobs import Job
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 CHECKSUM = "checksum"
 """The setting of a run's record that has it."""
 _AGAIN = "delete that file, and its run is done again"
-_SAME_QUALITY = 1e-4
-"""Hypervolumes of one front differ by less: it is evaluated with the versions that wrote it."""
+_SAME_HYPERVOLUME = 1e-4
+"""Those of one front differ by less: it is evaluated with the versions that wrote it."""
 
 
 def sealed(front: Front, job: Job) -> Front:
     """The front of a job with its checksum, as it is written."""
-    settings = {**front.record.settings, CHECKSUM: _checksum(front, job)}
+    settings = {**front.record.settings, CHECKSUM: _checksum(front, job, plain(front))}
     return front.restated(settings=settings)
 
 
@@ -38,11 +38,12 @@ def is_sealed(front: Front) -> bool:
 def check_run(front: Front, job: Job, path: Path) -> None:
     """ValueError where a file does not hold what a bench wrote for a job.
 
-    A file without a checksum, of before, is evaluated again: its motions, and its quality at the
-    end. Its effort and what it says of the way there can only be consistent.
+    A file without a checksum, of before, is evaluated again: its motions, and what it states of
+    its quality at the end. Its effort and what it says of the way there can only be consistent.
     """
     if is_sealed(front):
-        if front.record.settings[CHECKSUM] != _checksum(front, job):
+        document = read_document(path, Front.kind)
+        if front.record.settings[CHECKSUM] != _checksum(front, job, document):
             raise ValueError(
                 f"{path} is not what a bench wrote for {job.label}, seed {job.seed}: it was "
                 "changed, is another run's, or was measured against another reference front; "
@@ -55,13 +56,17 @@ def check_run(front: Front, job: Job, path: Path) -> None:
         raise ValueError(f"{path} {difference}; {_AGAIN}")
 
 
-def _checksum(front: Front, job: Job) -> str:
-    """A digest of all that a file says but the checksum itself, of its job and its reference."""
+def _checksum(front: Front, job: Job, document: Any) -> str:
+    """A digest of all that a file says but the checksum itself, of its job and its reference.
+
+    What is newer than the file, and which it does not state, is no part of it.
+    """
     settings = front.record.settings.items()
     others = {name: value for name, value in settings if name != CHECKSUM}
     as_read = typed(plain(front.restated(settings=others)), Front)
+    stated = stated_part(plain(as_read, every=True), document)
     scale = objectives(job.problem.reference().front).tolist()
-    text = json.dumps([job.name, scale, plain(as_read)], sort_keys=True)
+    text = json.dumps([job.name, scale, stated], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
@@ -89,34 +94,29 @@ def _different_job(front: Front, job: Job) -> str:
 
 
 def _different_end(front: Front, job: Job) -> str:
-    """What the last mark says of its points that is not so."""
+    """What the last mark says of its points that is not so; a mark of today says nothing."""
     if not front.history:
         return "says nothing of its cost"
-    stated, gives = (run.history[-1] for run in (front, measured(front, job.problem.reference())))
-    for what, one, other in (
-        ("its points", stated.quality, gives.quality),
-        ("its points with motions between", stated.between, gives.between),
+    last = front.history[-1]
+    scale = job.problem.reference()
+    for what, quality, points in (
+        ("its points", last.quality, objectives),
+        ("its points with motions between", last.between, filled),
     ):
-        if not _same_quality(one, other):
+        if quality is None:
+            continue
+        share = scale.score(points(front), HYPERVOLUME)
+        if not abs(quality.hypervolume - share) <= _SAME_HYPERVOLUME:
             return (
-                f"states a hypervolume of {_share(one)} for {what}, and they have {_share(other)}"
+                f"states a hypervolume of {quality.hypervolume:.4f} for {what}, and they have "
+                f"{share:.4f}"
             )
     return ""
 
 
-def _same_quality(one: Quality | None, other: Quality | None) -> bool:
-    if one is None or other is None:
-        return one is other
-    return abs(one.hypervolume - other.hypervolume) <= _SAME_QUALITY
-
-
-def _share(quality: Quality | None) -> str:
-    return "none" if quality is None else f"{quality.hypervolume:.4f}"
-
-
 def _disorder(front: Front, job: Job) -> str:
     """What cannot be of the effort that a file states."""
-    first = Mark(0, 0.0)
+    first = Mark(0)
     for before, after in pairwise((first, *front.history)):
         for name in ("evaluations", "seconds", "gradients", "hessians"):
             if getattr(after, name) < getattr(before, name):

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from pymoo.core.algorithm import Algorithm
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
-    from quietarm.metaheuristics.quality import Reference
 
 MOST_INDIVIDUALS, MOST_GENERATIONS, MOST_EVALUATIONS = 100_000, 1_000_000, 1_000_000_000
 SECONDS_OF_CANDIDATE = 5e-5
@@ -73,7 +72,6 @@ def search(
     seed: int = 0,
     threads: int = 1,
     start: Front | None = None,
-    reference: Reference | None = None,
     report: Callable[[SearchProgress], None] | None = None,
 ) -> Front:
     """Search the trade-off between residual and energy without derivatives.
@@ -105,8 +103,6 @@ def search(
         Blocks of the population that are evaluated at the same time.
     start : Front, optional
         Its points are in the first population, as many as that holds.
-    reference : Reference, optional
-        Scale of the quality during the search, as in jobs.
     report : callable, optional
         Called with a `SearchProgress` after every generation.
 
@@ -152,9 +148,8 @@ def search(
         )
     seed = whole("seed", seed, 0)
     function = RecordedFunction(
-        task, profile, bound=bound, threads=threads, reference=reference,
-        budget=evaluations or inf,
-    )  # fmt: skip
+        task, profile, bound=bound, threads=threads, budget=evaluations or inf
+    )
     first = _starts(start, function) if start is not None else np.empty((0, profile.size))
     # a division by a distance of zero is of no concern to a user; and pymoo's NSGA-III leaves all
     # warnings of the process switched off

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from quietarm.metaheuristics.score import final_share_of_box
 from quietarm.metaheuristics.search import SEARCH_RESIDUAL
 from quietarm.ocp import Front
 
@@ -40,7 +41,7 @@ class Spread:
 
 def hypervolumes(fronts: Sequence[Front]) -> Spread:
     """Quartiles of the final hypervolume, as a share of the reference box."""
-    return Spread.of([front.history[-1].hypervolume if front.history else 0.0 for front in fronts])
+    return Spread.of([final_share_of_box(front) for front in fronts])
 
 
 def energies_at(fronts: Sequence[Front], residual_limit: float = SEARCH_RESIDUAL) -> Spread:

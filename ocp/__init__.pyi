@@ -19,7 +19,6 @@ from .front.front import reference_corner as reference_corner
 from .front.points import FailedPoint as FailedPoint
 from .front.points import FrontPoint as FrontPoint
 from .front.points import Mark as Mark
-from .front.points import Quality as Quality
 from .front.points import non_dominated as non_dominated
 from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish

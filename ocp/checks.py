@@ -19,6 +19,8 @@ from msgspec import Meta
 T = TypeVar("T")
 P = ParamSpec("P")
 R = TypeVar("R")
+IF_STATED: Mapping[str, bool] = {"if_stated": True}
+"""Metadata of a field that a file has only where it states something, as earlier files may."""
 
 
 def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:

@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import json
 from codecs import BOM_UTF8
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 from enum import Enum
 from html import escape
@@ -43,33 +43,58 @@ CHECKSUM = "checksum"
 """Entry of an answer's file: a digest of all the others."""
 _NO_NUMBERS = ("NaN", "Infinity", "-Infinity")
 """What Python's json writes of numbers that are none; JSON has no such words."""
+_LEAVES = frozenset({float, int, str, bool, type(None)})
+"""Of JSON, and as they are."""
 _SHOWN = 12
 """Digits of a digest that a message shows."""
 
 
-def plain(value: Any) -> Any:
-    """A value in JSON's types, SI units and radians."""
+def plain(value: Any, every: bool = False) -> Any:
+    """A value in JSON's types, SI units and radians.
+
+    Fields that are `IF_STATED` are left out where they have nothing, unless `every` one is wanted.
+    """
+    if type(value) in _LEAVES:
+        return value
     match value:
         case Plant() | JointProfile() | Energy():
-            return _named(value) | _entries(value)
+            return _named(value) | _entries(value, every)
         case Enum():
             return value.value
         case Mapping():
-            return {name: plain(entry) for name, entry in value.items()}
+            return {name: plain(entry, every) for name, entry in value.items()}
         case np.ndarray() | np.generic():
             return value.tolist()
         case float():
             return float(value)  # also of a class of its own, as a default window
         case list() | tuple():
-            return [plain(entry) for entry in value]
+            # most entries are numbers, of which a file may have ten thousands
+            return [entry if type(entry) in _LEAVES else plain(entry, every) for entry in value]
         case _ if dataclasses.is_dataclass(value):
-            return _entries(value)
+            return _entries(value, every)
     return value
 
 
-def _entries(value: Any) -> dict[str, Any]:
-    fields = dataclasses.fields(value)
-    return {entry.name: plain(getattr(value, entry.name)) for entry in fields if entry.init}
+def _entries(value: Any, every: bool) -> dict[str, Any]:
+    return {
+        entry.name: plain(getattr(value, entry.name), every)
+        for entry in dataclasses.fields(value)
+        if entry.init and (every or _has_something(value, entry))
+    }
+
+
+def _may_be_missing(value: Any) -> set[str]:
+    """The entries that a file has only where they say something."""
+    return {entry.name for entry in dataclasses.fields(value) if "if_stated" in entry.metadata}
+
+
+def _has_something(value: Any, entry: dataclasses.Field[Any]) -> bool:
+    """Whether a field is always written, or says more than its default."""
+    if "if_stated" not in entry.metadata:
+        return True
+    content = getattr(value, entry.name)
+    factory = entry.default_factory
+    return content != (entry.default if factory is dataclasses.MISSING else factory())
 
 
 def _known_of(family: type[Any]) -> Mapping[str, type[Any]]:
@@ -101,9 +126,10 @@ def typed(document: Any, kind: type[T]) -> T:
         value = msgspec.convert(document, kind, dec_hook=_known_here)
     except msgspec.ValidationError as error:
         raise ValueError(str(error)) from None
-    wanted = plain(value)
-    odd = _unknown(document, wanted)
-    odd |= wanted.keys() - document.keys() if isinstance(document, dict) else set()
+    whole = plain(value, every=True)
+    odd = _unknown(document, whole)
+    if isinstance(document, dict):
+        odd |= whole.keys() - _may_be_missing(value) - document.keys()
     if odd:
         raise ValueError(f"entries that are missing, or not known here: {', '.join(sorted(odd))}")
     return value
@@ -115,7 +141,7 @@ def _unknown(document: Any, known: Any) -> set[str]:
         case dict(), dict():
             inner = (_unknown(document[name], known[name]) for name in document.keys() & known)
             return (document.keys() - known.keys()).union(*inner)
-        case list(), list():
+        case list(), list() if document and type(document[0]) not in _LEAVES:
             return set().union(*map(_unknown, document, known))
     return set()
 
@@ -156,7 +182,38 @@ def _check_file(name: str, path: str, sha256: str) -> None:
         )
 
 
-def content_of(path: str | Path, document: Any, name: str, version: int) -> dict[str, Any]:
+def read_document(path: str | Path, kind: str) -> Any:
+    """What the JSON of a file says; FileFormatError where it is none."""
+    try:
+        return msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        if odd := _no_json_number(path):
+            raise FileFormatError(
+                f"{path} is not a valid {kind}: {odd}, which is no number of JSON; write the "
+                f"{kind} again"
+            ) from None
+        raise FileFormatError(
+            f"{path} is not a {kind}: it is not whole, valid JSON in UTF-8 ({error}); "
+            f"write the {kind} again, or save it so"
+        ) from None
+
+
+def stated_part(value: Any, document: Any) -> Any:
+    """The entries of a value in JSON's types that a document has, at any depth.
+
+    A file has none of what is newer than itself.
+    """
+    match value, document:
+        case dict(), dict():
+            return {k: stated_part(v, document[k]) for k, v in value.items() if k in document}
+        case list(), list() if value and type(value[0]) not in _LEAVES:
+            return [stated_part(*pair) for pair in zip(value, document)]
+    return value
+
+
+def content_of(
+    path: str | Path, document: Any, name: str, version: int, earlier: Collection[int] = ()
+) -> dict[str, Any]:
     """What a document holds beside its format and version, which are checked."""
     content = dict(document) if isinstance(document, dict) else {}
     content.pop(CHECKSUM, None)
@@ -165,27 +222,12 @@ def content_of(path: str | Path, document: Any, name: str, version: int) -> dict
         raise FileFormatError(
             f"{path} is not a {name}: its format is {its_name!r}; give a {name} file"
         )
-    if its_version != version:
+    if its_version not in (version, *earlier):
         raise FileFormatError(
             f"{path} has version {its_version!r} of the {name} format and this quietarm reads "
             f"{version}; find the {name} again, or install the quietarm that wrote it"
         )
     return content
-
-
-def _document_of(path: str | Path, name: str) -> Any:
-    try:
-        return msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        if odd := _no_json_number(path):
-            raise FileFormatError(
-                f"{path} is not a valid {name}: {odd}, which is no number of JSON; write the "
-                f"{name} again"
-            ) from None
-        raise FileFormatError(
-            f"{path} is not a {name}: it is not whole, valid JSON in UTF-8 ({error}); "
-            f"write the {name} again, or save it so"
-        ) from None
 
 
 def _no_json_number(path: str | Path) -> str:
@@ -207,7 +249,7 @@ def keeps_checksum(path: str | Path, name: str) -> bool | None:
     It tells changes of what no evaluation tells: candidates, iterations, time, method. Whoever
     computes the checksum again can write what they like.
     """
-    document = _document_of(path, name)
+    document = read_document(path, name)
     stated = document.get(CHECKSUM)
     return None if stated is None else stated == _checksum_of(document)
 
@@ -229,6 +271,17 @@ def _with_whole_numbers(entry: Any) -> Any:
         case list():
             return [_with_whole_numbers(value) for value in entry]
     return entry
+def _indented(document: Any, margin: str = "\n") -> str:
+    """A document as JSON of one entry a line; a list of numbers or texts stands on one."""
+    inner = f"{margin}  "
+    match document:
+        case dict() if document:
+            entries = (f"{json.dumps(k)}: {_indented(v, inner)}" for k, v in document.items())
+            return f"{{{inner}{f',{inner}'.join(entries)}{margin}}}"
+        case list() if document and not all(type(entry) in _LEAVES for entry in document):
+            entries = (_indented(entry, inner) for entry in document)
+            return f"[{inner}{f',{inner}'.join(entries)}{margin}]"
+    return json.dumps(document, allow_nan=False)
 
 
 class Saved:
@@ -237,11 +290,13 @@ class Saved:
     kind: ClassVar[str]
     """What it is, in a word; its format is named quietarm-<kind>."""
     version: ClassVar[int]
-    """Version of its format; files of any other are refused."""
+    """Version of its format, as it is written."""
+    earlier: ClassVar[tuple[int, ...]] = ()
+    """Versions that are read as well; files of any other are refused."""
 
     def save(self, path: str | Path) -> None:
         """Write the answer as JSON, whole or not at all; ValueError where that cannot be."""
-        write_whole(path, json.dumps(self._document(), indent=2, allow_nan=False) + "\n")
+        write_whole(path, _indented(self._document()) + "\n")
 
     def _document(self) -> dict[str, Any]:
         return {"format": f"quietarm-{self.kind}", "version": self.version, **plain(self)}
@@ -255,7 +310,9 @@ class Saved:
         FileFormatError
             When the file holds something else, is not whole, or of another version.
         """
-        content = content_of(path, _document_of(path, cls.kind), cls.kind, cls.version)
+        content = content_of(
+            path, read_document(path, cls.kind), cls.kind, cls.version, cls.earlier
+        )
         try:
             return typed(content, cls)
         except (

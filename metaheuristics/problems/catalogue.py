@@ -33,7 +33,7 @@ from quietarm.ocp.window import EQ_11
 if TYPE_CHECKING:
     from quietarm.metaheuristics.problems.pymoo_problem import MoveProblem
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
-    from quietarm.metaheuristics.quality import Reference
+    from quietarm.metaheuristics.score import Reference
 
 FRONTS = Path(__file__).parent / "fronts"
 """The reference fronts, in a folder for each plant, where a problem with several has one of its
@@ -158,10 +158,10 @@ class NamedProblem:
         """
         from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
+        self.reference()  # refuses a third objective
         return RecordedFunction(
-            self.task, self.profile, bound=self.bound, reference=self.reference(), budget=budget,
-            problem=self.name,
-        )  # fmt: skip
+            self.task, self.profile, bound=self.bound, budget=budget, problem=self.name
+        )
 
     @property
     def _folder(self) -> Path:
@@ -196,7 +196,7 @@ def _loaded(path: Path) -> Front:
 
 @lru_cache(maxsize=64)
 def _scale(front: Front) -> Reference:
-    from quietarm.metaheuristics.quality import Reference
+    from quietarm.metaheuristics.score import Reference
 
     return Reference(front)
 

@@ -5,21 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.archive import Archive
 from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
-from quietarm.metaheuristics.quality import measured
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import takes, whole
 from quietarm.ocp.front.points import beyond, table_of
 from quietarm.ocp.record import Setting
-
-if TYPE_CHECKING:
-    from quietarm.metaheuristics.quality import Reference
 
 Array = NDArray[np.float64]
 
@@ -29,7 +25,7 @@ class BudgetSpentError(Exception):
 
 
 class RecordedFunction(MoveFunction):
-    """A move's function that records non-dominated candidates, and quality during the run.
+    """A move's function that records every candidate that no earlier one dominates.
 
     It has the accuracy of all searches.
 
@@ -37,12 +33,10 @@ class RecordedFunction(MoveFunction):
     ----------
     task, profile, bound, threads
         As of a `MoveFunction`.
-    reference : Reference, optional
-        Scale of the marks' quality.
     budget : float
         Candidates in all: the last call is cut short, and raises `BudgetSpentError`.
     problem : str
-        Name of the problem, which a front then states, with its quality at the end.
+        Name of the problem, which a front then states.
 
     Attributes
     ----------
@@ -58,14 +52,13 @@ class RecordedFunction(MoveFunction):
         *,
         bound: float | None = None,
         threads: int = 1,
-        reference: Reference | None = None,
         budget: float = inf,
         problem: str = "",
     ) -> None:
         super().__init__(task, profile, bound=bound, threads=threads)
         self.budget = budget if budget == inf else whole("budget", budget, 1)
-        self.reference, self.problem = reference, problem
-        self.archive = Archive(task, len(self.variables), reference)
+        self.problem = problem
+        self.archive = Archive(task, len(self.variables))
         self.failed, self.infeasible = 0, 0
 
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
@@ -102,11 +95,10 @@ class RecordedFunction(MoveFunction):
         stated: dict[str, Any] = dict(settings or {})
         if self.problem:
             stated["problem"] = self.problem
-        found = self.archive.front(
+        return self.archive.front(
             self.task, self.profile, method=method, settings=stated, bound=self.bound, seed=seed,
             failed=self.failed, infeasible=self.infeasible,
         )  # fmt: skip
-        return measured(found, self.reference) if self.problem and self.reference else found
 
     def save(self, path: str | Path, method: str, seed: int | None = None) -> None:
         """Write the run as a file for ``quietarm bench --import``; arguments as for `front`."""

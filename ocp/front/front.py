@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import Count, NotNegative, Positive, not_negative, takes, whole
+from quietarm.ocp.checks import (
+    IF_STATED,
+    Count,
+    NotNegative,
+    Positive,
+    not_negative,
+    takes,
+    whole,
+)
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import (
+    Entries,
     FailedPoint,
     FrontPoint,
     Mark,
@@ -60,7 +69,9 @@ class Front(Answer):
     gaps : tuple of (float, float)
         Ranges of the residual [m] in which a weighted sum has no point for any weight.
     history : tuple of Mark
-        Its quality during the run, the end last.
+        Its effort during the run, the end last.
+    entries : Entries
+        Of a search, every candidate that no earlier one dominated.
 
     Raises
     ------
@@ -71,7 +82,8 @@ class Front(Answer):
 
     example: ClassVar[str] = "a front, as Front.load('front.json')"
     kind: ClassVar[str] = "front"
-    version: ClassVar[int] = 4
+    version: ClassVar[int] = 5
+    earlier: ClassVar[tuple[int, ...]] = (4,)
 
     task: PointToPoint
     profile: JointProfile
@@ -83,6 +95,7 @@ class Front(Answer):
     failures: tuple[FailedPoint, ...] = ()
     gaps: tuple[tuple[NotNegative, NotNegative], ...] = ()
     history: tuple[Mark, ...] = ()
+    entries: Entries = field(default_factory=Entries, metadata=IF_STATED)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", tuple(self.points))

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import reprlib
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import Count, NotNegative, Share, positive
+from quietarm.ocp.checks import IF_STATED, Count, CountFromOne, NotNegative, Share, positive
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import PointToPoint
@@ -63,7 +65,7 @@ class FailedPoint:
 
 @dataclass(frozen=True)
 class Quality:
-    """How close points are to the reference front of their problem.
+    """Figures that a mark of an earlier file states; today they are computed from the points.
 
     All are scaled: 0 is the reference front's least and 1 its largest value of each objective.
 
@@ -85,31 +87,68 @@ class Quality:
 
 @dataclass(frozen=True)
 class Mark:
-    """Quality and effort of a method at one moment.
+    """Effort of a method at one moment.
 
     Attributes
     ----------
     evaluations : int
         Candidates simulated so far.
-    hypervolume : float
-        Share of the reference box (`Front.reference`) that the points found dominate.
+    hypervolume : float or None
+        Share of the reference box (`Front.reference`) that the points found dominate, as an earlier
+        file states it; None where it is computed from the entries or the points.
     seconds : float
         Processor time so far, without first builds and without checks [s].
     gradients, hessians : int
         Motions simulated with first and with second derivatives.
-    quality : Quality or None
-        Of the points; None without a reference front, or without a point.
-    between : Quality or None
-        The same with motions between neighbouring points; only at the end.
+    quality, between : Quality or None
+        As an earlier file states them: of the points; with motions between neighbouring points.
     """
 
     evaluations: Count
-    hypervolume: Share
+    hypervolume: Share | None = field(default=None, metadata=IF_STATED)
     seconds: NotNegative = field(default=0.0, compare=False)
     gradients: Count = 0
     hessians: Count = 0
-    quality: Quality | None = None
-    between: Quality | None = None
+    quality: Quality | None = field(default=None, metadata=IF_STATED)
+    between: Quality | None = field(default=None, metadata=IF_STATED)
+
+
+@dataclass(frozen=True)
+class Entries:
+    """The candidates of a search that no earlier one dominated, in the order of their evaluation.
+
+    What a search had found at any moment follows from them. ValueError where the columns are not of
+    one length, or the numbers do not rise from 1 or later.
+
+    Attributes
+    ----------
+    candidates : tuple of int
+        Their numbers, from 1.
+    coefficients : tuple of tuple of float
+        The profile's coefficients of each.
+    residuals, energies : tuple of float
+        F1 [m] and F2 [J] at the steps of the search.
+    """
+
+    candidates: tuple[CountFromOne, ...] = ()
+    coefficients: tuple[tuple[float, ...], ...] = ()
+    residuals: tuple[NotNegative, ...] = ()
+    energies: tuple[NotNegative, ...] = ()
+
+    def __post_init__(self) -> None:
+        lengths = {len(self.coefficients), len(self.residuals), len(self.energies)}
+        if lengths != {len(self.candidates)}:
+            raise ValueError("its entries have columns of several lengths")
+        if any(later <= number for number, later in pairwise(self.candidates)):
+            raise ValueError("the numbers of its entries do not rise")
+
+    def __len__(self) -> int:
+        return len(self.candidates)
+
+    def objectives(self, evaluations: int | None = None) -> NDArray[np.float64]:
+        """Residuals [m] and energies [J], shape (n, 2), of those among so many candidates."""
+        count = len(self) if evaluations is None else bisect_right(self.candidates, evaluations)
+        return np.column_stack([self.residuals[:count], self.energies[:count]])
 
 
 def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:

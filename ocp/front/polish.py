@@ -94,7 +94,7 @@ def polish_front(
     found, record = [one for own in tried for one in own], front.record
     polished = curve.to_front("polish", found, len(front.points), time.perf_counter() - began)
     polished = replace(
-        polished, reference=front.reference, history=front.history,
+        polished, reference=front.reference, history=front.history, entries=front.entries,
         record=replace(
             record, method=f"{record.method}, polished",
             settings={**record.settings, **_stated(solver), "steps": curve.transcription.steps},

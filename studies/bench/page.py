@@ -10,10 +10,17 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from quietarm.metaheuristics.objective.population import ACCURACY
-from quietarm.metaheuristics.quality import CORNER
+from quietarm.metaheuristics.score import HYPERVOLUME, INDICATORS, Indicator
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.bench.figures import curves_figure, profiles_figure, ranks_figure
-from quietarm.studies.bench.results import ENERGIES, Results, bench_label, quartiles
+from quietarm.studies.bench.results import (
+    ENERGIES,
+    MISSING,
+    Results,
+    bench_label,
+    column_of,
+    quartiles,
+)
 from quietarm.studies.bench.statistics import (
     kruskal_on,
     moves_of,
@@ -27,8 +34,7 @@ from quietarm.studies.report.words import window_words
 
 SHOWN_TARGET = 0.1
 """Share of the hypervolume missing to which tables give the expected running time."""
-_TESTED = ("missing", "energy_1mm")
-"""Columns of the runs that pairs of methods are tested on."""
+_ENERGY = "energy_1mm"
 _STILL = f"within {1e3 * LEVELS[0]:g} mm"
 """How many runs have so small a residual."""
 _COST = ("evaluations", "gradients", "hessians", "seconds")
@@ -43,7 +49,7 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
     ranking = ranking_over(results)
     pairs = pd.concat([
         pd.DataFrame({"problem": name, "measure": measure} | dict(pairs_on(results, name, measure)))
-        for name in problems for measure in _TESTED
+        for name in problems for measure in compared_columns()
     ], ignore_index=True)  # fmt: skip
     of_problem = {name: problem_table(results, name) for name in problems}
     tables = {
@@ -68,12 +74,19 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "methods": [bench_label(m) for m in results.methods],
         "power": say_power_of((run.problem.name, run.method) for run in results.runs),
         "ranking": ranking,
-        "label_of": bench_label, "corner": CORNER, "accuracy": ACCURACY,
+        "label_of": bench_label, "accuracy": ACCURACY, "indicators": INDICATORS,
         "target": f"{100 * SHOWN_TARGET:g}", "moves": len(moves_of(results.problems)),
         "verdicts": {name: verdict_on(results, name) for name in problems},
-        "on_energy": {name: verdict_on(results, name, "energy_1mm") for name in problems},
+        "by_indicator": {
+            name: {
+                indicator.label: verdict_on(results, name, column_of(indicator))
+                for indicator in _others()
+            }
+            for name in problems
+        },
+        "on_energy": {name: verdict_on(results, name, _ENERGY) for name in problems},
         "windows": _windows(results),
-        "energy_ranking": ranking_over(results, "energy_1mm"),
+        "energy_ranking": ranking_over(results, _ENERGY),
         "kruskal": {name: kruskal_on(results, name) for name in problems},
         "repeated": _repeated(results),
         "copies": [run.label for run in results.copies],
@@ -82,6 +95,30 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
     }  # fmt: skip
     return Report(template, values, tables, figures)
+
+
+def compared_columns() -> list[str]:
+    """Columns of the runs that pairs of methods are tested on: every indicator, and the energy."""
+    return [*map(column_of, INDICATORS.values()), _ENERGY]
+
+
+def _others() -> list[Indicator]:
+    """The indicators beside the hypervolume, which ranks methods and has a column of its own."""
+    return [indicator for indicator in INDICATORS.values() if indicator is not HYPERVOLUME]
+
+
+def _heading(indicator: Indicator) -> str:
+    return f"{indicator.label} [{indicator.unit}]" if indicator.unit else indicator.label
+
+
+def _medians(table: Any) -> dict[str, float]:
+    """Medians over runs of the indicators beside the hypervolume, by their headings."""
+    factor = {"%": 100.0}
+    return {
+        _heading(indicator):
+            factor.get(indicator.unit, 1.0) * quartiles(table[column_of(indicator)])[1]
+        for indicator in _others()
+    }  # fmt: skip
 
 
 def reported_runs(folder: Path) -> pd.DataFrame | None:
@@ -169,7 +206,7 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
     rows = []
     table = results.table[results.table["problem"] == problem]
     for method, own in table.groupby("method"):
-        low, middle, high = (100 * one for one in quartiles(own["missing"]))
+        low, middle, high = (100 * share for share in quartiles(own[MISSING]))
         time = results.expected_running_time(problem, str(method), SHOWN_TARGET)
         spent = {name: quartiles(own[name])[1] for name in _COST}
         still = np.isfinite(np.asarray(own[ENERGIES[0]], dtype=float))
@@ -177,7 +214,7 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
             "method": bench_label(str(method)), "runs": len(own),
             "missing [%]": middle, "quartiles [%]": f"{low:.3g} to {high:.3g}",
             "with motions between [%]": 100 * quartiles(own["missing_between"])[1],
-            "IGD+": quartiles(own["igd_plus"])[1], "epsilon": quartiles(own["epsilon"])[1],
+            **_medians(own),
             "energy above at 1 mm [%]": 100 * quartiles(own["energy_1mm"])[1],
             _STILL: f"{np.count_nonzero(still)} of {len(own)}",
             f"to {100 * SHOWN_TARGET:g} % [s]": interval_words(*time),
@@ -197,14 +234,14 @@ def summary_table(results: Results) -> pd.DataFrame:
     """Every method over all problems: medians over problems of the medians over runs."""
     rows = []
     for method, own in results.table.groupby("method"):
-        medians = own.groupby("problem")[["missing", "missing_between", "energy_1mm", *_COST]].agg(
-            lambda column: quartiles(column)[1]
-        )
+        columns = [*map(column_of, INDICATORS.values()), "missing_between", _ENERGY, *_COST]
+        medians = own.groupby("problem")[columns].agg(lambda column: quartiles(column)[1])
         over = {name: quartiles(medians[name])[1] for name in medians}
         rows.append({
             "method": bench_label(str(method)), "problems": len(medians), "runs": len(own),
-            "missing [%]": 100 * over["missing"],
+            "missing [%]": 100 * over[MISSING],
             "with motions between [%]": 100 * over["missing_between"],
+            **_medians(medians),
             "energy above at 1 mm [%]": 100 * over["energy_1mm"],
             f"{_STILL} [%]": 100 * float(np.mean(np.isfinite(own[ENERGIES[0]]))),
             "candidates": over["evaluations"], "gradients": over["gradients"],

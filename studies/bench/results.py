@@ -1,4 +1,4 @@
-"""The runs of a bench, and what they say: quality and cost at the end and on the way."""
+"""The runs of a bench, and what they say: indicators and cost at the end and on the way."""
 
 from __future__ import annotations
 
@@ -12,11 +12,18 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics import Job, NamedProblem
-from quietarm.metaheuristics.quality import measured, objectives
 from quietarm.metaheuristics.run_files import is_sealed
+from quietarm.metaheuristics.score import (
+    HYPERVOLUME,
+    INDICATORS,
+    Indicator,
+    filled,
+    objectives,
+    scores_on_the_way,
+)
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front
-from quietarm.ocp.front.points import LEVELS, beyond
+from quietarm.ocp.front.points import LEVELS, Entries, beyond
 from quietarm.studies.bench.running_times import (
     History,
     expected_running_time,
@@ -29,6 +36,8 @@ from quietarm.studies.report.methods import is_gradient, label_of, unpolished
 Array = NDArray[np.float64]
 ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
 """Columns of energies within these residuals."""
+MISSING = "missing"
+"""Column of the hypervolume that a run lacks, which a bench ranks methods by."""
 _SAME_FRONT = 1e-5
 """Points of two fronts, scaled to the reference front, that differ by no more are the same: nearer
 the reference fronts are not known."""
@@ -74,14 +83,26 @@ class Run:
     @cached_property
     def history(self) -> History:
         """What it lacked of the reference front's hypervolume, and had cost, at each mark."""
+        return self.history_of(HYPERVOLUME)
+
+    def history_of(self, indicator: Indicator) -> History:
+        """What it lacked by an indicator, and had cost, at each mark."""
         marks = self.front.history
+        scores = scores_on_the_way(self.front, self.problem.reference(), indicator)
         counts_candidates = derivative_free(self.method)
-        columns = (
-            [_missing(mark.quality) for mark in marks],
-            [mark.seconds for mark in marks],
-            [mark.evaluations if counts_candidates else np.nan for mark in marks],
-        )
-        return History(*(np.array(column, dtype=float) for column in columns))
+        seconds = [mark.seconds for mark in marks]
+        evaluations = [mark.evaluations if counts_candidates else np.nan for mark in marks]
+        return History(lacking(scores, indicator), np.array(seconds), np.array(evaluations, float))
+
+    @cached_property
+    def scores(self) -> dict[str, float]:
+        """Every indicator of its points, by name."""
+        return self.problem.reference().scores(objectives(self.front))
+
+    @cached_property
+    def scores_between(self) -> dict[str, float]:
+        """The same with motions between its points."""
+        return self.problem.reference().scores(filled(self.front))
 
 
 class Results:
@@ -133,9 +154,10 @@ class Results:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """Every run, a row: quality of its points and with motions between, and its cost.
+        """Every run, a row: indicators of its points and with motions between, and its cost.
 
-        ``missing`` is the share of the reference front's hypervolume that a run lacks; ``energy_``
+        Of every indicator less is better: ``missing`` is the share of the reference front's
+        hypervolume that a run lacks, and there is a column for each of the others; ``energy_``
         columns are energies within a residual above the reference front's, as shares, NaN where the
         run has none; seconds are processor time, ``seconds`` of the search alone, ``all_seconds``
         with builds and checks.
@@ -167,9 +189,14 @@ class Results:
     def _repeated(self) -> frozenset[tuple[str, str]]:
         return frozenset(group for group, runs in self._groups.items() if _is_one_front(runs))
 
-    def histories(self, problem: str, method: str) -> list[History]:
-        """Those of the runs of a method on a problem."""
-        return [run.history for run in self.of(problem, method)]
+    def histories(
+        self, problem: str, method: str, indicator: Indicator = HYPERVOLUME
+    ) -> list[History]:
+        """Those of the runs of a method on a problem, by the hypervolume or another indicator."""
+        runs = self.of(problem, method)
+        if indicator is HYPERVOLUME:
+            return [run.history for run in runs]
+        return [run.history_of(indicator) for run in runs]
 
     def missing(self, problem: str, method: str, by: str = "seconds") -> tuple[Array, Array]:
         """Where the missing share changes, in processor seconds or evaluations, for every run.
@@ -196,10 +223,15 @@ class Results:
         return hits(self.histories(problem, method), targets, by)
 
     def expected_running_time(
-        self, problem: str, method: str, target: float, by: str = "seconds"
+        self,
+        problem: str,
+        method: str,
+        target: float,
+        by: str = "seconds",
+        indicator: Indicator = HYPERVOLUME,
     ) -> tuple[float, float, float]:
         """The time and its interval, as `running_times.expected_running_time`."""
-        return expected_running_time(self.histories(problem, method), target, by)
+        return expected_running_time(self.histories(problem, method, indicator), target, by)
 
     @cached_property
     def running_times(self) -> pd.DataFrame:
@@ -253,8 +285,8 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
             raise ValueError(f"a run of {method} is of another move than {name}")
         if front.record.bound != problem.bound:
             _refuse_beyond(front, problem)
-            front = replace(front, history=front.history[-1:])
-        runs.append(Run(problem, method, measured(front, problem.reference()), imported=True))
+            front = replace(front, history=front.history[-1:], entries=Entries())
+        runs.append(Run(problem, method, front, imported=True))
     return runs
 
 
@@ -292,11 +324,19 @@ def _method(job: Job, several: set[str]) -> str:
     return job.label if plain else f"{job.label}(budget={job.budget})"
 
 
-def _missing(quality: Any) -> float:
-    return 1.0 if quality is None else 1.0 - quality.hypervolume
+def lacking(scores: Any, indicator: Indicator) -> Any:
+    """What scores lack to the best that there is: 1 where more is better, else 0."""
+    return 1.0 - scores if indicator.more_is_better else scores
 
 
-def _told_apart(share: float) -> float:
+def column_of(indicator: Indicator) -> str:
+    """What an indicator lacks is called so in tables."""
+    if indicator is HYPERVOLUME:
+        return MISSING
+    return f"missing_{indicator.name}" if indicator.more_is_better else indicator.name
+
+
+def told_apart(share: float) -> float:
     """A share to the accuracy of a front, so that what differs by less is a tie."""
     return round(share, 6) + 0.0
 
@@ -307,14 +347,15 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     row: dict[str, Any] = {
         "problem": run.problem.name, "method": run.method, "seed": front.record.seed,
         "residual_window_s": front.task.residual_window,
-        "points": len(front.points), "missing": _told_apart(_missing(last.quality)),
-        "missing_between": _told_apart(_missing(last.between)),
+        "points": len(front.points),
     }  # fmt: skip
-    for name, quality in (("", last.quality), ("_between", last.between)):
-        row[f"igd_plus{name}"] = np.nan if quality is None else quality.igd_plus
-        row[f"epsilon{name}"] = np.nan if quality is None else quality.epsilon
+    for name, indicator in INDICATORS.items():
+        column = column_of(indicator)
+        for suffix, scores in (("", run.scores), ("_between", run.scores_between)):
+            score = lacking(scores[name], indicator)
+            row[f"{column}{suffix}"] = told_apart(score) if column == MISSING else score
     for name, level, least in zip(ENERGIES, LEVELS, best):
-        row[name] = _told_apart(front.least_energy(level) / least - 1)
+        row[name] = told_apart(front.least_energy(level) / least - 1)
     return row | {
         "evaluations": last.evaluations, "gradients": last.gradients, "hessians": last.hessians,
         "seconds": last.seconds, "all_seconds": front.record.seconds,

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 from quietarm.metaheuristics import NamedProblem
-from quietarm.studies.bench.results import Results, bench_label, quartiles
+from quietarm.studies.bench.results import Results, bench_label, quartiles, told_apart
 from quietarm.studies.report.words import counted
 from scipy import stats
 
@@ -214,12 +214,15 @@ def holm(p_values: Array) -> Array:
 def values_on(results: Results, problem: str, column: str) -> Mapping[str, Array]:
     """A column of the table of runs by method, of one problem.
 
-    Of methods with two runs or more, and half as many as is usual at least.
+    Of methods with two runs or more, and half as many as is usual at least; what differs by less
+    than the accuracy of a front is the same.
     """
     groups: Any = results.table[results.table["problem"] == problem].groupby("method")[column]
-    grouped = {str(name): own.to_numpy(dtype=float) for name, own in groups}
-    least = max(2, _least_runs([len(own) for own in grouped.values()]))
-    return {name: own for name, own in grouped.items() if len(own) >= least}
+    by_method = {
+        str(name): np.array([told_apart(value) for value in values]) for name, values in groups
+    }
+    least = max(2, _least_runs([len(values) for values in by_method.values()]))
+    return {name: values for name, values in by_method.items() if len(values) >= least}
 
 
 def moves_of(problems: Sequence[NamedProblem]) -> list[list[NamedProblem]]:

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import pandas as pd
-from quietarm.metaheuristics.quality import BETWEEN
+from quietarm.metaheuristics.score import BETWEEN, INDICATORS
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.studies import figures
@@ -27,8 +27,6 @@ from quietarm.studies.report.words import (
 )
 from quietarm.studies.tips import tip_scale, tip_words
 
-_INDICATORS = {"hypervolume": ".4f", "igd_plus": ".2g", "epsilon": ".2g"}
-_HEADINGS = {"hypervolume": "hypervolume", "igd_plus": "IGD+", "epsilon": "epsilon"}
 _WINDOW = "residual window [s]"
 """Column of `methods.csv`."""
 
@@ -85,8 +83,10 @@ def _row(comparison: Comparison, group: Group) -> dict[str, object]:
     # as found, points of the gradient would lose by steps that its line has not
     hidden = group.by_gradient and not comparison.fill
     measures = {
-        _HEADINGS[name]: None if hidden else spread_words(group.spread(name), form)
-        for name, form in _INDICATORS.items()
+        indicator.label: None
+        if hidden
+        else spread_words(group.spread("scores", name), indicator.form)
+        for name, indicator in INDICATORS.items()
     }
     front = group.runs[0].front
     return {
@@ -120,9 +120,9 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
                 "method": record.method, "seed": record.seed, "bound": record.bound,
                 "coefficients": front.profile.size, "points": len(front.points),
                 "residual_window_s": front.task.residual_window,
-                "hypervolume": run.hypervolume, "hypervolume_found": run.hypervolume_found,
-                "igd_plus": run.igd_plus, "epsilon": run.epsilon,
             }  # fmt: skip
+            for name in INDICATORS:
+                row |= {name: run.scores[name], f"{name}_found": run.scores_found[name]}
             for i, level in enumerate(comparison.levels):
                 at = f"at_{scale * level:g}{shown}"
                 row |= {f"energy_J_{at}": run.energies[i], f"gap_{at}": run.gaps[i],
@@ -157,6 +157,7 @@ def fronts_report(
             "fill": BETWEEN if comparisons[0].fill else 0,
             "apart": _apart_by_window(comparisons),
             "unsealed": unsealed,
+            "indicators": INDICATORS,
             "several": any(len(g.runs) > 1 for one in comparisons for g in one.groups),
         },
         {

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
+from typing import NamedTuple
 
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.quality import CORNER, objectives, within
 from quietarm.metaheuristics.run_files import CHECKSUM
+from quietarm.metaheuristics.score import CORNER, Scale, filled, objectives, within
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.saved import plain
-from quietarm.studies.compare.staircase import best_of, evenly_spaced, filled
+from quietarm.studies.compare.staircase import best_of, evenly_spaced
 from quietarm.studies.report.methods import is_gradient, label_of
 
 Array = NDArray[np.float64]
@@ -28,16 +29,15 @@ class Measured:
     """One front and its figures in a comparison.
 
     Energies [J] are the least within each level. A front of few points would lose by its steps, so
-    the indicators are those of the front filled with motions `between` its points.
+    the `scores`, indicators by name, are those of the front filled with motions `between` its
+    points; `scores_found` are those of its points alone.
     """
 
     name: str
     front: Front
     between: Array
-    hypervolume: float
-    hypervolume_found: float
-    igd_plus: float
-    epsilon: float
+    scores: Mapping[str, float]
+    scores_found: Mapping[str, float]
     energies: tuple[float, ...]
     gaps: tuple[float, ...]
     gaps_between: tuple[float, ...]
@@ -67,10 +67,14 @@ class Group:
         stairs = np.unique([*self.best[:, 0], *self.worst[:, 0]])
         return stairs, within(self.best, stairs), within(self.worst, stairs)
 
-    def spread(self, figure: str, level: int | None = None) -> Spread:
-        """Quartiles over the runs of a figure of `Measured` by name, as `front.record.seconds`."""
-        values = [attrgetter(figure)(run) for run in self.runs]
-        return Spread.of([float(v if level is None else v[level]) for v in values])
+    def spread(self, figure: str, entry: int | str | None = None) -> Spread:
+        """Quartiles over the runs of a figure of `Measured`, as `front.record.seconds`.
+
+        Of `energies` and the like the entry of a level, of `scores` that of an indicator.
+        """
+        figures = [attrgetter(figure)(run) for run in self.runs]
+        values = figures if entry is None else [several[entry] for several in figures]
+        return Spread.of([float(value) for value in values])
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,43 +174,27 @@ def compare_fronts(
     names = names or [f"front {i}" for i in range(1, len(fronts) + 1)]
     if not fronts or len(names) != len(fronts):
         raise ValueError(f"{len(fronts)} fronts have {len(names)} names; give each front a name")
-    given = [*fronts, *([reference] if reference else [])]
-    _refuse(given, [*names, reference_name][: len(given)], len(fronts))
-    found = [objectives(front) for front in fronts]
-    between = [filled(front) for front in fronts] if fill else found
+    references = [] if reference is None else [reference]
+    all_names = [*names, reference_name]
+    _refuse([*fronts, *references], all_names[: len(fronts) + len(references)], len(fronts))
+    points = [objectives(front) for front in fronts]
+    between = [best_of([filled(front)]) for front in fronts] if fill else points
     best_front = best_of(between)
-    known = best_front if reference is None else filled(reference)
-    ideal, extent = known.min(axis=0), np.ptp(known, axis=0)
-    extent = np.where(extent > 0, extent, np.max([front.reference for front in fronts], axis=0))
-    corner = ideal + CORNER * extent
-    stations = evenly_spaced(known / extent)
+    known = best_front if reference is None else best_of([filled(reference)])
+    smallest_extent = np.max([front.reference for front in fronts], axis=0)
+    scale = _scale_of(known, smallest_extent)
+    corner = scale.ideal + CORNER * (scale.nadir - scale.ideal)
+    extent = scale.nadir - scale.ideal
     best = within(best_front, levels)
-
-    def share_of_box(points: Array) -> float:
-        return float(moocore.hypervolume((points - ideal) / (corner - ideal), ref=[1.0, 1.0]))
-
-    def measured(i: int) -> Measured:
-        scaled, energies = between[i] / extent, within(found[i], levels)
-        return Measured(
-            name=names[i],
-            front=fronts[i],
-            between=between[i],
-            hypervolume=share_of_box(between[i]),
-            hypervolume_found=share_of_box(found[i]),
-            igd_plus=float(moocore.igd_plus(scaled, ref=stations)),
-            epsilon=float(moocore.epsilon_additive(scaled, ref=stations)),
-            energies=tuple(energies.tolist()),
-            gaps=tuple((energies / best - 1).tolist()),
-            gaps_between=tuple((within(between[i], levels) / best - 1).tolist()),
-        )
-
-    groups = tuple(
-        Group(label, tuple(map(measured, members)), *_surfaces([found[i] for i in members]))
+    clouds = map(_Cloud, names, fronts, points, between)
+    measured = [_measured(cloud, scale, levels, best) for cloud in clouds]
+    groups = [
+        Group(label, tuple(measured[i] for i in members), *_surfaces([points[i] for i in members]))
         for label, members in grouped(fronts).items()
-    )
+    ]
     return Comparison(
         task=fronts[0].task,
-        groups=groups,
+        groups=tuple(groups),
         reference="the best of all fronts" if reference is None else reference_name,
         corner=(float(corner[0]), float(corner[1])),
         extent=(float(extent[0]), float(extent[1])),
@@ -215,6 +203,40 @@ def compare_fronts(
         best=tuple(best.tolist()),
         fill=fill,
         floor=floor,
+    )
+
+
+def _scale_of(known: Array, single: Array) -> Scale:
+    """The scale of a front's points; `single` is the extent of an objective with one value."""
+    ideal = known.min(axis=0)
+    extent = np.ptp(known, axis=0)
+    extent = np.where(extent > 0, extent, single)
+    stations = evenly_spaced((known - ideal) / extent)
+    return Scale(ideal, ideal + extent, stations, whole=CORNER**2)
+
+
+class _Cloud(NamedTuple):
+    """A front, its points, and these with motions between them where such count."""
+
+    name: str
+    front: Front
+    points: Array
+    between: Array
+
+
+def _measured(cloud: _Cloud, scale: Scale, levels: Sequence[float], best: Array) -> Measured:
+    """A front with its figures."""
+    energies = within(cloud.points, levels)
+    energies_between = within(cloud.between, levels)
+    return Measured(
+        name=cloud.name,
+        front=cloud.front,
+        between=cloud.between,
+        scores=scale.scores(cloud.between),
+        scores_found=scale.scores(cloud.points),
+        energies=tuple(energies.tolist()),
+        gaps=tuple((energies / best - 1).tolist()),
+        gaps_between=tuple((energies_between / best - 1).tolist()),
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from quietarm.metaheuristics.score import shares_of_box
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from quietarm.ocp import Front, Polish
 from quietarm.ocp.checks import takes
@@ -139,7 +140,8 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     residual, energy = fronts[0].reference
     length = min(len(front.history) for front in fronts)
     evaluations = [mark.evaluations for mark in fronts[0].history[:length]]
-    spreads = [Spread.of([f.history[k].hypervolume for f in fronts]) for k in range(length)]
+    shares = np.array([shares_of_box(front)[:length] for front in fronts])
+    spreads = [Spread.of(column) for column in shares.T.tolist()]
     ax.plot(evaluations, [one.median for one in spreads], color=BLUE, marker=".", label="median")
     if len(fronts) > 1:
         low, high = [one.lower for one in spreads], [one.upper for one in spreads]

@@ -19,7 +19,6 @@ from quietarm.ocp.profiles.term_profile import known_term_profiles
 POLYNOMIAL = "polynomial"
 
 
-<<<<<<< HEAD
 def families() -> dict[str, type[TermProfile]]:
     """Profiles with a number of terms, by the names that a command takes, the paper's first.
 
@@ -29,20 +28,6 @@ def families() -> dict[str, type[TermProfile]]:
         name.removeprefix("cycloid-"): family for name, family in known_term_profiles().items()
     }
     return {POLYNOMIAL: by_name.pop(POLYNOMIAL), **dict(sorted(by_name.items()))}
-=======
-def _families() -> dict[str, type[Cycloid]]:
-    """The families that stand in the folder of profiles, the paper's first."""
-    modules = (
-        import_module(f"{profiles.__name__}.{it.name}") for it in iter_modules(profiles.__path__)
-    )
-    families = {
-        kind.name.removeprefix("cycloid-"): kind
-        for module in modules
-        for kind in vars(module).values()
-        if isinstance(kind, type) and issubclass(kind, Cycloid) and hasattr(kind, "name")
-    }
-    return {POLYNOMIAL: families.pop(POLYNOMIAL), **dict(sorted(families.items()))}
->>>>>>> identify
 
 
 OTHERS: Mapping[str, TermProfile] = {

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import isnan
 
 from quietarm.metaheuristics import SearchProgress
+from quietarm.metaheuristics.score import final_share_of_box
 from quietarm.ocp import Front
 from quietarm.studies.report.words import print_lines
 from quietarm.studies.tips import tip_scale, tip_words
@@ -153,7 +154,7 @@ class SearchDisplay:
 
 
 def _found(front: Front) -> str:
-    share = front.history[-1].hypervolume if front.history else 0.0
+    share = final_share_of_box(front)
     return (
         f"seed {front.record.seed} is done: hypervolume {share:.4f} in {front.record.seconds:.1f} s"
     )

@@ -31,6 +31,8 @@ NEEDS = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
 _FORMAT = "quietarm-sweep"
 _DESCRIPTION = "zarr.json"
 """The file in which an array of zarr describes itself."""
+PEAK = "peak_"
+"""Variables that begin so are of limited quantities, of which a dataset has those of its time."""
 
 
 class Store:
@@ -42,7 +44,10 @@ class Store:
             self.dataset = _open(path)
         with _undisturbed(), _damage_told(path):
             self.definition = typed(self.note("sweep"), Definition)
-            self._names = [name for name in self.definition.variables if name != JUMP]
+            self._names = [
+                name for name in self.definition.variables
+                if name != JUMP and (name in self.dataset or not name.startswith(PEAK))
+            ]  # fmt: skip
             self._check_layout()
 
     @classmethod
@@ -63,7 +68,8 @@ class Store:
         for axis in self.definition.grid.axes:
             if not np.array_equal(self.dataset[axis.name].to_numpy(), np.array(axis.values)):
                 raise ValueError(f"axis {axis.name} has other values than were asked for")
-        for name, (_, beside, empty, _) in self.definition.variables.items():
+        for name in [*self._names, JUMP]:
+            _, beside, empty, _ = self.definition.variables[name]
             shape = (*self.definition.grid.shape, *beside.values())
             found = self.dataset[name]
             if (found.shape, found.dtype) != (shape, np.asarray(empty).dtype):
@@ -72,12 +78,13 @@ class Store:
     def read(self, name: str) -> NDArray[Any]:
         """All of a variable; FileFormatError where a file of it is broken, or was changed.
 
-        The states are read first and the digests last, since others may write at the same time.
+        The states are read first and the digests last, since others may write at the same time. A
+        dataset of before has no digests, and nothing to hold its values against.
         """
         with _undisturbed(), _damage_told(self.path / name):
             status = self.dataset[STATUS].to_numpy()
             values = status if name == STATUS else self.dataset[name].to_numpy()
-            if name == JUMP:
+            if name == JUMP or not self._has_digests:
                 return values
             digests = self.dataset[DIGEST].to_numpy()[:, self._names.index(name)]
         for digest, chunk in zip(digests.tolist(), self.definition.chunks):
@@ -87,6 +94,10 @@ class Store:
                     "again"
                 )
         return values
+
+    @property
+    def _has_digests(self) -> bool:
+        return DIGEST in self.dataset
 
     def _digest_of(self, values: NDArray[Any]) -> int:
         """Of a variable's part that was computed, as an answer to what was asked."""
@@ -108,14 +119,17 @@ class Store:
         """Write a chunk; its status last, so that a killed run computes it again."""
         names = self.definition.grid.names
         region = dict(zip(names, self.definition.chunks[number]))
-        part = self.dataset.drop_vars([*names, JUMP, DIGEST]).isel(region).load()
+        part = self.dataset.drop_vars([*names, JUMP, DIGEST], errors="ignore").isel(region).load()
         for name, column in cells.items():
+            if name not in self._names:  # of a quantity that is newer than the dataset
+                continue
             places = part[name].to_numpy().reshape(len(cells), -1)
             for place, value in zip(places, column):
                 place[: np.size(value)] = np.ravel(value)
-        digests = [self._digest_of(part[one].to_numpy()) for one in self._names]
-        digest = self.dataset[[DIGEST]].isel(chunk=[number]).copy(data={DIGEST: [digests]})
-        self._write(digest, {"chunk": slice(number, number + 1)})
+        if self._has_digests:
+            digests = [self._digest_of(part[name].to_numpy()) for name in self._names]
+            digest = self.dataset[[DIGEST]].isel(chunk=[number]).copy(data={DIGEST: [digests]})
+            self._write(digest, {"chunk": slice(number, number + 1)})
         for some in (part.drop_vars(STATUS), part[[STATUS]]):
             self._write(some, region)
 

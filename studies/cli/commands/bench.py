@@ -84,10 +84,15 @@ def bench(given: Given) -> None:
     reported_runs(given.output)  # refuses a folder whose runs.csv is another's
     planned = [(job.problem.name, job.label) for job in jobs]
     planned += [(run.problem.name, run.method) for run in imported_runs(imported, jobs)]
-    kept = len(finished_jobs(jobs, given.output))  # refuses a changed file before anything is done
-    there = [f"{kept} of {len(jobs)} runs are in {given.output}"] if kept else []
+    finished = finished_jobs(jobs, given.output)  # refuses a changed file before anything is done
+    there = [f"{len(finished)} of {len(jobs)} runs are in {given.output}"] if finished else []
     print_lines(
-        progress_console(), *left_out, *unreadable, *not_imported, say_power_of(planned), *there
+        progress_console(),
+        *left_out,
+        *unreadable,
+        *not_imported,
+        say_power_of(planned),
+        *there,
     )
     write_references(problems, given.output)
     trouble = None
@@ -95,7 +100,7 @@ def bench(given: Given) -> None:
         try:
             fronts = run_jobs(
                 jobs, given.output, **given.pick("workers", "scheduler", "part"),
-                report=lambda job, front, done, total: progress(done, total),
+                report=lambda job, front, done, total: progress(done, total), finished=finished,
             )  # fmt: skip
         except LostJobsError as error:
             fronts, trouble = dict(error.fronts), error

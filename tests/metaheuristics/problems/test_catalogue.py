@@ -6,7 +6,7 @@ import moocore
 import numpy as np
 import pytest
 from quietarm.metaheuristics import PROBLEMS, problem_of
-from quietarm.metaheuristics.objective.claims import check_figures
+from quietarm.metaheuristics.objective.stated_figures import check_figures
 from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.uncertainty import perturb_plant
 

@@ -7,7 +7,7 @@ from math import pi
 
 import pytest
 from quietarm.metaheuristics import search
-from quietarm.metaheuristics.objective.claims import check_figures
+from quietarm.metaheuristics.objective.stated_figures import check_figures
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import Candidate, PointToPoint, Uncertainty
 

@@ -12,10 +12,10 @@ import pytest
 from bench_problems import NAME, OTHERS
 from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.problems.recorded import RecordedFunction
-from quietarm.metaheuristics.quality import CORNER
+from quietarm.metaheuristics.score import CORNER, INDICATORS
 from quietarm.ocp.cost import COST
 from quietarm.studies.bench.asked import problems_of, write_references
-from quietarm.studies.bench.page import bench_report, problem_table
+from quietarm.studies.bench.page import bench_report, compared_columns, problem_table
 from quietarm.studies.bench.results import Results
 
 import quietarm as qa
@@ -25,17 +25,18 @@ def test_measures_are_moocores_from_the_files_alone(fronts):
     reference = qa.problem_of(NAME).fronts()[0]
     best = np.c_[reference.residuals, reference.energies]
     ideal, extent = best.min(axis=0), np.ptp(best, axis=0)
-    for front in fronts.values():
+    for run in Results.of_jobs(fronts).runs:
+        front = run.front
         points = (np.c_[front.residuals, front.energies] - ideal) / extent
         line = (best - ideal) / extent
-        quality = front.history[-1].quality
         corner = [CORNER, CORNER]
         # the reference's is of the line through its points, a little more than of the points
         wanted = moocore.hypervolume(points, ref=corner) / moocore.hypervolume(line, ref=corner)
-        assert quality.hypervolume == pytest.approx(wanted, rel=5e-3)
-        assert quality.igd_plus == pytest.approx(moocore.igd_plus(points, ref=line))
-        assert quality.epsilon == pytest.approx(moocore.epsilon_additive(points, ref=line))
-        assert front.history[-1].between.hypervolume >= quality.hypervolume - 1e-12
+        assert run.scores["hypervolume"] == pytest.approx(wanted, rel=5e-3)
+        assert run.scores["igd_plus"] == pytest.approx(moocore.igd_plus(points, ref=line))
+        assert run.scores["epsilon"] == pytest.approx(moocore.epsilon_additive(points, ref=line))
+        assert run.scores_between["hypervolume"] >= run.scores["hypervolume"] - 1e-12
+        assert run.scores.keys() == INDICATORS.keys()
 
 
 LONG = ["arm-on-flexible-link-90deg-0.8s-12-terms", "single-link-30deg-0.8s-20-terms"]
@@ -219,7 +220,7 @@ def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
     # of the least energy is the gradient, which repeats itself
     assert "By energy within 1 mm: no verdict: with 5 runs of each of 4 methods" in text
     pairs = pd.read_csv(tmp_path / "pairs.csv")
-    assert pairs["measure"].value_counts().to_dict() == {"missing": 6, "energy_1mm": 6}
+    assert pairs["measure"].value_counts().to_dict() == dict.fromkeys(compared_columns(), 6)
     assert pairs[["effect", "p", "p_holm"]].stack().between(0, 1).all()
     table = problem_table(results, NAME)
     assert table["missing [%]"].is_monotonic_increasing

@@ -1,8 +1,10 @@
 """A run's file is believed if it is what the bench wrote for its job, or evaluated again."""
 
+import hashlib
 import json
 import shutil
 
+import numpy as np
 import pytest
 from bench_problems import NAME
 from quietarm.metaheuristics import Job, finished_jobs, run_jobs
@@ -52,12 +54,16 @@ def lower_residuals(document):
         point["residual"] *= 0.9
 
 
-def better_end(document):
-    document["history"][-1]["quality"]["hypervolume"] = 1.0
-
-
 def better_way(document):
-    document["history"][0]["quality"]["hypervolume"] = 0.999
+    document["entries"]["energies"][0] *= 0.9
+
+
+def earlier_way(document):
+    document["entries"]["candidates"][-1] -= 1
+
+
+def more_candidates(document):
+    document["entries"]["candidates"][-1] = 201
 
 
 def fewer_evaluations(document):
@@ -80,7 +86,7 @@ def other_seed(document):
 
 
 CHANGES = [
-    lower_energies, lower_residuals, better_end, better_way, fewer_evaluations, less_time,
+    lower_energies, lower_residuals, better_way, earlier_way, fewer_evaluations, less_time,
     other_seed,
 ]  # fmt: skip
 
@@ -128,8 +134,9 @@ def test_a_run_of_before_without_a_checksum_is_loaded(runs):
     [
         (lower_energies, "point 1 of .* states energy"),
         (lower_residuals, "point 1 of .* states residual"),
-        (better_end, "states a hypervolume of 1.0000 for its points, and they have 0"),
-        (fewer_evaluations, "states a history in which evaluations fall"),
+        (better_way, r"candidate \d+ states energy"),
+        (more_candidates, "it states candidate 201 of 200"),
+        (fewer_evaluations, r"it states candidate \d+ of 20"),
         (later_start, "states a history in which seconds fall"),
         (other_seed, "states seed 7, and its job has 0"),
     ],
@@ -138,6 +145,23 @@ def test_a_run_of_before_is_evaluated_again(runs, edit, words):
     change(runs, edit, checksum=False)
     with pytest.raises(ValueError, match=f"{words}.*; delete that file, and its run is done again"):
         finished_jobs(JOBS, runs)
+
+
+def test_a_run_is_believed_whatever_is_newer_than_its_file(runs):
+    """Of a file without the task's newest entry, with the digest that such a file had."""
+    before = finished_jobs(JOBS, runs)
+    path = path_of(JOB, runs)
+    document = json.loads(path.read_text())
+    del document["task"]["torque_speed"]
+    says = {name: entry for name, entry in document.items() if name not in ("format", "version")}
+    del says["record"]["settings"][CHECKSUM]
+    reference = JOB.problem.fronts()[0]
+    scale = np.column_stack([reference.residuals, reference.energies]).tolist()
+    text = json.dumps([JOB.name, scale, says], sort_keys=True)
+    digest = hashlib.sha256(text.encode()).hexdigest()[:32]
+    says["record"]["settings"][CHECKSUM] = digest
+    path.write_text(json.dumps(document))
+    assert finished_jobs(JOBS, runs)[JOB].points == before[JOB].points
 
 
 def test_the_command_refuses_a_changed_run_in_one_line(call, runs):

@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 from math import comb
 
+import moocore
 import numpy as np
 import pytest
 from bench_problems import NAME, OTHERS
@@ -90,9 +91,11 @@ def test_runs_are_told_to_be_one_by_their_fronts(fronts):
     def runs_of(method, *changed):
         return [Run(problem, method, one.restated(seed=i)) for i, one in enumerate(changed)]
 
-    last = front.history[-1]
-    better = replace(last.between, hypervolume=last.between.hypervolume + 0.01)
-    others_between = replace(front, history=(*front.history[:-1], replace(last, between=better)))
+    points = [
+        replace(point, coefficients=tuple(0.99 * a for a in point.coefficients))
+        for point in front.points
+    ]
+    others_between = replace(front, points=tuple(points))
     extent = np.ptp(best.energies)
 
     def moved(by):
@@ -243,10 +246,15 @@ def test_missing_values_are_censored(fronts):
 @pytest.mark.parametrize("target", [0.9, 0.6, 0.4, 0.2])
 def test_the_expected_running_time_is_cocos_with_an_interval_about_it(fronts, by, target):
     results, spent, reached = Results.of_jobs(fronts), [], []
+    scale = qa.problem_of(NAME).reference()
     for job, front in fronts.items():
         if job.method == "nsga2":
             costs = [getattr(mark, by) for mark in front.history]
-            shares = [mark.quality.hypervolume if mark.quality else 0 for mark in front.history]
+            found = [front.entries.objectives(mark.evaluations) for mark in front.history[:-1]]
+            found.append(np.c_[front.residuals, front.energies])
+            assert max(map(len, found)) <= 100  # more would be thinned
+            shares = [moocore.hypervolume(scale.scaled(F), ref=[1.1, 1.1]) for F in found]
+            shares = np.divide(shares, scale.whole)
             until = [cost for cost, share in zip(costs, shares, strict=True) if 1 - share <= target]
             spent.append(until[0] if until else costs[-1])
             reached.append(bool(until))

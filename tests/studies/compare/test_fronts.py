@@ -27,19 +27,19 @@ def test_hypervolume_is_the_share_of_the_common_box(measured):
     assert comparison.corner == pytest.approx((8.8e-3, 0.84))
     # widths times heights of the steps, of a box of 8.8 by 0.44
     box = 8.8 * 0.44
-    assert better.hypervolume == pytest.approx((4 * 0.04 + 4 * 0.34 + 0.8 * 0.44) / box)
-    assert worse.hypervolume == pytest.approx(2.8 * 0.24 / box)
+    assert better.scores["hypervolume"] == pytest.approx((4 * 0.04 + 4 * 0.34 + 0.8 * 0.44) / box)
+    assert worse.scores["hypervolume"] == pytest.approx(2.8 * 0.24 / box)
 
 
 def test_igd_plus_and_epsilon_in_units_of_the_best_fronts_extent(measured, good):
     comparison, better, worse = measured
     assert comparison.extent == pytest.approx((8e-3, 0.4))
-    assert (better.igd_plus, better.epsilon) == (0, 0)
+    assert (better.scores["igd_plus"], better.scores["epsilon"]) == (0, 0)
     # Each point of good, and by how much the nearer of poor's misses it in (residual, energy):
     # (0, .8): (2/8, .1/.4); (4, .5): the second (2/8, .1/.4); (8, .4): the second (0, .2/.4).
     misses = [math.hypot(0.25, 0.25), math.hypot(0.25, 0.25), 0.5]
-    assert worse.igd_plus == pytest.approx(np.mean(misses))
-    assert worse.epsilon == pytest.approx(0.5)
+    assert worse.scores["igd_plus"] == pytest.approx(np.mean(misses))
+    assert worse.scores["epsilon"] == pytest.approx(0.5)
 
 
 def test_energies_count_only_what_was_found_within_the_residual(good, poor):
@@ -102,7 +102,8 @@ def test_the_number_of_points_does_not_decide(real):
     """Every other point left out: as found the front seems far worse, filled it is the same."""
     thinned = dataclasses.replace(real, points=real.points[::2]).restated(method="thinned")
     whole, few = (group.runs[0] for group in compare_fronts([real, thinned]).groups)
-    lost_as_found = whole.hypervolume_found - few.hypervolume_found
+    lost_as_found = whole.scores_found["hypervolume"] - few.scores_found["hypervolume"]
     assert lost_as_found > 0.004
-    assert abs(whole.hypervolume - few.hypervolume) < lost_as_found / 20
+    lost = abs(whole.scores["hypervolume"] - few.scores["hypervolume"])
+    assert lost < lost_as_found / 20
     assert max(few.gaps) > 20 * max(few.gaps_between)

@@ -1,0 +1,257 @@
+"""How good the points of a front are, computed from them when it is asked for.
+
+An indicator is one entry of `INDICATORS`: searches, benches and comparisons use, tabulate and test
+every entry. Formulas: docs/measures.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import ceil, nan
+from types import MappingProxyType
+
+import moocore
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.metaheuristics.objective.stated_figures import fine_objective
+from quietarm.metaheuristics.thinning import thinned
+from quietarm.ocp import Front, Mark
+from quietarm.ocp.checks import takes
+
+Array = NDArray[np.float64]
+CORNER = 1.1
+"""Hypervolumes are measured from here, where 0 is the reference front's least and 1 its largest
+value of each objective: as is usual, a tenth beyond, so that the ends of the front count."""
+BETWEEN = 300
+"""About so many points a front has once motions between its own are added: as a reference front."""
+_OVERRUN = 1e-6
+"""Share by which a motion between may exceed a limit, as those of a reference front."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scale:
+    """What points are measured against.
+
+    Attributes
+    ----------
+    ideal, nadir : ndarray, shape (2,)
+        Residual [m] and energy [J] that are 0 and 1 of the scale.
+    stations : ndarray, shape (n, 2)
+        Points of the front to come near to, in this scale.
+    whole : float
+        The hypervolume that counts as 1.
+    """
+
+    ideal: Array
+    nadir: Array
+    stations: Array
+    whole: float
+
+    def scaled(self, points: Array) -> Array:
+        """Residuals [m] and energies [J], shape (n, 2), from 0 at the ideal to 1 at the nadir."""
+        return (points - self.ideal) / (self.nadir - self.ideal)
+
+    def scores(self, points: Array) -> dict[str, float]:
+        """Every indicator of points, shape (n, 2), by its name."""
+        return {name: self.score(points, indicator) for name, indicator in INDICATORS.items()}
+
+    def score(self, points: Array, indicator: Indicator) -> float:
+        """An indicator of points, shape (n, 2), residual [m] and energy [J]."""
+        if not len(points):
+            return indicator.of_nothing
+        return indicator.of(self.scaled(points), self)
+
+
+class Reference(Scale):
+    """A reference front as a scale for others.
+
+    Parameters
+    ----------
+    front : Front
+        The reference front; ValueError where it is a single motion, which is no scale.
+    """
+
+    front: Front
+
+    @takes(front=Front)
+    def __init__(self, front: Front) -> None:
+        if len(front.points) < 2:
+            raise ValueError(
+                "the reference front is a single motion, which is no scale for others; give "
+                "another problem"
+            )
+        points = objectives(front)
+        ideal = points.min(axis=0)
+        nadir = points.max(axis=0)
+        stations = (points - ideal) / (nadir - ideal)
+        super().__init__(ideal, nadir, stations, _hypervolume_of_line(stations))
+        object.__setattr__(self, "front", front)
+
+
+def hypervolume(scaled: Array, scale: Scale) -> float:
+    """Area that points dominate up to the corner, as a share of what is the whole there."""
+    return float(moocore.hypervolume(scaled, ref=[CORNER] * 2)) / scale.whole
+
+
+def igd_plus(scaled: Array, scale: Scale) -> float:
+    """Mean distance by which the stations are missed."""
+    return float(moocore.igd_plus(scaled, ref=scale.stations))
+
+
+def epsilon(scaled: Array, scale: Scale) -> float:
+    """Least shift by which the points weakly dominate the stations."""
+    return float(moocore.epsilon_additive(scaled, ref=scale.stations))
+
+
+@dataclass(frozen=True)
+class Indicator:
+    """One number for a set of points.
+
+    Attributes
+    ----------
+    name : str
+        In columns of tables.
+    label : str
+        In headings.
+    unit : str
+        In which headings state it; empty for a plain number, "%" for a share of 1.
+    more_is_better : bool
+        Its direction: of a share that is to be 1, or of a distance that is to be 0.
+    meaning : str
+        In a sentence of a report, after the label.
+    of : callable
+        From the points, scaled, shape (n, 2), and their `Scale`.
+    form : str
+        Format of its digits in tables of comparisons.
+    """
+
+    name: str
+    label: str
+    unit: str
+    more_is_better: bool
+    meaning: str
+    of: Callable[[Array, Scale], float]
+    form: str = ".2g"
+
+    @property
+    def of_nothing(self) -> float:
+        """Its value where there is no point."""
+        return 0.0 if self.more_is_better else nan
+
+
+HYPERVOLUME = Indicator(
+    "hypervolume", "hypervolume", "%", True,
+    "area that a front dominates, as a share, up to a tenth of the reference front's extent beyond "
+    "its ends",
+    hypervolume, ".4f",
+)  # fmt: skip
+INDICATORS: Mapping[str, Indicator] = MappingProxyType({
+    indicator.name: indicator
+    for indicator in (
+        HYPERVOLUME,
+        Indicator(
+            "igd_plus", "IGD+", "", False,
+            "mean distance by which the reference front is missed, in units of its extent",
+            igd_plus,
+        ),
+        Indicator(
+            "epsilon", "epsilon", "", False,
+            "additive epsilon, the worst miss of the reference front, in units of its extent",
+            epsilon,
+        ),
+    )
+})  # fmt: skip
+"""By name; every table, report and test has a column for each."""
+
+
+def objectives(front: Front) -> Array:
+    """Residual [m] and energy [J] of every point, shape (points, 2)."""
+    return np.column_stack([front.residuals, front.energies])
+
+
+def within(points: Array, residuals: Sequence[float] | Array) -> Array:
+    """Least energies [J] of points within residuals [m]; NaN where there is none."""
+    energies = [points[points[:, 0] <= residual, 1] for residual in residuals]
+    return np.array([some.min() if some.size else np.nan for some in energies])
+
+
+def share_of_box(points: Array, corner: tuple[float, float]) -> float:
+    """Share of the box from zero to a corner, residual [m] and energy [J], that points dominate."""
+    if not len(points):
+        return 0.0
+    return float(moocore.hypervolume(points / corner, ref=[1.0, 1.0]))
+
+
+def shares_of_box(front: Front) -> Array:
+    """Share of the box up to `Front.reference` that was dominated at every mark of a front.
+
+    Of a search by all candidates that had entered. An earlier file has it as it states it.
+    """
+    return np.array([_share_at(front, mark) for mark in front.history])
+
+
+def final_share_of_box(front: Front) -> float:
+    """The last of these; 0 of a front without a mark."""
+    return _share_at(front, front.history[-1]) if front.history else 0.0
+
+
+def _share_at(front: Front, mark: Mark) -> float:
+    if mark.hypervolume is not None:
+        return mark.hypervolume
+    return share_of_box(_dominating(front, mark), front.reference)
+
+
+def _dominating(front: Front, mark: Mark) -> Array:
+    """What was found until a mark; by the gradient, which has no entries, the front itself."""
+    if mark.gradients or not len(front.entries):
+        return objectives(front)
+    return moocore.filter_dominated(front.entries.objectives(mark.evaluations))
+
+
+def scores_on_the_way(front: Front, scale: Scale, indicator: Indicator = HYPERVOLUME) -> Array:
+    """An indicator at every mark of a front: of at most 100 points, as a front would then have.
+
+    The last is of the front itself. An earlier file has the others as it states them; NaN where it
+    does not.
+    """
+    before = [_score_at(front, mark, scale, indicator) for mark in front.history[:-1]]
+    return np.array([*before, scale.score(objectives(front), indicator)])
+
+
+def _score_at(front: Front, mark: Mark, scale: Scale, indicator: Indicator) -> float:
+    if mark.quality is not None:
+        return getattr(mark.quality, indicator.name, nan)
+    if mark.hypervolume is not None:  # an earlier file, where there was no point yet
+        return indicator.of_nothing
+    points = _dominating(front, mark)
+    return scale.score(points[thinned(points)], indicator)
+
+
+def filled(front: Front) -> Array:
+    """Points of a front and of motions between neighbours, shape (n, 2).
+
+    Coefficients are interpolated and the motions simulated: each can be driven, and stays in the
+    box. Those that break a limit do not count. So a front is not judged by its number of points.
+    """
+    points = objectives(front)
+    coefficients = front.coefficients
+    between = ceil(BETWEEN / max(len(points) - 1, 1)) - 1
+    if len(points) < 2 or between < 1:
+        return points
+    share = (np.arange(1, between + 1) / (between + 1))[:, None]
+    inner = coefficients[:-1, None] * (1 - share) + coefficients[1:, None] * share
+    values = fine_objective(front.task, front.profile)(inner.reshape(-1, front.profile.size))
+    table = np.column_stack([values.residual, values.energy])
+    usable = np.isfinite(table).all(axis=1) & (values.violations <= _OVERRUN).all(axis=1)
+    return np.vstack([points, table[usable]])
+
+
+def _hypervolume_of_line(stations: Array) -> float:
+    """What the straight lines through points dominate, up to the corner."""
+    residuals, energies = stations.T
+    # the last point is the cheapest there is
+    residuals = np.append(residuals, CORNER)
+    energies = np.append(energies, energies[-1])
+    above = CORNER - (energies[1:] + energies[:-1]) / 2
+    return float(np.sum(above * np.diff(residuals)))
