@@ -29,6 +29,8 @@ import pandas as pd
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
+from quietarm.metaheuristics import NamedProblem, problem_of
+from quietarm.ocp import symbolic_rollout
 from quietarm.metaheuristics import PRESETS
 from quietarm.metaheuristics.score import CORNER, within
 from quietarm.ocp.front.points import LEVELS
@@ -71,7 +73,7 @@ class SpentError(Exception):
 class Function:
     """Residual [m] and cost [J] of many candidates; keeps what none of them dominates."""
 
-    def __init__(self, problem: qa.NamedProblem) -> None:
+    def __init__(self, problem: NamedProblem) -> None:
         self.move = problem.function()
         self.lower, self.upper = self.move.lower, self.move.upper
         self.points, self.left = np.empty((0, 2)), np.inf
@@ -92,10 +94,10 @@ class Function:
 class BlackBox(Function):
     """The electric energy."""
 
-    def __init__(self, problem: qa.NamedProblem) -> None:
+    def __init__(self, problem: NamedProblem) -> None:
         super().__init__(problem)
         a = ca.SX.sym("a", problem.profile.size)
-        motion = qa.symbolic_rollout(
+        motion = symbolic_rollout(
             problem.task.plant, problem.profile, a, problem.task.move, STEPS
         )
         speeds = [sample.path.speed for sample in motion.samples]
@@ -112,7 +114,7 @@ class BlackBox(Function):
 class Terms(Function):
     """The number of terms first, the coefficients of ten after it."""
 
-    def __init__(self, problem: qa.NamedProblem) -> None:
+    def __init__(self, problem: NamedProblem) -> None:
         super().__init__(terms_of(problem, MOST_TERMS))
         self.price = PRICE * self.move(np.zeros((1, MOST_TERMS)))[0][0, 1]
         self.lower, self.upper = np.append(0.5, self.lower), np.append(10.49, self.upper)
@@ -124,10 +126,10 @@ class Terms(Function):
         return found + count * [0.0, self.price]
 
 
-def terms_of(problem: qa.NamedProblem, terms: int) -> qa.NamedProblem:
+def terms_of(problem: NamedProblem, terms: int) -> NamedProblem:
     """The move with another number of terms."""
     profile = qa.CycloidPolynomial(terms)
-    return qa.NamedProblem(f"{problem.name}-{terms}", problem.task, profile, problem.bound)
+    return NamedProblem(f"{problem.name}-{terms}", problem.task, profile, problem.bound)
 
 
 def searched(name: str, function: Function, seed: int, budget: int, first: Any = None) -> None:
@@ -142,24 +144,24 @@ def searched(name: str, function: Function, seed: int, budget: int, first: Any =
     minimize(problem, algorithm, ("n_eval", budget), seed=seed)
 
 
-def gradient_rows(problem: qa.NamedProblem, points: int, seed: int) -> Array:
+def gradient_rows(problem: NamedProblem, points: int, seed: int) -> Array:
     """Coefficients of a front of the mechanical energy."""
     asked: Any = {"bound": problem.bound, "points": points, "at": LEVELS, "seed": seed}
     return qa.epsilon_front(problem.task, problem.profile, **asked).coefficients
 
 
-def by_gradient(problem: qa.NamedProblem, function: Function, seed: int, budget: int) -> None:
+def by_gradient(problem: NamedProblem, function: Function, seed: int, budget: int) -> None:
     """The mechanical energy's front, evaluated."""
     function(gradient_rows(problem, POINTS, seed))
 
 
-def begun_there(problem: qa.NamedProblem, function: Function, seed: int, budget: int) -> None:
+def begun_there(problem: NamedProblem, function: Function, seed: int, budget: int) -> None:
     """A search whose first population is that front."""
     rows = gradient_rows(problem, POPULATION - len(LEVELS), seed)
     searched("gde3", function, seed, budget, rows)
 
 
-def one_by_one(problem: qa.NamedProblem, function: Function, seed: int, budget: int) -> None:
+def one_by_one(problem: NamedProblem, function: Function, seed: int, budget: int) -> None:
     """A front by the gradient for each number of terms."""
     for terms in range(1, MOST_TERMS + 1):
         rows = gradient_rows(terms_of(problem, terms), POINTS // 5, seed)
@@ -170,7 +172,7 @@ def one_by_one(problem: qa.NamedProblem, function: Function, seed: int, budget: 
 Way = Callable[[Function, int, int], None]
 
 
-def ways_of(problem: qa.NamedProblem, kind: type[Function]) -> dict[str, Way]:
+def ways_of(problem: NamedProblem, kind: type[Function]) -> dict[str, Way]:
     """What is compared, by name."""
     ways: dict[str, Way] = {
         PRESETS[name].label: partial(searched, name) for name in ("nsga2", "gde3", "cmopso")
@@ -184,7 +186,7 @@ def ways_of(problem: qa.NamedProblem, kind: type[Function]) -> dict[str, Way]:
     }
 
 
-def run(problem: qa.NamedProblem, kind: type[Function], way: Way, seed: int, budget: int) -> Any:
+def run(problem: NamedProblem, kind: type[Function], way: Way, seed: int, budget: int) -> Any:
     """Points that a way finds, and its processor seconds."""
     function, began = kind(problem), time.process_time()
     function.left = budget
@@ -195,7 +197,7 @@ def run(problem: qa.NamedProblem, kind: type[Function], way: Way, seed: int, bud
 
 def runs_of(name: str, kind: type[Function], seeds: int) -> dict[str, list[Any]]:
     """Points and seconds of every way on one move, by its name and seed."""
-    problem = qa.problem_of(name)
+    problem = problem_of(name)
     ways = ways_of(problem, kind)
     for way in ways.values():  # what is compiled and loaded first
         run(problem, kind, way, 99, 3 * POPULATION)

@@ -23,6 +23,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pandas as pd
+from quietarm.metaheuristics import Job, LostJobsError, NamedProblem, finished_jobs, problem_of, run_jobs
+from quietarm.ocp import CycloidGaussians, CycloidNetwork
 from quietarm.metaheuristics.gradient import multistart_front
 from scipy.optimize import minimize
 
@@ -59,7 +61,7 @@ class Stages(qa.Energy):
 def hard_tasks() -> dict[str, tuple[qa.PointToPoint, Any, float]]:
     """Task, profile and bound of the moves that are hard for the gradient, by name."""
     link, arm = qa.SingleLinkManipulator(), qa.ArmOnFlexibleLink()
-    gaussians, network = qa.CycloidGaussians(3), qa.CycloidNetwork(3)
+    gaussians, network = CycloidGaussians(3), CycloidNetwork(3)
     return {
         "link-60deg-0.9s-gaussians": (
             qa.PointToPoint(link, pi / 3, 0.9, residual_window=1.0),
@@ -75,7 +77,7 @@ def hard_tasks() -> dict[str, tuple[qa.PointToPoint, Any, float]]:
     }  # fmt: skip
 
 
-def hard_problem(name: str, folder: Path) -> qa.NamedProblem:
+def hard_problem(name: str, folder: Path) -> NamedProblem:
     """A hard move with its reference front, which is found once: the best of both kinds."""
     path = folder / "references" / f"{name}.json"
     task, profile, bound = hard_tasks()[name]
@@ -102,7 +104,7 @@ def hard_problem(name: str, folder: Path) -> qa.NamedProblem:
             )
         path.parent.mkdir(parents=True, exist_ok=True)
         best.save(path)
-    return qa.NamedProblem.of_front(name, qa.Front.load(path))
+    return NamedProblem.of_front(name, qa.Front.load(path))
 
 
 def differences(function: Any, seed: int, budget: int, step: float = 1e-6) -> None:
@@ -139,18 +141,18 @@ def differences(function: Any, seed: int, budget: int, step: float = 1e-6) -> No
             reach = float(at(found.x)[0])
 
 
-def jobs_of(problems: list[Any]) -> list[qa.Job]:
+def jobs_of(problems: list[Any]) -> list[Job]:
     """Every job, one seed after another."""
     searches = (*SEARCHES, "nsga2+polish", "gde3+polish", differences)
     ipopt = ("epsilon:ipopt", "weighted:ipopt")
-    jobs = list[qa.Job]()
+    jobs = list[Job]()
     for seed in range(SEEDS):
         for problem in problems:
-            own = partial(qa.Job, problem, seed=seed)
+            own = partial(Job, problem, seed=seed)
             jobs += [own(name, budget=BUDGET) for name in searches]
             jobs += [own(name) for name in ("epsilon", "weighted", "multistart")]
         for problem in problems if FEW <= seed < 2 * FEW else []:  # what takes long, after some
-            own = partial(qa.Job, problem, seed=seed - FEW)
+            own = partial(Job, problem, seed=seed - FEW)
             jobs += [own(name, budget=LARGE) for name in ("nsga2", "gde3")]
             if isinstance(problem.profile, qa.CycloidPolynomial):  # others take it minutes a front
                 jobs += [own(name, settings={"points": 20}) for name in ipopt]
@@ -187,17 +189,17 @@ def main() -> None:
 def run(given: argparse.Namespace) -> None:
     """Run the jobs that are missing, and write the page where one is asked for."""
     hard = [hard_problem(name, given.folder) for name in hard_tasks()]
-    jobs = jobs_of([*(qa.problem_of(name) for name in MOVES), *hard])
+    jobs = jobs_of([*(problem_of(name) for name in MOVES), *hard])
 
-    def report(job: qa.Job, front: qa.Front, done: int, total: int) -> None:
+    def report(job: Job, front: qa.Front, done: int, total: int) -> None:
         print(f"{done}/{total} {job.name} {front.record.seconds:.2f} s", flush=True)
 
     try:
         fronts = (
-            qa.finished_jobs(jobs, given.folder) if given.only_page
-            else qa.run_jobs(jobs, given.folder, workers=given.workers, report=report)
+            finished_jobs(jobs, given.folder) if given.only_page
+            else run_jobs(jobs, given.folder, workers=given.workers, report=report)
         )  # fmt: skip
-    except qa.LostJobsError as error:
+    except LostJobsError as error:
         print(error)
         fronts = error.fronts
     if given.page:

@@ -20,10 +20,13 @@ from .ocp import Energy as Energy
 from .ocp import Front as Front
 from .ocp import InfeasibleTaskError as InfeasibleTaskError
 from .ocp import JointProfile as JointProfile
+from .ocp import Ipopt as Ipopt
 from .ocp import JointSpline as JointSpline
 from .ocp import Plan as Plan
 from .ocp import PointToPoint as PointToPoint
 from .ocp import QuietarmError as QuietarmError
+from .ocp import Sqp as Sqp
+from .ocp import TermProfile as TermProfile
 from .ocp import Uncertainty as Uncertainty
 from .ocp import energy_floor as energy_floor
 from .ocp import epsilon_front as epsilon_front

@@ -80,7 +80,7 @@ def right():
     return {
         "task": task, "one": task, "other": task, "tasks": [task], "plant": link,
         "profile": qa.CycloidPolynomial(1), "coefficients": [0.0], "target": 0.5, "duration": 0.8,
-        "plans": {}, "fronts": [], "quantity": "speed", "floor": object.__new__(qa.Floor),
+        "plans": {}, "fronts": [], "quantity": "speed", "floor": object.__new__(qa.ocp.Floor),
         "front": object.__new__(qa.Front),
     }  # fmt: skip
 
@@ -119,7 +119,7 @@ def test_something_else_is_told_what_to_give(right, function, name, kind, many):
     [
         (6, "profile is 6; give a profile, as CycloidPolynomial(6) or CycloidSpline(12)"),
         (qa.CycloidSpline, "profile is CycloidSpline; give an object, as CycloidSpline()"),
-        (qa.ShapedCycloid, "give an object, as ShapedCycloid(shaper, frequencies, damping_ratios)"),
+        (qa.ocp.ShapedCycloid, "give an object, as ShapedCycloid(shaper, frequencies, damping_ratios)"),
         ("cycloid-spline", "give an object, as CycloidSpline()"),
         ([0.1, 0.2], "profile is [0.1, 0.2]; give a profile, as"),
     ],
@@ -136,7 +136,7 @@ def test_a_profile_is_an_object(right, profile, told):
         ("initial", (0.01, 0), "initial is (0.01, 0); give a state, as ModalState(W=[0.01], dW=[0"),
         ("final", [0.01, 0], "final is [0.01, 0]; give a state, as ModalState(W=[0.01], dW=[0.0])"),
         ("energy", None, "energy is None; give an energy, as AbsolutePower() or CopperLoss(0.12)"),
-        ("energy", qa.PositivePower, "give an object, as PositivePower()"),
+        ("energy", qa.ocp.PositivePower, "give an object, as PositivePower()"),
         ("uncertainty", {"frequency": 0.1}, "give ranges, as Uncertainty({'frequency': 0.1})"),
         ("uncertainty", 0.1, "uncertainty is 0.1; give ranges, as Uncertainty("),
     ],
@@ -150,7 +150,7 @@ def test_a_field_of_a_task_is_of_its_class(field, value, told):
 @pytest.mark.parametrize(
     ("make", "told"),
     [
-        (lambda: qa.ModalState(0.01, 0), r"W is 0.01; give a list of numbers, one for each mode"),
+        (lambda: qa.ocp.ModalState(0.01, 0), r"W is 0.01; give a list of numbers, one for each mode"),
         (lambda: qa.Uncertainty(0.1), r"errors are 0.1; give them by name, as {'frequency': 0.1}"),
         (lambda: qa.Uncertainty("frequency"), "errors are 'frequency'; give them by name"),
         (
@@ -174,15 +174,15 @@ def test_numbers_stand_in_lists_and_by_names(make, told):
         (lambda task: qa.search(task, "nsga2", bound=0.2), "a method is given as algorithm=..."),
         (lambda task: qa.motion_figure("plan.json"), "give Plan.load('plan.json')"),
         (lambda task: qa.motion_figure(6), "give a plan, as Plan.load('plan.json')"),
-        (lambda task: qa.draw_quantity([], "sped"), "did you mean 'speed'?"),
+        (lambda task: qa.figures.draw_quantity([], "sped"), "did you mean 'speed'?"),
         (lambda task: qa.plan_move(task, guess="a"), "coefficients are 'a'; give 1 number"),
         (lambda task: qa.epsilon_front(task, at=0.1), "at is 0.1; give a list of residuals"),
         (lambda task: qa.weighted_front(task, weights=0.3), "give pairs of residual and energy"),
-        (lambda task: qa.perturb_plant(task.plant, 0.1), "by name, as {'frequency': 0.1}"),
+        (lambda task: qa.ocp.perturb_plant(task.plant, 0.1), "by name, as {'frequency': 0.1}"),
         (lambda task: qa.sweep(task, axes={"target": 0.1}, path="x.zarr"), "give a list of values"),
-        (lambda task: qa.compare_plans([task]), "give them by name, as {'mine': plan}"),
-        (lambda task: qa.compare_plans({}, "zv", task=task), "give a list of names"),
-        (lambda task: qa.ShapedCycloid("zv", 10.0, [0.1]), "frequencies is 10.0; give a list"),
+        (lambda task: qa.compare.compare_plans([task]), "give them by name, as {'mine': plan}"),
+        (lambda task: qa.compare.compare_plans({}, "zv", task=task), "give a list of names"),
+        (lambda task: qa.ocp.ShapedCycloid("zv", 10.0, [0.1]), "frequencies is 10.0; give a list"),
     ],
 )
 def test_other_arguments_say_so_as_well(right, call, told):
@@ -197,7 +197,7 @@ def test_one_move_is_no_list_of_moves(right):
 
 def test_an_energy_adds_to_energies_alone():
     with pytest.raises(TypeError, match="part of a mix is 3; give an energy, as"):
-        qa.Mix(((1.0, qa.AbsolutePower()), (1.0, 3)))
+        qa.ocp.Mix(((1.0, qa.AbsolutePower()), (1.0, 3)))
 
 
 def test_an_argument_that_is_not_known_is_pythons_own_error(right):
@@ -206,11 +206,11 @@ def test_an_argument_that_is_not_known_is_pythons_own_error(right):
 
 
 NUMBERS = {
-    "bound": (qa.plan_move, qa.epsilon_front, qa.weighted_front, qa.search, qa.MoveFunction),
+    "bound": (qa.plan_move, qa.epsilon_front, qa.weighted_front, qa.search, qa.metaheuristics.MoveFunction),
     "residual_limit": (qa.plan_move,),
     "starts": (qa.plan_move, qa.epsilon_front, qa.energy_floor),
     "seed": (qa.plan_move, qa.epsilon_front, qa.search),
-    "steps": (qa.plan_move, qa.MoveFunction),
+    "steps": (qa.plan_move, qa.metaheuristics.MoveFunction),
     "points": (qa.epsilon_front, qa.weighted_front),
 }
 
@@ -248,11 +248,11 @@ def test_so_is_no_entry_of_a_task(name, value):
         (lambda: qa.deg("30"), "degrees are '30'; give a number, as deg(30)"),
         (lambda: qa.JointSpline(25), "knots is 25; give a list of fractions, as [0.3, 0.7]"),
         (lambda: qa.CycloidSpline(True), "terms is True; give a whole number"),
-        (lambda: qa.Line(3, "x"), "plan is 3; give a plan, as Plan.load('plan.json')"),
+        (lambda: qa.figures.Line(3, "x"), "plan is 3; give a plan, as Plan.load('plan.json')"),
         (lambda: qa.Uncertainty({"frequency": "0.1"}), "is '0.1'; give a number"),
         (lambda: qa.CopperLoss("0.1"), "motor constant is '0.1'; give a number"),
-        (lambda: qa.ModalState(["0.1"], [0]), "is '0.1'; give a number"),
-        (lambda: qa.load_plant_file(3), "path is 3; give the name of a Python file"),
+        (lambda: qa.ocp.ModalState(["0.1"], [0]), "is '0.1'; give a number"),
+        (lambda: qa.models.load_plant_file(3), "path is 3; give the name of a Python file"),
     ],
 )
 def test_what_is_made_of_something_else_says_what_to_give(make, told):
@@ -260,7 +260,7 @@ def test_what_is_made_of_something_else_says_what_to_give(make, told):
         make()
 
 
-@pytest.mark.parametrize("kind", [qa.Plan, qa.Front, qa.Floor])
+@pytest.mark.parametrize("kind", [qa.Plan, qa.Front, qa.ocp.Floor])
 @pytest.mark.parametrize("path", [3, None, ["plan.json"]])
 def test_a_file_has_a_name(right, kind, path):
     with pytest.raises(TypeError, match=r"; give the name of a file, as 'plan\.json'"):

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
+from quietarm.ocp import FreeVibration, Motion, symbolic_rollout
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import PEAKS, integrated
@@ -18,7 +19,7 @@ def _compiled(plant, profile, steps, breaks, energy):
     """(coefficients, row) -> quantities at the nodes, angles, arrival, energy, net work."""
     a, row = ca.MX.sym("a", profile.size), ca.MX.sym("row", 3 + 2 * plant.modes)
     *move, initial = ca.vertsplit(row, [0, 1, 2, 3, row.numel()])
-    found = qa.symbolic_rollout(
+    found = symbolic_rollout(
         plant, profile, ca.vertsplit(a), move, steps, jerk=True, breaks=breaks,
         initial=ca.vertsplit(initial), energy=energy,
     )  # fmt: skip
@@ -36,10 +37,10 @@ def _of_scenario(task, plant, profile, coefficients, steps):
     function = _compiled(plant, profile, steps, profile.breaks(task.duration), task.energy)
     found = function.call([ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.row)])
     *quantities, angles, arrival, energy, net_work = (one.full() for one in found)
-    vibration = qa.FreeVibration(plant, task.target, task.residual_window)
+    vibration = FreeVibration(plant, task.target, task.residual_window)
     past_target = (angles - task.target) * np.sign(task.span)
     peaks = zip(QUANTITIES.values(), quantities, strict=True)
-    motion = qa.Motion(
+    motion = Motion(
         residual=float(np.abs(vibration.rows @ task.missed(arrival.ravel())).max()),
         energy=energy.item(),
         net_work=net_work.item(),

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, ModalState, PositivePower
 import quietarm as qa
 
 ANSWERS = Path(__file__).parents[1] / "ocp" / "golden_answers.json"
@@ -179,8 +180,8 @@ def identified(plant: Any, omega: float, zeta: float) -> Answer:
 
 def _plans() -> dict[str, Question]:
     mix = 0.5 * qa.AbsolutePower() + qa.CopperLoss(0.12)
-    state = qa.ModalState((0.004,), (0.02,))
-    final = qa.ModalState((0.001,), (0.0,))
+    state = ModalState((0.004,), (0.02,))
+    final = ModalState((0.001,), (0.0,))
     asked: dict[str, Callable[[], Answer]] = {}
     for name, (task, bound) in PAPER.items():
         asked[f"plan {name} in its box"] = partial(plan, task, bound=bound)
@@ -197,10 +198,10 @@ def _plans() -> dict[str, Question]:
         "plan 8 terms": partial(plan, HALF, 8, bound=0.5),
         "plan 12 terms": partial(plan, SIXTH, 12, bound=0.2),
         "plan 16 terms": partial(plan, HALF, 16, bound=0.5),
-        "plan gaussians": partial(plan, SIXTH, profile=qa.CycloidGaussians(3), bound=2.0),
-        "plan network": partial(plan, HALF, profile=qa.CycloidNetwork(3), bound=2.0),
+        "plan gaussians": partial(plan, SIXTH, profile=CycloidGaussians(3), bound=2.0),
+        "plan network": partial(plan, HALF, profile=CycloidNetwork(3), bound=2.0),
         "plan spline": partial(plan, SIXTH, profile=qa.CycloidSpline(6)),
-        "plan positive power": partial(plan, link(energy=qa.PositivePower())),
+        "plan positive power": partial(plan, link(energy=PositivePower())),
         "plan copper": partial(plan, arm(energy=qa.CopperLoss(0.12))),
         "plan mix": partial(plan, link(energy=mix)),
         "plan initial state": partial(plan, link(initial=state)),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from quietarm.metaheuristics import PopulationObjective, problem_of
 from quietarm.metaheuristics import run_jobs
 from quietarm.metaheuristics.archive import Archive, entering
 from quietarm.metaheuristics.jobs import Job
@@ -25,7 +26,7 @@ from quietarm.studies.bench.results import Results
 import quietarm as qa
 
 NAME = "single-link-30deg-0.8s-2-terms"
-TASK = qa.problem_of(NAME).task
+TASK = problem_of(NAME).task
 
 
 def one_by_one(candidates):
@@ -61,7 +62,7 @@ def test_a_search_keeps_what_entered_with_the_figures_of_its_candidates(method):
     entries = front.entries
     assert 1 <= entries.candidates[0] <= entries.candidates[-1] <= 300
     assert len(front.points) <= len(entries) < 300
-    values = qa.PopulationObjective(TASK, front.profile)(entries.coefficients)
+    values = PopulationObjective(TASK, front.profile)(entries.coefficients)
     np.testing.assert_allclose(entries.residuals, values.residual, rtol=1e-9, atol=1e-15)
     np.testing.assert_allclose(entries.energies, values.energy, rtol=1e-9)
     assert entries.objectives().tolist()[0] == [entries.residuals[0], entries.energies[0]]
@@ -89,7 +90,7 @@ def test_an_indicator_that_is_added_is_known_on_the_way_of_runs_that_are_stored(
         lambda scaled, scale: moocore.avg_hausdorff_dist(scaled, ref=scale.stations),
     )  # fmt: skip
     front = results.runs[0].front
-    scale = qa.problem_of(NAME).reference()
+    scale = problem_of(NAME).reference()
     on_the_way = scores_on_the_way(front, scale, hausdorff)
     first = scale.scaled(front.entries.objectives(front.history[0].evaluations))
     best = moocore.filter_dominated(first)
@@ -125,5 +126,5 @@ def test_indicators_of_a_square(front_of_two):
 
 @pytest.fixture
 def front_of_two():
-    points = qa.problem_of(NAME).fronts()[0].points
-    return dataclasses.replace(qa.problem_of(NAME).fronts()[0], points=(points[0], points[-1]))
+    points = problem_of(NAME).fronts()[0].points
+    return dataclasses.replace(problem_of(NAME).fronts()[0], points=(points[0], points[-1]))

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from third_opinion import EQUATIONS, PHI
 
+from quietarm.models import JointMotion, joint_unit
 import quietarm as qa
 
 motions = st.floats(-10.0, 10.0)
@@ -40,7 +41,7 @@ def test_mode_shapes_at_the_tips():
 def test_a_plant_meets_its_equations(name, angle, speed, acceleration, W, dW):
     # eqs (8) and (9), (13) and (14), and docs/physics.md, typed afresh with their coefficients
     plant, modes = PLANTS[name], PLANTS[name].modes
-    (W, dW), joint = (np.array([W, dW])[:, :modes]), qa.JointMotion(angle, speed, acceleration)
+    (W, dW), joint = (np.array([W, dW])[:, :modes]), JointMotion(angle, speed, acceleration)
     ddW, torque = EQUATIONS[name](angle, speed, acceleration, W, dW)
     found = [float(x) for x in plant.modal_accelerations(joint, W, dW)]
     assert found == pytest.approx(np.ravel(ddW).tolist(), rel=1e-12, abs=1e-11)
@@ -65,12 +66,12 @@ def test_a_linear_axis_is_two_masses_and_a_spring():
     # mass M with a load m on a spring, m (x'' + W'') = -m omega^2 W - 2 m zeta omega W': the force
     # on the carriage is (M - m) x'' + m (x'' + W'') + c x'
     axis = qa.LinearAxis(omega1=20.0, zeta1=0.1, mass=5.0, load=2.0, friction=3.0)
-    joint = qa.JointMotion(0.2, 0.5, 7.0)
+    joint = JointMotion(0.2, 0.5, 7.0)
     (ddW,) = axis.modal_accelerations(joint, [0.01], [0.3])
     assert ddW == pytest.approx(-7.0 - 2 * 0.1 * 20.0 * 0.3 - 400.0 * 0.01)
     force = axis.torque(joint, [0.01], [0.3], [ddW])
     assert force == pytest.approx((5.0 - 2.0) * 7.0 + 2.0 * (7.0 + ddW) + 3.0 * 0.5)
-    assert qa.joint_unit("rad/s^2", axis.joint) == "m/s^2"
+    assert joint_unit("rad/s^2", axis.joint) == "m/s^2"
     for wrong, told in (({"load": 9.0}, "load is 9 kg"), ({"share1": 1.2}, "shares of the swing")):
         with pytest.raises(ValueError, match=told):
             qa.LinearAxis(**wrong)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fixed_steps import rollout
 from numpy.polynomial import Polynomial
+from quietarm.ocp import Mix, PositivePower
 from quietarm.models import JointMotion
 from quietarm.ocp.checks import known
 from quietarm.ocp.sample import Sample
@@ -39,9 +40,9 @@ class Recovering(qa.Energy):
 
 ENERGIES = {
     "absolute": qa.AbsolutePower(),
-    "positive": qa.PositivePower(),
+    "positive": PositivePower(),
     "copper": qa.CopperLoss(0.12),
-    "mixed": 0.5 * qa.PositivePower() + qa.CopperLoss(0.3),
+    "mixed": 0.5 * PositivePower() + qa.CopperLoss(0.3),
     "own": Recovering(0.6),
 }
 WATTS = {
@@ -115,7 +116,7 @@ def test_copper_loss_of_a_rigid_body():
 
 def test_positive_power_of_a_rigid_body_is_what_it_takes_to_start():
     rigid = qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
-    task = qa.PointToPoint(rigid, math.pi / 6, 0.8, energy=qa.PositivePower())
+    task = qa.PointToPoint(rigid, math.pi / 6, 0.8, energy=PositivePower())
     spent = qa.Candidate.of_profile(task, qa.CycloidPolynomial(0), []).energy
     assert spent == pytest.approx(0.02 * (2 * (math.pi / 6) / 0.8) ** 2 / 2, rel=1e-9)
 
@@ -123,7 +124,7 @@ def test_positive_power_of_a_rigid_body_is_what_it_takes_to_start():
 def test_energies_are_values():
     a, b = qa.AbsolutePower(), qa.CopperLoss(0.12)
     assert known(qa.Energy)["recovering"] is Recovering
-    assert 2 * (a + 0.5 * b) == qa.Mix(((2.0, a), (1.0, b)))
+    assert 2 * (a + 0.5 * b) == Mix(((2.0, a), (1.0, b)))
     assert (2 * (a + 3 * b)).label == "2*absolute+6*copper:0.12"
     assert hash(a + b) == hash(a + b)
     assert Recovering(0.6).label == "recovering:0.6,0.01"

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from quietarm.ocp import FreeVibration
 from quietarm.ocp.window import DefaultWindow, default_window
 from scipy.integrate import solve_ivp
 
@@ -51,7 +52,7 @@ def test_it_sees_a_whole_swing_of_the_slowest_scenario():
     task = move(plant, uncertainty=qa.Uncertainty({"frequency": 0.5}))
     assert task.residual_window == task.certain.residual_window == pytest.approx(4 * math.pi)
     for factor, vibrating in zip((1.0, 0.5, 1.5), task.perturbed_plants, strict=True):
-        vibration = qa.FreeVibration(vibrating, task.target, task.residual_window)
+        vibration = FreeVibration(vibrating, task.target, task.residual_window)
         for phase in np.linspace(0.0, 2 * math.pi, 25):
             state = 0.01 * math.cos(phase), 0.01 * factor * math.sin(phase)
             assert vibration.peak(state) == pytest.approx(2.28 * 0.01, rel=1e-7)
@@ -61,7 +62,7 @@ def test_a_mode_that_is_far_faster_leaves_a_window_that_can_be_resolved():
     fast = replace(TWO, omega1=0.2, omega2=900.0)
     task = move(fast, uncertainty=qa.Uncertainty({"frequency": 0.9}))
     for plant in task.perturbed_plants:
-        assert qa.FreeVibration(plant, task.target, task.residual_window).window > 1.0
+        assert FreeVibration(plant, task.target, task.residual_window).window > 1.0
     # never less than eq (11) has, nor more than a task takes
     assert move(qa.LinearAxis(omega1=1e5)).residual_window == 1.0
     slow = move(qa.LinearAxis(omega1=1e-6))
@@ -96,9 +97,9 @@ def test_the_number_is_in_files_and_stays_when_they_are_loaded(tmp_path):
 def test_many_vibrations_have_windows_of_their_own():
     targets, windows = [0.3, -1.2, 2.0], [0.05, 1.0, 2.0]
     states = np.random.default_rng(4).uniform(-0.1, 0.1, (3, 2))
-    together = qa.FreeVibration(ARM, targets, windows).peak(states)
+    together = FreeVibration(ARM, targets, windows).peak(states)
     for i, (target, window) in enumerate(zip(targets, windows, strict=True)):
-        alone = qa.FreeVibration(ARM, target, window).peak(states[i])
+        alone = FreeVibration(ARM, target, window).peak(states[i])
         assert together[i] == pytest.approx(float(alone), rel=5e-8)
 
 
@@ -119,7 +120,7 @@ def test_the_longest_default_of_several_moves_is_resolved_by_all_of_them():
     fast = qa.LinearAxis(omega1=900.0)
     window = default_window([*moves, (fast, 8.0)])
     assert 1.0 < window < move(CRANE).residual_window
-    qa.FreeVibration(fast, 8.0, window)
+    FreeVibration(fast, 8.0, window)
 
 
 # What a second told of slow machines, and what they leave

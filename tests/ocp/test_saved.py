@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from saved_files import edit
 
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, FileFormatError
 import quietarm as qa
 
 
@@ -25,7 +26,7 @@ def saved(plan, tmp_path):
 
 
 def refusal(path):
-    with pytest.raises(qa.FileFormatError) as error:
+    with pytest.raises(FileFormatError) as error:
         qa.Plan.load(path)
     message = str(error.value)
     assert message.startswith(f"{path} ")
@@ -86,7 +87,7 @@ def test_a_wrong_entry_is_named(saved, place, value, word):
 
 @pytest.mark.parametrize(
     "profile",
-    [qa.JointSpline((0.2, 0.4, 0.6, 0.8)), qa.CycloidGaussians(2), qa.CycloidNetwork(2)],
+    [qa.JointSpline((0.2, 0.4, 0.6, 0.8)), CycloidGaussians(2), CycloidNetwork(2)],
     ids=lambda profile: profile.name,
 )
 def test_a_plan_of_any_profile_loads_in_a_process_of_its_own(profile, tmp_path):

@@ -6,20 +6,22 @@ import sys
 
 import pytest
 
+from quietarm.models import load_plant_file
+from quietarm.ocp import FileFormatError
 import quietarm as qa
 
 
 @pytest.fixture
 def saved(crane_file, tmp_path):
     """A saved plan of the crane, and the plan."""
-    crane = qa.load_plant_file(crane_file)["crane"](omega=2.5)
+    crane = load_plant_file(crane_file)["crane"](omega=2.5)
     plan = qa.evaluate_coefficients(qa.PointToPoint(crane, 1.0, 3.0), [0.1])
     plan.save(tmp_path / "plan.json")
     return tmp_path / "plan.json", plan
 
 
 def _refused(path):
-    with pytest.raises(qa.FileFormatError) as told:
+    with pytest.raises(FileFormatError) as told:
         qa.Plan.load(path)
     return str(told.value)
 
@@ -45,7 +47,7 @@ class Straight(qa.TermProfile):
 
 def test_profiles_and_energies_beside_the_plant_go_to_other_processes(crane_file):
     crane_file.write_text(crane_file.read_text() + BESIDE)
-    module = sys.modules[qa.load_plant_file(crane_file)["crane"].__module__]
+    module = sys.modules[load_plant_file(crane_file)["crane"].__module__]
     for value in (module.Half(0.25), module.Straight(3)):
         assert pickle.loads(pickle.dumps(value)) == value
 
@@ -54,7 +56,7 @@ def test_it_loads_where_the_file_was_given(saved, crane_file, tmp_path):
     path, plan = saved
     assert qa.Plan.load(path) == plan
     (tmp_path / "moved.py").write_bytes(crane_file.read_bytes())
-    qa.load_plant_file(tmp_path / "moved.py")
+    load_plant_file(tmp_path / "moved.py")
     assert qa.Plan.load(path) == plan
 
 
@@ -67,7 +69,7 @@ def test_a_changed_file_is_refused_with_both_digests(saved, crane_file):
     before = hashlib.sha256(crane_file.read_bytes()).hexdigest()
     crane_file.write_text(crane_file.read_text() + "# changed\n")
     after = hashlib.sha256(crane_file.read_bytes()).hexdigest()
-    qa.load_plant_file(crane_file)
+    load_plant_file(crane_file)
     told = _refused(saved[0])
     assert before[:12] in told
     assert after[:12] in told

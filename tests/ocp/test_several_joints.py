@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from several_joints import Gantry, TwoLinks
 
+from quietarm.ocp import PositivePower
 import quietarm as qa
 
 LINKS = qa.PointToPoint(TwoLinks(), target=1.0, duration=0.6)
@@ -105,7 +106,7 @@ def test_a_gantry_takes_the_energy_of_both_carriages(gantry):
 
 @pytest.mark.parametrize("solver", ["sqp", "ipopt"])
 @pytest.mark.parametrize(
-    "energy", [qa.PositivePower(), qa.CopperLoss(3.0)], ids=["positive", "copper"]
+    "energy", [PositivePower(), qa.CopperLoss(3.0)], ids=["positive", "copper"]
 )
 def test_every_energy_sums_over_the_joints(solver, energy):
     plan = qa.plan_move(replace(GANTRY, energy=energy), solver=solver)

@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from quietarm.metaheuristics import NamedProblem
+from quietarm.studies.sweep import MoveLibrary
 from quietarm.metaheuristics import archive
 from quietarm.metaheuristics.jobs import Job, finished_jobs
 from quietarm.metaheuristics.run_files import is_sealed
@@ -60,7 +62,7 @@ def of_these_versions(old, monkeypatch):
 
 def jobs_of(folder):
     problems = [
-        qa.NamedProblem.of_front(name, qa.Front.load(folder / f"{name}.json"))
+        NamedProblem.of_front(name, qa.Front.load(folder / f"{name}.json"))
         for name in ("front", "arm-front")
     ]
     return [
@@ -101,7 +103,7 @@ def test_fronts_and_searches_load_and_are_saved_to_the_same(old, name):
 def test_a_machine_and_a_grid_load(old):
     machine = Identified.load(old / "machine.json")
     assert machine.plant.omega == pytest.approx(18.0, rel=1e-6)  # the recording is of 18 rad/s
-    library = qa.MoveLibrary("grid.zarr")
+    library = MoveLibrary("grid.zarr")
     plan = library.plan(target=np.radians(25.0), duration=0.85)
     assert plan.residual < 2e-4  # between four cells that arrive at rest
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from quietarm.ocp import PositivePower
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.ocp.simulation.grid import default_steps
 
@@ -11,7 +12,7 @@ import quietarm as qa
 
 
 @pytest.fixture(
-    params=[qa.PositivePower(), qa.CopperLoss(0.12), qa.AbsolutePower() + qa.CopperLoss(0.3)],
+    params=[PositivePower(), qa.CopperLoss(0.12), qa.AbsolutePower() + qa.CopperLoss(0.3)],
     ids=lambda energy: energy.label,
 )
 def energy(request):

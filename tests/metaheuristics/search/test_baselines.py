@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from quietarm.metaheuristics import Job, problem_of
 from quietarm.metaheuristics.score import final_share_of_box, shares_of_box
 from small_searches import assert_is_a_front
 
@@ -52,18 +53,18 @@ def test_evaluations_below_a_generation_are_refused():
 
 @pytest.mark.parametrize("given", ["100", math.nan, 100.5])
 def test_a_budget_is_a_whole_number(given):
-    problem = qa.problem_of("single-link-30deg-0.8s-2-terms")
+    problem = problem_of("single-link-30deg-0.8s-2-terms")
     with pytest.raises(ValueError, match=r"evaluations is .*; give a whole number from 1 up"):
         qa.search(TASK, algorithm="nsga2", bound=0.2, evaluations=given)
     with pytest.raises(ValueError, match=r"budget is .*; give a whole number from 1 up"):
         problem.recorded(budget=given)
     with pytest.raises(ValueError, match=r"budget is .*; give a whole number from 1 up"):
-        qa.Job(problem, "nsga2", budget=given)
+        Job(problem, "nsga2", budget=given)
 
 
 @pytest.mark.parametrize("given", [-1, 0])
 def test_a_recording_has_a_budget_from_one_up(given):
-    problem = qa.problem_of("single-link-30deg-0.8s-2-terms")
+    problem = problem_of("single-link-30deg-0.8s-2-terms")
     with pytest.raises(ValueError, match=rf"budget is {given}; give a whole number from 1 up"):
         problem.recorded(budget=given)
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from floors import coarse_floors
 from moves import ARM
+from quietarm.ocp import SolveStatus
 from quietarm.ocp.floor.search import Level
 
 import quietarm as qa
@@ -73,7 +74,7 @@ def test_the_figures_are_those_of_the_independent_integrator():
     floor = coarse_of(ARM)
     check = floor.verification
     assert floor.residual < 1e-8
-    assert floor.status is qa.SolveStatus.OPTIMAL
+    assert floor.status is SolveStatus.OPTIMAL
     assert check.fixed_step_energy == floor.levels[-1].energy
     assert check.energy_difference == pytest.approx(check.fixed_step_energy - floor.energy)
     assert abs(check.energy_difference) < 1e-3 * floor.energy

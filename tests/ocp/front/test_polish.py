@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from quietarm.ocp import FrontPoint, Record, non_dominated
 import quietarm as qa
 
 TASK, BOUND, PROFILE = (
@@ -20,10 +21,10 @@ def rough():
     random, points = np.random.default_rng(0), []
     for coefficients in random.uniform(-BOUND, BOUND, (60, PROFILE.size)):
         motion = qa.Candidate.of_profile(TASK, PROFILE, coefficients).motion
-        points.append(qa.FrontPoint(tuple(coefficients.tolist()), motion.residual, motion.energy))
+        points.append(FrontPoint(tuple(coefficients.tolist()), motion.residual, motion.energy))
     return qa.Front(
-        task=TASK, profile=PROFILE, points=qa.non_dominated(points), reference=(0.015, 0.25),
-        record=qa.Record("random", {"population": 60}, BOUND, 0, 60, seconds=1.0),
+        task=TASK, profile=PROFILE, points=non_dominated(points), reference=(0.015, 0.25),
+        record=Record("random", {"population": 60}, BOUND, 0, 60, seconds=1.0),
     )  # fmt: skip
 
 

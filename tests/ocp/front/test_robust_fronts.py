@@ -7,6 +7,7 @@ from math import pi
 
 import pytest
 
+from quietarm.ocp import perturb_plant
 import quietarm as qa
 
 RANGE, POINTS = 0.15, 4
@@ -34,7 +35,7 @@ def test_a_points_residual_is_the_largest_over_the_scenarios(task, name):
     for point in front.points:
         by_scenario = [
             qa.Candidate.of_profile(
-                replace(task.certain, plant=qa.perturb_plant(task.plant, {"frequency": error})),
+                replace(task.certain, plant=perturb_plant(task.plant, {"frequency": error})),
                 PROFILE,
                 point.coefficients,
             )

@@ -8,12 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from moves import ARM
 
+from quietarm.ocp import FileFormatError, FrontPoint, Mark, Record, non_dominated
 import quietarm as qa
 
 
 def _points(*figures):
     """Points of the given (residual, energy); the coefficient tells them apart."""
-    return tuple(qa.FrontPoint((float(i), -0.5), r, e) for i, (r, e) in enumerate(figures))
+    return tuple(FrontPoint((float(i), -0.5), r, e) for i, (r, e) in enumerate(figures))
 
 
 def _front(points, **changes):
@@ -21,7 +22,7 @@ def _front(points, **changes):
         "task": ARM,
         "profile": qa.CycloidPolynomial(2),
         "points": points,
-        "record": qa.Record("nsga2", {"population": 20, "generations": None}, 0.5, 3, 60),
+        "record": Record("nsga2", {"population": 20, "generations": None}, 0.5, 3, 60),
         "reference": (0.015, 0.25),
         "failed": 2,
         **changes,
@@ -53,7 +54,7 @@ values = st.one_of(
 @given(st.lists(st.tuples(values, values), max_size=25))
 def test_the_points_that_stay_are_those_of_the_definition(figures):
     points = _points(*figures)
-    assert qa.non_dominated(points) == _by_definition(points)
+    assert non_dominated(points) == _by_definition(points)
 
 
 @pytest.mark.parametrize(("limit", "index"), [(1.9e-4, 0), (2e-4, 1), (math.inf, 2)])
@@ -66,7 +67,7 @@ def test_the_cheapest_within_a_residual(limit, index):
 
 @given(st.lists(st.tuples(st.floats(1e-6, 1e-2), st.floats(0.01, 1.0)), min_size=3, max_size=12))
 def test_the_knee_is_farthest_below_the_line_between_the_ends(figures):
-    front = _front(qa.non_dominated(_points(*figures)))
+    front = _front(non_dominated(_points(*figures)))
     if len(front.points) < 3:
         assert front.knee() is front.points[0]
         return
@@ -82,11 +83,11 @@ figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energ
 @given(st.lists(st.tuples(figures, figures), max_size=6), st.integers(0, 2**63), st.floats(0, 1))
 def test_a_front_comes_back_as_it_was(tmp_path_factory, figures, seed, share):
     path = tmp_path_factory.mktemp("front") / "front.json"
-    history = (qa.Mark(20, share),)
-    points = qa.non_dominated(_points(*figures))
+    history = (Mark(20, share),)
+    points = non_dominated(_points(*figures))
     front = _front(points, history=history).restated(seed=seed, seconds=1.25)
     front.save(path)
     assert qa.Front.load(path) == front
     assert qa.Front.load(path).record.seconds == 1.25
-    with pytest.raises(qa.FileFormatError, match="quietarm-front"):
+    with pytest.raises(FileFormatError, match="quietarm-front"):
         qa.Plan.load(path)

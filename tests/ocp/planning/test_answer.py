@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from quietarm.ocp import Verification
 import quietarm as qa
 
 # Table 1, N = 2.
@@ -35,7 +36,7 @@ def any_plan(request, tasks, solved):
 )
 def test_what_counts_as_verified(plan, energies, residuals, agrees):
     motion = replace(plan.motion, energy=energies[1], residual=residuals[1])
-    assert qa.Verification.between(80, energies[0], residuals[0], motion).agrees == agrees
+    assert Verification.between(80, energies[0], residuals[0], motion).agrees == agrees
 
 
 def test_a_saved_plan_loads_equal(any_plan, tmp_path):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from quietarm.ocp import SolveStatus, SolverFailedError
 from quietarm.ocp.planning import many
 
 import quietarm as qa
@@ -20,7 +21,7 @@ def moves(request, plants):
 def test_moves_at_rest_are_planned_as_alone(moves):
     found = qa.plan_moves(moves, bound=0.3)
     assert found.tasks == tuple(moves)
-    assert set(found.status) == {qa.SolveStatus.OPTIMAL}
+    assert set(found.status) == {SolveStatus.OPTIMAL}
     assert (found.residual <= 1e-8).all()
     assert found.by_cvodes.any()
     for task, energy, coefficients in zip(moves, found.energy, found.coefficients, strict=True):
@@ -55,12 +56,12 @@ def test_a_move_without_a_plan_does_not_stop_the_others(plants):
 def test_a_move_that_cvodes_does_not_confirm_has_a_status_and_no_figures(moves, monkeypatch):
     def refuse(problems, *others):
         targets = [problem.transcription.task.target for problem in problems]
-        return [qa.SolverFailedError(f"refused at {target:.3g} rad") for target in targets]
+        return [SolverFailedError(f"refused at {target:.3g} rad") for target in targets]
 
     limited = [replace(task, speed_limit=4.0) for task in moves[:2]]
     monkeypatch.setattr(many, "certify", refuse)
     found = qa.plan_moves(limited, qa.CycloidPolynomial(6))
-    assert set(found.status) == {qa.SolveStatus.NOT_CERTIFIED}
+    assert set(found.status) == {SolveStatus.NOT_CERTIFIED}
     assert not any(status.solved for status in found.status)
     assert all(reason.startswith("refused at") for reason in found.reasons)
     assert found.shadow_prices == ({}, {})

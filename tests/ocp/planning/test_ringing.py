@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fixed_steps import rollout
+from quietarm.ocp import FreeVibration, ModalState, perturb_plant
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from third_opinion import ThirdOpinion
 
@@ -21,7 +22,7 @@ def name(request):
 def _back(task):
     """A move back from where another has ended, which begins with what that has left."""
     modes = task.plant.modes
-    ringing = qa.ModalState(W=(0.008,) * modes, dW=(-0.06,) * modes)
+    ringing = ModalState(W=(0.008,) * modes, dW=(-0.06,) * modes)
     return qa.PointToPoint(task.plant, 0.2, 0.8, task.target, initial=ringing)
 
 
@@ -62,7 +63,7 @@ def test_searches_see_what_cvodes_does(ringing):
 def test_errors_of_the_plant_begin_in_the_same_state(ringing):
     profile, a, errors = qa.CycloidPolynomial(3), [0.05, -0.1, 0.02], {"frequency": 0.07}
     figures = qa.evaluate_robustness(ringing, profile, a, errors, samples=1).sweeps[0].figures
-    wrong = replace(ringing, plant=qa.perturb_plant(ringing.plant, errors))
+    wrong = replace(ringing, plant=perturb_plant(ringing.plant, errors))
     exact = qa.Candidate.of_profile(wrong, profile, a).motion
     assert figures.residual[-1] == pytest.approx(exact.residual, rel=1e-4)
     assert figures.energy[-1] == pytest.approx(exact.energy, rel=1e-5)
@@ -88,7 +89,7 @@ def test_both_solvers_fronts_and_the_floor_begin_in_the_same_state(tasks):
 
 
 def _wanted(plant):
-    return qa.ModalState(W=(0.004,) * plant.modes, dW=(-0.05,) * plant.modes)
+    return ModalState(W=(0.004,) * plant.modes, dW=(-0.05,) * plant.modes)
 
 
 def test_a_wanted_state_is_reached_and_scipy_agrees(tasks, name):
@@ -116,7 +117,7 @@ def test_the_residual_is_the_distance_from_the_wanted_free_vibration(tasks, name
     assert rollout(task, profile, a).motion.residual == pytest.approx(expected, rel=1e-4)
     found = PopulationObjective(task, profile, steps=140)(np.array([a]))
     assert found.residual[0] == pytest.approx(expected, rel=1e-4)
-    vibration = qa.FreeVibration(task.plant, task.target, task.residual_window)
+    vibration = FreeVibration(task.plant, task.target, task.residual_window)
     peak = vibration.peak(task.missed(other.during.y[:, -1]))
     assert peak == pytest.approx(expected, rel=3e-6)
 
@@ -126,7 +127,7 @@ def test_what_rings_adds_to_what_a_move_leaves_on_a_linear_link():
     # again as it did on arrival, and where that is wanted only what the move adds is left.
     link = qa.SingleLinkManipulator(zeta=0.0, beta2=0.0)
     task, plain = qa.PointToPoint(link, 0.5, 2 * np.pi / link.omega), qa.CycloidPolynomial(0)
-    state = qa.ModalState((0.01,), (0.2,))
+    state = ModalState((0.01,), (0.2,))
     own = qa.Candidate.of_profile(task, plain, []).residual
     kept = qa.Candidate.of_profile(replace(task, initial=state, final=state), plain, []).residual
     assert kept == pytest.approx(own, rel=1e-8)
@@ -136,6 +137,6 @@ def test_a_deflection_held_before_the_move_saves_energy(tasks):
     # As Abe (2024) says: bent back before the start, the structure gives its work to the joint.
     task = replace(tasks["single link"], acceleration_limit=40.0)
     from_rest = qa.plan_move(task).energy
-    bent = {W: qa.plan_move(replace(task, initial=qa.ModalState((W,), (0.0,)))).energy
+    bent = {W: qa.plan_move(replace(task, initial=ModalState((W,), (0.0,)))).energy
             for W in (-0.02, 0.02)}  # fmt: skip
     assert bent[-0.02] < 0.75 * from_rest < from_rest < bent[0.02]

@@ -5,6 +5,7 @@ from math import pi
 import casadi as ca
 import pytest
 
+from quietarm.ocp import symbolic_rollout
 import quietarm as qa
 
 TASK = qa.PointToPoint(qa.SingleLinkManipulator(), target=pi / 6, duration=0.8, torque_limit=0.14)
@@ -35,7 +36,7 @@ def test_a_notebook_shows_plans_and_fronts_as_tables():
 def test_a_rollout_takes_a_column_of_symbols_and_gives_weights(symbols):
     """The weighted powers add up to the net work that CVODES finds."""
     a = symbols.sym("a", 6)
-    found = qa.symbolic_rollout(TASK.plant, qa.CycloidPolynomial(6), a, TASK.move, steps=60)
+    found = symbolic_rollout(TASK.plant, qa.CycloidPolynomial(6), a, TASK.move, steps=60)
     pairs = zip(found.weights, found.power, strict=True)
     work = ca.Function("work", [a], [sum(ca.dot(*pair) for pair in pairs)])
     plan = qa.evaluate_coefficients(TASK, [0.02, -0.1, 0.01, 0.1, 0.05, -0.5])

@@ -8,6 +8,7 @@ import pytest
 from fixed_steps import rollout
 from third_opinion import followed
 
+from quietarm.models import JointMotion
 import quietarm as qa
 
 pi = math.pi
@@ -47,7 +48,7 @@ def test_scipy_restarted_at_every_impulse_agrees(plant, modes, duration):
             angle += share * (x - math.sin(x)) / (2 * pi)
             speed += share * (1 - math.cos(x)) / cycloid
             acceleration += share * 2 * pi * math.sin(x) / cycloid**2
-        return qa.JointMotion(angle, speed, acceleration)
+        return JointMotion(angle, speed, acceleration)
 
     corners = sorted({0.0, duration, *profile.impulses.times})
     corners = sorted({*corners, *(begin + cycloid for _, begin in impulses)})

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from quietarm.ocp import cross_check
 from quietarm.metaheuristics.gradient import multistart_front
 from quietarm.ocp.front.polish import polish_front
 from quietarm.ocp.solvers.choice import other_solver, stand_in, stated_solver
@@ -43,7 +44,7 @@ def robust(solver):
 def checked(solver):
     """The record of a front says by which solver it was found."""
     front = qa.epsilon_front(TASK, TWO, bound=0.3, points=3, starts=1, solver=solver)
-    return qa.cross_check(front, checked_points=2)
+    return cross_check(front, checked_points=2)
 
 
 def polished(solver):

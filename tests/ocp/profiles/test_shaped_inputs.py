@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
+from quietarm.ocp import CycloidGaussians, CycloidNetwork
 import quietarm as qa
 
-UNITS = {"gaussians": qa.CycloidGaussians, "network": qa.CycloidNetwork}
+UNITS = {"gaussians": CycloidGaussians, "network": CycloidNetwork}
 FAMILIES = {**UNITS, "spline": qa.CycloidSpline}
 
 
@@ -64,8 +65,8 @@ def test_a_bound_is_for_the_weights_of_units(of_units):
 @pytest.mark.parametrize(
     ("name", "profile"),
     [
-        ("single link", qa.CycloidGaussians(3)),
-        ("arm", qa.CycloidNetwork(3)),
+        ("single link", CycloidGaussians(3)),
+        ("arm", CycloidNetwork(3)),
         ("two links", qa.CycloidSpline()),
     ],
 )

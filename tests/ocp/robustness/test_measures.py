@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from quietarm.ocp import perturb_plant
 import quietarm as qa
 
 LINEAR = qa.SingleLinkManipulator(beta2=0.0, zeta=0.0)
@@ -23,7 +24,7 @@ def of_plan(plan, ranges, **settings):
 
 def alone(plan, errors):
     """The figures of a plan on one plant with errors, by CVODES."""
-    task = replace(plan.task, plant=qa.perturb_plant(plan.task.plant, errors))
+    task = replace(plan.task, plant=perturb_plant(plan.task.plant, errors))
     return qa.Candidate.of_profile(task, plan.profile, plan.coefficients).motion
 
 

@@ -8,6 +8,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from quietarm.models import JointMotion
+from quietarm.ocp import FreeVibration, perturb_plant
 import quietarm as qa
 
 PLANTS = [qa.SingleLinkManipulator(), qa.ArmOnFlexibleLink(), qa.DualLinkManipulator()]
@@ -38,7 +40,7 @@ class Mobile(qa.Plant):
 
 def outputs(plant, numbers):
     """All that a plant's equations give at one motion."""
-    joint, state = qa.JointMotion(*numbers[:3]), np.reshape(numbers[3:], (3, -1))[:, : plant.modes]
+    joint, state = JointMotion(*numbers[:3]), np.reshape(numbers[3:], (3, -1))[:, : plant.modes]
     W, dW, ddW = state.tolist()
     given = [*plant.modal_accelerations(joint, W, dW), plant.torque(joint, W, dW, ddW)]
     return [float(value) for value in (*given, *plant.tip_displacements(W))]
@@ -54,7 +56,7 @@ def test_an_error_of_the_frequency_is_one_of_the_parameter_of_that_meaning(plant
         for name in plant.parameters
         if "omega" in name or "zeta" in name
     }
-    one, other = qa.perturb_plant(plant, errors), qa.perturb_plant(plant, by_name)
+    one, other = perturb_plant(plant, errors), perturb_plant(plant, by_name)
     for numbers in np.random.default_rng(1).uniform(-2, 2, (5, 9)):
         assert outputs(one, numbers) == pytest.approx(outputs(other, numbers), rel=1e-12)
 
@@ -63,16 +65,16 @@ def test_an_error_of_the_frequency_is_one_of_the_parameter_of_that_meaning(plant
 @pytest.mark.parametrize("plant", [qa.ArmOnFlexibleLink(), Mobile()], ids=lambda plant: plant.name)
 def test_every_frequency_of_any_plant_is_scaled_and_its_damping_stays(plant, angle):
     # W'' = -s D W' - s^2 K W has s times the eigenvalues of W'' = -D W' - K W.
-    changed = qa.perturb_plant(plant, {"frequency": -0.3})
+    changed = perturb_plant(plant, {"frequency": -0.3})
     for (omega, zeta), now in zip(
-        qa.FreeVibration(plant, angle).modes, qa.FreeVibration(changed, angle).modes, strict=True
+        FreeVibration(plant, angle).modes, FreeVibration(changed, angle).modes, strict=True
     ):
         assert now == pytest.approx((0.7 * omega, zeta), rel=1e-9)
 
 
 def test_the_damping_of_coupled_modes_is_scaled_to_first_order():
-    assumed = qa.FreeVibration(Mobile(), 0.0).modes
-    damped = qa.FreeVibration(qa.perturb_plant(Mobile(), {"damping": 0.5}), 0.0).modes
+    assumed = FreeVibration(Mobile(), 0.0).modes
+    damped = FreeVibration(perturb_plant(Mobile(), {"damping": 0.5}), 0.0).modes
     for (omega, zeta), now in zip(assumed, damped, strict=True):
         # Second-order terms: products of damping ratios, at most 0.05.
         assert now == pytest.approx((omega, 1.5 * zeta), rel=0.05**2 * 4)

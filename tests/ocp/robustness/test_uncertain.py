@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 import pytest
 from fixed_steps import rollout
+from quietarm.ocp import perturb_plant
 from quietarm.ocp.robustness import perturbed_figures
 
 import quietarm as qa
@@ -39,7 +40,7 @@ def test_figures_are_the_worst_of_the_parts_alone(of, request):
     alone = [
         qa.Candidate.of_profile(replace(task.certain, plant=plant), profile, MOVE).motion
         for plant in (
-            qa.perturb_plant(task.plant, dict(zip(task.error_names, errors, strict=True)))
+            perturb_plant(task.plant, dict(zip(task.error_names, errors, strict=True)))
             for errors in task.scenarios
         )
     ]
@@ -60,7 +61,7 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
     errors = np.reshape(grid, (2, -1)).T
     largest = perturbed_figures(task, evaluated.profile, MOVE, task.ranges, errors)[:, 0].max()
     assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
-    there = qa.perturb_plant(task.plant, evaluated.worst.errors)
+    there = perturb_plant(task.plant, evaluated.worst.errors)
     again = qa.Candidate.of_profile(
         replace(task.certain, plant=there), evaluated.profile, MOVE
     ).motion

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, PositivePower, symbolic_rollout
 import quietarm as qa
 
 PLANTS = {
@@ -18,13 +19,13 @@ PLANTS = {
 }
 PROFILES = {
     "polynomial": qa.CycloidPolynomial(6),
-    "gaussians": qa.CycloidGaussians(3),
-    "network": qa.CycloidNetwork(3),
+    "gaussians": CycloidGaussians(3),
+    "network": CycloidNetwork(3),
     "spline": qa.CycloidSpline(6),
 }
 ENERGIES = {
     "absolute": qa.AbsolutePower(),
-    "positive": qa.PositivePower(),
+    "positive": PositivePower(),
     "copper": qa.CopperLoss(0.12),
 }
 MOST = max(profile.size for profile in PROFILES.values())
@@ -40,7 +41,7 @@ def derivatives(plant, profile, energy):
     """(coefficients) -> values, their Jacobian, the energy's gradient and its Hessian."""
     shape, move = PROFILES[profile], (0.1, 1.0, 0.9)
     a = ca.MX.sym("a", shape.size)
-    found = qa.symbolic_rollout(
+    found = symbolic_rollout(
         PLANTS[plant], shape, ca.vertsplit(a), move, 12,
         jerk=True, breaks=shape.breaks(move[2]), energy=ENERGIES[energy],
     )  # fmt: skip

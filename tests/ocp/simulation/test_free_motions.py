@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from quietarm.models import JointMotion
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from third_opinion import followed
 
@@ -33,7 +34,7 @@ def test_figures_are_those_of_scipy(tasks, free, name):
     def joint(t):
         k = min(np.searchsorted(free.times, t, side="right") - 1, free.steps - 1)
         a, j, t = free.acceleration[k], free.jerk[k], t - free.times[k]
-        return qa.JointMotion(
+        return JointMotion(
             angle[k] + speed[k] * t + a * t**2 / 2 + j * t**3 / 6,
             speed[k] + a * t + j * t**2 / 2,
             a + j * t,

@@ -5,6 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from quietarm.ocp import FreeVibration, perturb_plant
 from quietarm.ocp.simulation.free_vibration import fastest_along
 
 import quietarm as qa
@@ -37,7 +38,7 @@ def _arm(target):
 )
 def test_every_tip_decays_freely(plant, target, modes):
     W, dW = [0.02, -0.01][: len(modes)], [0.3, 0.1][: len(modes)]
-    times, vibration = np.linspace(0.0, 30.0, 5001), qa.FreeVibration(plant, target)
+    times, vibration = np.linspace(0.0, 30.0, 5001), FreeVibration(plant, target)
     tips = vibration.states([*W, *dW], times) @ vibration.tips.T
     for i, (phi, omega, zeta) in enumerate(modes):
         expected = phi * _decay(W[i], dW[i], omega, zeta, times)
@@ -49,7 +50,7 @@ def test_a_tip_that_does_not_swing_creeps_back():
     # Critical damping: W = (W0 + (W'0 + omega W0) t) exp(-omega t); its equations have one
     # eigenvector, so that they fall apart into no modes.
     plant = qa.SingleLinkManipulator(omega=5.0, zeta=1.0)
-    vibration, t = qa.FreeVibration(plant, 0.0, 2.0), np.linspace(0.0, 2.0, 101)
+    vibration, t = FreeVibration(plant, 0.0, 2.0), np.linspace(0.0, 2.0, 101)
     expected = (0.01 + (0.2 + 0.05) * t) * np.exp(-5 * t)
     assert vibration.states([0.01, 0.2], t)[:, 0] == pytest.approx(expected, abs=1e-13)
     # The largest where the rate is zero: t = 1/omega - W0/(W'0 + omega W0).
@@ -62,23 +63,23 @@ def test_a_tip_that_does_not_swing_creeps_back():
 def test_many_vibrations_at_once_are_each_alone(plants, name):
     plant, targets = plants[name], np.array([0.3, -1.2, 2.0])
     states = np.random.default_rng(4).uniform(-0.1, 0.1, (3, 2 * plant.modes))
-    together = qa.FreeVibration(plant, targets, 1.0).peak(states)
+    together = FreeVibration(plant, targets, 1.0).peak(states)
     for i, target in enumerate(targets):
-        alone = qa.FreeVibration(plant, target, 1.0).peak(states[i])
+        alone = FreeVibration(plant, target, 1.0).peak(states[i])
         assert together[i] == pytest.approx(float(alone), rel=5e-8)
     errors = np.array([-0.1, 0.0, 0.2])
-    perturbed = qa.perturb_plant(plant, {"frequency": ca.DM(errors)})
-    together = qa.FreeVibration(perturbed, targets, 1.0).peak(states)
+    perturbed = perturb_plant(plant, {"frequency": ca.DM(errors)})
+    together = FreeVibration(perturbed, targets, 1.0).peak(states)
     for i, error in enumerate(errors):
-        other = qa.perturb_plant(plant, {"frequency": error})
-        alone = qa.FreeVibration(other, targets[i], 1.0).peak(states[i])
+        other = perturb_plant(plant, {"frequency": error})
+        alone = FreeVibration(other, targets[i], 1.0).peak(states[i])
         assert together[i] == pytest.approx(float(alone), rel=1e-7)
 
 
 def test_the_peak_is_the_amplitude():
     # Undamped: |w| peaks at phi sqrt(W^2 + (W'/omega)^2), wherever between two samples; the rows
     # are at most 0.01 radians of it.
-    vibration = qa.FreeVibration(qa.SingleLinkManipulator(zeta=0.0), 1.0, 1.0)
+    vibration = FreeVibration(qa.SingleLinkManipulator(zeta=0.0), 1.0, 1.0)
     phases = np.linspace(0.0, 2 * np.pi, 50)
     states = np.column_stack([0.01 * np.cos(phases), -0.1043 * np.sin(phases)])
     assert vibration.peak(states) == pytest.approx(0.0228, rel=5e-8)
@@ -89,7 +90,7 @@ def test_the_peak_is_the_amplitude():
 
 def test_a_peak_at_an_end_of_the_window_counts():
     # In a fiftieth of a period the tip moves outwards only, or inwards only.
-    vibration = qa.FreeVibration(qa.SingleLinkManipulator(zeta=0.0), 1.0, 0.012)
+    vibration = FreeVibration(qa.SingleLinkManipulator(zeta=0.0), 1.0, 0.012)
     after = vibration.states([0.01, 0.05], 0.012)[0, 0]
     assert vibration.peak([0.01, 0.05]) == pytest.approx(2.28 * after, rel=1e-12)
     assert vibration.peak([0.01, -0.05]) == pytest.approx(0.0228, rel=1e-12)
@@ -98,7 +99,7 @@ def test_a_peak_at_an_end_of_the_window_counts():
 
 def test_a_window_that_cannot_be_resolved_is_refused():
     with pytest.raises(ValueError, match=r"residual window 1000 s .* give at most 384 s"):
-        qa.FreeVibration(qa.SingleLinkManipulator(), 1.0, 1000.0)
+        FreeVibration(qa.SingleLinkManipulator(), 1.0, 1000.0)
 
 
 @pytest.mark.parametrize(("start", "target"), [(0.0, math.pi / 2), (math.pi / 2, 0.0)])
@@ -112,7 +113,7 @@ def test_the_arms_fastest_mode_is_at_the_angle_of_least_mass(start, target):
 @pytest.mark.parametrize("target", [math.pi / 6, -1.0])
 def test_the_rows_hold_the_largest_displacement_of_any_state(plants, name, target):
     plant = {**plants, "damped link": qa.SingleLinkManipulator(zeta=0.1)}[name]
-    vibration = qa.FreeVibration(plant, target, 1.0)
+    vibration = FreeVibration(plant, target, 1.0)
     states = np.random.default_rng(0).standard_normal((500, 2 * plant.modes))
     kept = np.abs(states @ vibration.rows.T).max(axis=1)
     np.testing.assert_allclose(kept, vibration.peak(states), rtol=6e-5)
@@ -120,12 +121,12 @@ def test_the_rows_hold_the_largest_displacement_of_any_state(plants, name, targe
 
 
 def test_in_a_window_of_no_length_the_displacement_on_arrival_counts():
-    vibration = qa.FreeVibration(qa.SingleLinkManipulator(), 1.0)
+    vibration = FreeVibration(qa.SingleLinkManipulator(), 1.0)
     assert vibration.peak([0.01, 5.0]) == pytest.approx(2.28 * 0.01, rel=1e-12)
     assert np.abs(vibration.rows @ [0.01, 5.0]).max() == pytest.approx(2.28 * 0.01, rel=1e-12)
 
 
 def test_modes_are_those_that_swing_be_they_slow():
-    assert qa.FreeVibration(qa.SingleLinkManipulator(omega=5.0, zeta=1.2), 0.0).modes == []
-    slow = qa.FreeVibration(qa.SingleLinkManipulator(omega=0.5, zeta=0.1), 0.0)
+    assert FreeVibration(qa.SingleLinkManipulator(omega=5.0, zeta=1.2), 0.0).modes == []
+    slow = FreeVibration(qa.SingleLinkManipulator(omega=0.5, zeta=0.1), 0.0)
     assert slow.modes == [pytest.approx((0.5, 0.1), rel=1e-9)]

@@ -6,6 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from fixed_steps import rollout
+from quietarm.ocp import ModalState, symbolic_rollout
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 
 import quietarm as qa
@@ -36,7 +37,7 @@ def test_an_initial_state_decays_beside_the_move():
     plant, T, omega = _undamped(10.43), 0.8, 10.43
     still, ringing = (
         rollout(qa.PointToPoint(plant, pi / 6, T, initial=state), PLAIN, []).arrival
-        for state in (None, qa.ModalState((0.01,), (0.2,)))
+        for state in (None, ModalState((0.01,), (0.2,)))
     )
     cosine, sine = math.cos(omega * T), math.sin(omega * T)
     added = [0.01 * cosine + 0.2 / omega * sine, 0.2 * cosine - 0.01 * omega * sine]
@@ -132,14 +133,14 @@ def test_the_weights_integrate_up_to_degree_five_exactly(power):
 def test_a_rollout_needs_all_coefficients_of_its_profile(tasks, profile):
     task = tasks["arm"]
     with pytest.raises(ValueError, match="got 5 coefficients for a profile of 6; give one each"):
-        qa.symbolic_rollout(task.plant, profile, ca.SX.sym("a", 5), task.move, 20)
+        symbolic_rollout(task.plant, profile, ca.SX.sym("a", 5), task.move, 20)
 
 
 def test_the_weights_of_a_rollout_sum_to_the_duration(tasks):
     task, profile = tasks["arm"], qa.CycloidPolynomial(2)
-    motion = qa.symbolic_rollout(task.plant, profile, ca.DM([-0.1, -0.4]), task.move, 20)
+    motion = symbolic_rollout(task.plant, profile, ca.DM([-0.1, -0.4]), task.move, 20)
     assert sum(float(ca.sum2(one)) for one in motion.weights) == pytest.approx(
         task.duration, rel=1e-12
     )
-    broken = qa.symbolic_rollout(task.plant, profile, [0.0, 0.0], task.move, 20, breaks=(0.5,))
+    broken = symbolic_rollout(task.plant, profile, [0.0, 0.0], task.move, 20, breaks=(0.5,))
     assert (motion.unbroken, broken.unbroken) == (True, False)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fixed_steps import rollout
+from quietarm.ocp import ModalState, perturb_plant
 from quietarm.ocp.limits import QUANTITIES as BY_NAME
 from quietarm.ocp.solvers.batch import Multipliers, batch
 
@@ -46,12 +47,12 @@ def _derivatives(made, candidates, width=0.0, weights=None):
 @pytest.mark.parametrize("errors", [{}, ERRORS], ids=["as assumed", "with errors"])
 def test_figures_are_those_of_the_rollout(task, errors):
     profile, steps = qa.CycloidPolynomial(4), 40
-    ringing = qa.ModalState(*np.reshape([0.01, -0.1, 0.02, 0.05][: 2 * task.plant.modes], (2, -1)))
+    ringing = ModalState(*np.reshape([0.01, -0.1, 0.02, 0.05][: 2 * task.plant.modes], (2, -1)))
     task = replace(task, start=-0.2, initial=ringing, **dict.fromkeys(LIMITS, 1.0))
     made = batch(task.plant, profile, steps, QUANTITIES, tuple(errors))
     a = _candidates(1, made.simulation)[0]
     inputs = a, np.array([task.row]), np.array([list(errors.values())])
-    wrong = replace(task, plant=qa.perturb_plant(task.plant, errors))
+    wrong = replace(task, plant=perturb_plant(task.plant, errors))
     expected = rollout(wrong, profile, a[0], steps=steps)
     for found in (made.values(*inputs), _derivatives(made, inputs)):
         assert found.arrival[0] == pytest.approx(np.array(expected.arrival), rel=1e-8, abs=1e-12)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
+from quietarm.ocp import SolveStatus
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, TorqueSpeedLine
 from quietarm.ocp.solvers import ipopt as ipopt_module
 from quietarm.ocp.solvers.ipopt import Ipopt
@@ -66,7 +67,7 @@ def test_both_solvers_agree(link_and_arm, name, what):
         "peak": (limited, _ask(AT_REST, None, {"torque": 1.0})),
     }[what]
     sqp, ipopt = (_solved(steps, ask, solver) for solver in SOLVERS)
-    assert sqp.status is qa.SolveStatus.OPTIMAL
+    assert sqp.status is SolveStatus.OPTIMAL
     assert ipopt.status.solved
     if what == "peak":  # of several motions of the same peak, hardly of the same energy
         assert ipopt.peaks["torque"] == pytest.approx(sqp.peaks["torque"], rel=1e-6)
@@ -204,5 +205,5 @@ def test_how_a_start_ended_is_said_truly(link_and_arm):
     steps, _, box = link_and_arm["arm"]
     problem = Problem(steps, _ask(AT_REST, box))
     found = Sqp().solve([problem] * 4, [PROFILE.plain] * 4, groups=[0] * 4)
-    assert [one.status for one in found].count(qa.SolveStatus.SUPERSEDED) == 3
+    assert [one.status for one in found].count(SolveStatus.SUPERSEDED) == 3
     assert all("another start" in one.reason for one in found if not one.status.solved)

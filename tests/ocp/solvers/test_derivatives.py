@@ -3,6 +3,7 @@
 import casadi as ca
 import numpy as np
 import pytest
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, perturb_plant
 from quietarm.ocp.energy import ABSOLUTE_POWER, CopperLoss, PositivePower
 from quietarm.ocp.limits import QUANTITIES, Limit, TorqueSpeedLine
 from quietarm.ocp.simulation.objective import integrated, resolved_energy
@@ -17,8 +18,8 @@ MOVE = [0.1, 1.3, 0.8]
 PROFILES = {
     "polynomial": qa.CycloidPolynomial(4),
     "spline": qa.CycloidSpline(5),
-    "gaussians": qa.CycloidGaussians(2),
-    "network": qa.CycloidNetwork(2),
+    "gaussians": CycloidGaussians(2),
+    "network": CycloidNetwork(2),
 }
 ENERGIES = {"absolute": ABSOLUTE_POWER, "mixed": 0.5 * PositivePower() + CopperLoss(0.3)}
 CASES = [
@@ -42,7 +43,7 @@ def case(request, plants):
     plant, profile, energy = plants[plant], PROFILES[profile], ENERGIES[energy]
     quantities = (*QUANTITIES.values(), LINE.quantity)
     made = batch(plant, profile, STEPS, quantities, names, energy)
-    plant = qa.perturb_plant(plant, dict(zip(names, ERRORS, strict=False)))
+    plant = perturb_plant(plant, dict(zip(names, ERRORS, strict=False)))
     a, width = ca.MX.sym("a", profile.size), ca.MX.sym("width")
     rollout = symbolic_rollout(
         plant, profile, a, MOVE, STEPS, jerk=True, initial=_ringing(plant.modes)

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from bench_problems import NAME, OTHERS
+from quietarm.metaheuristics import problem_of
 from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.metaheuristics.score import CORNER, INDICATORS
@@ -22,7 +23,7 @@ import quietarm as qa
 
 
 def test_measures_are_moocores_from_the_files_alone(fronts):
-    reference = qa.problem_of(NAME).fronts()[0]
+    reference = problem_of(NAME).fronts()[0]
     best = np.c_[reference.residuals, reference.energies]
     ideal, extent = best.min(axis=0), np.ptp(best, axis=0)
     for run in Results.of_jobs(fronts).runs:
@@ -44,7 +45,7 @@ LONG = ["arm-on-flexible-link-90deg-0.8s-12-terms", "single-link-30deg-0.8s-20-t
 
 @pytest.mark.parametrize("name", [*LONG, "dual-link-90deg-0.9s"])
 def test_random_candidates_are_within_the_accuracy_stated(name):
-    problem = qa.problem_of(name)
+    problem = problem_of(name)
     own, fine = problem.function(), problem.function(steps=384)
     rows = np.random.default_rng(3).uniform(own.lower, own.upper, (100, len(own.lower)))
     assert own(rows)[0] == pytest.approx(fine(rows)[0], rel=ACCURACY)
@@ -52,7 +53,7 @@ def test_random_candidates_are_within_the_accuracy_stated(name):
 
 def test_a_recorded_run_has_the_figures_of_a_job(fronts):
     job, front = next((j, f) for j, f in fronts.items() if j.method == "random")
-    recorded = qa.problem_of(NAME).recorded()
+    recorded = problem_of(NAME).recorded()
     rng = np.random.default_rng(0)
     for _ in range(2):
         recorded(rng.uniform(recorded.lower, recorded.upper, (100, 2)))
@@ -63,7 +64,7 @@ def test_a_recorded_run_has_the_figures_of_a_job(fronts):
     assert last.energy == qa.evaluate_coefficients(found.task, last.coefficients).energy
     results = Results.of_jobs({job: front}, [found])
     assert set(results.methods) == {"random", "my tool"}
-    elsewhere = qa.problem_of(OTHERS[0]).recorded()
+    elsewhere = problem_of(OTHERS[0]).recorded()
     elsewhere(rng.uniform(-0.1, 0.1, (50, 2)))
     with pytest.raises(ValueError, match="give that problem too"):
         Results.of_jobs({job: front}, [elsewhere.front("my tool")])
@@ -130,7 +131,7 @@ def test_the_command_counts_imports_and_refuses_them_before_it_runs(call, tmp_pa
 def test_a_folder_of_imports_leaves_runs_of_other_problems_out_and_names_them(call, tmp_path):
     rng = np.random.default_rng(0)
     for name, seed in ((NAME, 0), (OTHERS[0], 1)):
-        recorded = qa.problem_of(name).recorded()
+        recorded = problem_of(name).recorded()
         recorded(rng.uniform(recorded.lower, recorded.upper, (50, 2)))
         (tmp_path / "runs").mkdir(exist_ok=True)
         recorded.save(tmp_path / "runs" / f"{seed}.json", "my tool", seed)
@@ -150,7 +151,7 @@ def test_a_folder_of_imports_leaves_runs_of_other_problems_out_and_names_them(ca
 
 
 def test_an_imported_run_that_evaluates_the_reference_front_is_named(call, tmp_path):
-    problem = qa.problem_of(NAME)
+    problem = problem_of(NAME)
     coefficients, _ = problem.optimum()
     more = np.random.default_rng(0).uniform(-problem.bound, problem.bound, (300, 2))
     # the third is moved by what changes no figure, the fourth by a twentieth of the distance (of
@@ -228,7 +229,7 @@ def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
 
 
 def test_a_folder_of_runs_with_a_broken_file_imports_the_rest_and_names_it(call, tmp_path):
-    recorded = qa.problem_of(NAME).recorded()
+    recorded = problem_of(NAME).recorded()
     recorded(np.random.default_rng(0).uniform(recorded.lower, recorded.upper, (50, 2)))
     runs = tmp_path / "runs"
     runs.mkdir()

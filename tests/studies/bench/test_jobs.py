@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from bench_problems import NAME, OTHERS
 from pymoo.algorithms.moo.nsga2 import NSGA2
+from quietarm.metaheuristics import LostJobsError
 from quietarm.metaheuristics import Job, finished_jobs, run_jobs
 from quietarm.studies.bench.asked import jobs_of, problems_of
 from quietarm.studies.bench.results import Results
@@ -140,7 +141,7 @@ def test_a_job_that_fails_stops_no_other(tmp_path):
         raise ValueError("it broke")
 
     jobs = [Job(NAME, broken, 0, 50), Job(NAME, "random", 0, 100)]
-    with pytest.raises(qa.LostJobsError, match="it broke; 1 job is done") as caught:
+    with pytest.raises(LostJobsError, match="it broke; 1 job is done") as caught:
         run_jobs(jobs, tmp_path)
     assert list(caught.value.fronts) == [jobs[1]]
     assert len(list(tmp_path.rglob("*.json"))) == 1

@@ -7,6 +7,7 @@ import shutil
 import numpy as np
 import pytest
 from bench_problems import NAME
+from quietarm.metaheuristics import NamedProblem, problem_of
 from quietarm.metaheuristics import Job, finished_jobs, run_jobs
 from quietarm.metaheuristics.run_files import CHECKSUM, is_sealed
 
@@ -174,12 +175,12 @@ def test_the_command_refuses_a_changed_run_in_one_line(call, runs):
 
 
 def test_runs_measured_against_another_reference_are_refused(tmp_path):
-    reference = qa.problem_of(NAME).fronts()[0]
+    reference = problem_of(NAME).fronts()[0]
     for points in (reference.points, reference.points[::2]):
         front = qa.Front(
             reference.task, reference.profile, points, reference.record, reference.reference
         )
-        job = Job(qa.NamedProblem.of_front("mine", front), "random", 0, 100)
+        job = Job(NamedProblem.of_front("mine", front), "random", 0, 100)
         if points is reference.points:
             run_jobs([job], tmp_path)
         else:

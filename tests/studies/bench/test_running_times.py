@@ -5,6 +5,7 @@ import gzip
 import numpy as np
 import pandas as pd
 import pytest
+from quietarm.metaheuristics import Job, NamedProblem, problem_of, run_jobs
 from quietarm.studies.bench.page import bench_report
 from quietarm.studies.bench.results import Results
 from quietarm.studies.bench.running_times import (
@@ -20,14 +21,14 @@ import quietarm as qa
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     """Two searches and the gradient on a small problem of one's own."""
-    reference = qa.problem_of("single-link-30deg-0.8s-2-terms").fronts()[0]
-    problem = qa.NamedProblem.of_front("mine", reference)
+    reference = problem_of("single-link-30deg-0.8s-2-terms").fronts()[0]
+    problem = NamedProblem.of_front("mine", reference)
     jobs = [
-        *(qa.Job(problem, "random", seed, 300) for seed in range(3)),
-        *(qa.Job(problem, "nsga2", seed, 300, {"population": 20}) for seed in range(3)),
-        *(qa.Job(problem, "epsilon", seed, settings={"points": 12}) for seed in range(2)),
+        *(Job(problem, "random", seed, 300) for seed in range(3)),
+        *(Job(problem, "nsga2", seed, 300, {"population": 20}) for seed in range(3)),
+        *(Job(problem, "epsilon", seed, settings={"points": 12}) for seed in range(2)),
     ]
-    return Results.of_jobs(qa.run_jobs(jobs, tmp_path_factory.mktemp("runs")))
+    return Results.of_jobs(run_jobs(jobs, tmp_path_factory.mktemp("runs")))
 
 
 @pytest.mark.parametrize("name", ["histories.csv", "histories.csv.gz"])

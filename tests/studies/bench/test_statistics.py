@@ -13,6 +13,7 @@ import pytest
 from bench_problems import NAME, OTHERS
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from quietarm.metaheuristics import PROBLEMS, problem_of
 from quietarm.studies.bench.page import bench_report, problem_table
 from quietarm.studies.bench.results import Results, Run, quartiles
 from quietarm.studies.bench.statistics import (
@@ -84,7 +85,7 @@ def test_against_a_repeated_method_five_runs_give_no_verdict(fronts):
 
 def test_runs_are_told_to_be_one_by_their_fronts(fronts):
     """Motions differ and their points do not; columns computed from them round either way."""
-    problem = qa.problem_of(NAME)
+    problem = problem_of(NAME)
     front = next(front for job, front in fronts.items() if job.method == "epsilon")
     best = problem.reference().front
 
@@ -124,7 +125,7 @@ def results_with(one, other, front):
         for seed, number in enumerate(numbers):
             point = replace(still, residual=0.0 if number else 1.0, energy=1.0 + number)
             own = replace(front.restated(seed=seed), points=(point,))
-            runs.append(Run(qa.problem_of(NAME), method, own))
+            runs.append(Run(problem_of(NAME), method, own))
     return Results(runs)
 
 
@@ -183,7 +184,7 @@ import quietarm as qa
 from quietarm.studies.bench.results import Results, Run
 from quietarm.studies.bench.page import bench_report, brief_report
 
-problem, front = qa.problem_of("single-link-30deg-0.8s-2-terms"), qa.Front.load(sys.argv[1])
+problem, front = problem_of("single-link-30deg-0.8s-2-terms"), qa.Front.load(sys.argv[1])
 runs = [
     Run(problem, method, replace(front, points=front.points[i:]).restated(seed=seed))
     for method in ("gde3", "nsga2", "spea2", "random", "vepso", "nsga3", "smsemoa")
@@ -211,24 +212,24 @@ def test_a_report_does_not_depend_on_the_order_of_sets(fronts, tmp_path):
 
 def test_of_motions_that_nobody_found_there_is_no_verdict(fronts):
     far = [(job.label, replace(front, points=front.points[-1:])) for job, front in fronts.items()]
-    results = Results([Run(qa.problem_of(NAME), *one) for one in far])
+    results = Results([Run(problem_of(NAME), *one) for one in far])
     assert set(pairs_on(results, NAME, "energy_1mm")["p"]) == {1.0}
     assert verdict_on(results, NAME, "energy_1mm") == "no method has such a motion in the median"
 
 
 def test_problems_of_one_move_count_once():
-    groups = moves_of([qa.problem_of(name) for name in (NAME, *OTHERS)])
+    groups = moves_of([problem_of(name) for name in (NAME, *OTHERS)])
     assert sorted(len(group) for group in groups) == [1, 2]
-    sixteen = [one for one in qa.PROBLEMS.values() if not one.peak]
+    sixteen = [one for one in PROBLEMS.values() if not one.peak]
     assert len(moves_of(sixteen)) == 7
 
 
 def test_a_tool_with_many_runs_on_one_problem_leaves_the_others_ranked(fronts):
     names = [NAME, OTHERS[0], "dual-link-90deg-0.9s"]
     done = [(job.label, front) for job, front in fronts.items()]
-    runs = [Run(qa.problem_of(name), *one) for name in names for one in done]
+    runs = [Run(problem_of(name), *one) for name in names for one in done]
     own = [done[0][1].restated(seed=seed) for seed in range(30)]
-    results = Results([*runs, *(Run(qa.problem_of(NAME), "my tool", one) for one in own)])
+    results = Results([*runs, *(Run(problem_of(NAME), "my tool", one) for one in own)])
     ranking = ranking_over(results)
     assert len(ranking.methods) == 4
     assert ranking.left_out == ("my tool (not on all problems, or too few runs)",)
@@ -246,7 +247,7 @@ def test_missing_values_are_censored(fronts):
 @pytest.mark.parametrize("target", [0.9, 0.6, 0.4, 0.2])
 def test_the_expected_running_time_is_cocos_with_an_interval_about_it(fronts, by, target):
     results, spent, reached = Results.of_jobs(fronts), [], []
-    scale = qa.problem_of(NAME).reference()
+    scale = problem_of(NAME).reference()
     for job, front in fronts.items():
         if job.method == "nsga2":
             costs = [getattr(mark, by) for mark in front.history]

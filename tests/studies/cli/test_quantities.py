@@ -5,6 +5,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from quietarm.ocp import PositivePower
 from quietarm.studies.cli.quantities import (
     parse_coefficients,
     parse_energy,
@@ -88,7 +89,7 @@ def test_coefficients_round_trip(values):
 
 ENERGIES = {
     "absolute": qa.AbsolutePower(),
-    "positive": qa.PositivePower(),
+    "positive": PositivePower(),
     "copper:0.12": qa.CopperLoss(0.12),
     "0.5*absolute+copper:0.12": 0.5 * qa.AbsolutePower() + qa.CopperLoss(0.12),
 }

@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.signal import StateSpace, lsim
 
+from quietarm.studies.identify import Identified, predict
 import quietarm as qa
 
 # alpha1 is above alpha2 * beta1, else it has no inertia and is refused as a plant
@@ -95,7 +96,7 @@ def test_a_machine_that_varies_is_planned_for_as_it_may_swing_next(tmp_path):
     assert omega.next_low / math.tau < 1.79 < 1.97 < omega.next_high / math.tau
     assert omega.varies
     found.save(tmp_path / "arm.json")
-    assert qa.Identified.load(tmp_path / "arm.json") == found
+    assert Identified.load(tmp_path / "arm.json") == found
     task = qa.PointToPoint(found.plant, 0.5, 1.0, uncertainty=qa.Uncertainty(found.errors))
     assert 0.05 < task.ranges["omega"] < 0.15
 
@@ -269,7 +270,7 @@ def test_a_torque_tells_inertia_and_friction_too(moved):
 
 def test_a_machine_predicts_its_next_swing_and_not_another_ones():
     plant = beam(rung(), rung(seed=1)).plant
-    (own,), (other,) = (qa.predict(plant, [rung(hertz, seed=2)]) for hertz in (3.2, 3.3))
+    (own,), (other,) = (predict(plant, [rung(hertz, seed=2)]) for hertz in (3.2, 3.3))
     assert own.share > 0.8  # of a swing that has 5 % of its largest amplitude as noise
     assert other.share < 0.5
     assert other.frequency == pytest.approx(3.3, rel=2e-3)
