@@ -68,7 +68,7 @@ class Row(NamedTuple):
 def row_of(name: str, plan: Plan) -> Row:
     """The figures of a plan on the assumed plant, and its insensitivity."""
     ranges = {"frequency": WIDEST}
-    found = evaluate_robustness(plan.task, plan.profile, plan.coefficients, ranges, samples=1)
+    found = evaluate_robustness(plan.candidate, ranges, samples=1)
     low, high = found.sweeps[0].insensitivity or (0.0, 0.0)
     return Row(name, plan.energy, plan.motion.peak_acceleration, 100 * low, 100 * high)
 

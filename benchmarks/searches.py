@@ -19,7 +19,7 @@ from time import perf_counter, process_time
 
 import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
-from quietarm.metaheuristics import PRESETS, PopulationObjective, search
+from quietarm.metaheuristics import PRESETS, MoveFunction, search
 from quietarm.metaheuristics.parallel import side_by_side
 from quietarm.metaheuristics.spread import energies_at
 from quietarm.ocp import Front, evaluate_coefficients
@@ -43,15 +43,15 @@ SHARE = 0.25
 def evaluation_clock() -> list[float]:
     """Processor time [s] of every call of the objective from now on, in a list that grows."""
     spent: list[float] = []
-    evaluate = PopulationObjective.__call__
+    evaluate = MoveFunction.__call__
 
-    def clocked(self: PopulationObjective, *arguments: object) -> object:
+    def clocked(self: MoveFunction, *arguments: object) -> object:
         began = process_time()
         values = evaluate(self, *arguments)
         spent.append(process_time() - began)
         return values
 
-    PopulationObjective.__call__ = clocked
+    MoveFunction.__call__ = clocked
     return spent
 
 

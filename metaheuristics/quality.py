@@ -9,10 +9,11 @@ from math import ceil
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.objective.claims import objective_of
+from quietarm.metaheuristics.objective.population import objectives_of
 from quietarm.ocp import Front, JointProfile, PointToPoint, Quality
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.simulation.evaluator import Evaluator
 
 Array = NDArray[np.float64]
 CORNER = 1.1
@@ -94,9 +95,9 @@ def with_motions_between(
         return points
     share = (np.arange(1, between + 1) / (between + 1))[:, None]
     inner = coefficients[:-1, None] * (1 - share) + coefficients[1:, None] * share
-    values = objective_of(task, profile)(inner.reshape(-1, profile.size))
-    table = np.column_stack([values.residual, values.energy])
-    kept = np.isfinite(table).all(axis=1) & (values.violations <= _KEPT).all(axis=1)
+    evaluation = Evaluator(task, profile)(inner.reshape(-1, profile.size))
+    table = objectives_of(evaluation)
+    kept = np.isfinite(table).all(axis=1) & (evaluation.violations <= _KEPT).all(axis=1)
     return np.vstack([points, table[kept]])
 
 

@@ -1,4 +1,4 @@
-"""What was computed so far in this process: the work that methods are compared by."""
+"""What was computed so far in this thread: the work that methods are compared by."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from threading import local
 from typing import Literal
 
 
 @dataclass
-class Cost:
-    """Work of this process: motions simulated, processor seconds of CVODES and of compilation.
+class Cost(local):
+    """Work of this thread: motions simulated, processor seconds of CVODES and of compilation.
 
     `candidates` are simulated for their values alone, the others with first or second derivatives.
     """
@@ -41,4 +42,4 @@ class Cost:
 
 
 COST = Cost()
-"""Of this process; every batch, every run of IPOPT and every run of CVODES adds to it."""
+"""Of this thread; every batch, every run of IPOPT and every run of CVODES adds to it."""

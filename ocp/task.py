@@ -17,7 +17,6 @@ from quietarm.models.joint_motion import joint_unit
 from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import finite, instance, positive, several, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
-from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.limits import QUANTITIES, Bounds, Limit, Quantity, TorqueSpeedLine, quantities_of
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
 from quietarm.ocp.window import EQ_11, DefaultWindow, default_window
@@ -135,8 +134,6 @@ class PointToPoint:
     uncertainty: Uncertainty | None = None
     torque_speed: tuple[tuple[float, float], ...] | None = None
 
-    @one_at_a_time
-    @keep_interrupts()  # casadi loses a Ctrl-C
     def __post_init__(self) -> None:
         if not isinstance(self.plant, Plant):
             known_plants()  # so that each is known by its name

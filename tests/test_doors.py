@@ -80,7 +80,7 @@ def test_the_doors_are_found():
         "plan_move-task", "plan_move-profile", "plan_moves-tasks", "fastest_move-profile",
         "epsilon_front-task", "weighted_front-profile", "search-start", "sweep-profile",
         "evaluate_coefficients-task", "energy_floor-task", "cross_check-front",
-        "polish_front-front", "shaped_cycloid-task", "evaluate_robustness-profile",
+        "polish_front-front", "shaped_cycloid-task", "evaluate_robustness-candidate",
         "Candidate.of_profile-profile", "PointToPoint-plant", "PointToPoint-energy",
         "motion_figure-motions",
     } <= names  # fmt: skip

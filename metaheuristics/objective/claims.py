@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.objective.population import PopulationObjective
-from quietarm.ocp import Front, JointProfile, Plan, PointToPoint
+from quietarm.metaheuristics.objective.population import objectives_of
+from quietarm.ocp import Front, Plan
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.limits import quantities_of
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.ocp.robustness import worst_of
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.evaluator import Evaluator
 
 _SAMPLE = 100
 """Points that are evaluated again: as many as one call takes. An edit or a conversion rarely leaves
@@ -29,12 +28,6 @@ T = TypeVar("T", float, NDArray[np.float64])
 def agrees(stated: T, gives: T, least: float | NDArray[np.float64]) -> Any:
     """Whether a stated figure is what a motion gives, element by element; what is NaN is not."""
     return abs(stated - gives) <= AGREEMENT * abs(gives) + least
-
-
-@lru_cache(maxsize=4)
-def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjective:
-    """The objective at the steps that fronts are verified with; made once for a task."""
-    return PopulationObjective(task, profile, steps=default_steps(task))
 
 
 def check_figures(front: Front, name: str, remedy: str = "find the front again") -> None:
@@ -54,9 +47,10 @@ def _check_points(front: Front, table: NDArray[np.float64]) -> None:
     count, limits = len(table), front.task.limits
     places = np.unique(np.linspace(0, count - 1, min(count, _SAMPLE)).round().astype(int))
     with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused below
-        values = objective_of(front.task, front.profile)(table[places])
-    rows = zip(places.tolist(), values.residual, values.energy, values.violations)
-    for i, *both, violations in rows:
+        evaluation = Evaluator(front.task, front.profile)(table[places])
+        objectives, broken = objectives_of(evaluation), evaluation.violations
+    rows = zip(places.tolist(), objectives, broken)
+    for i, both, violations in rows:
         which = f"point {i + 1} of {count}"
         for (figure, unit, least), found in zip(FIGURES, both):
             stated = getattr(front.points[i], figure)
@@ -97,8 +91,7 @@ def _check_worst(plan: Plan, name: str) -> None:
     """Find the worst case of a plan for an uncertain plant again, and compare."""
     if plan.worst is None:
         return
-    where = plan.task, plan.profile, plan.coefficients
-    found, stated = worst_of(*where), plan.worst.residual
+    found, stated = worst_of(plan.candidate), plan.worst.residual
     if found is None or list(found.errors) != list(plan.worst.errors):
         what = ", ".join(plan.worst.errors) or "none"
         raise ValueError(

@@ -14,8 +14,8 @@ from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.quality import measured
 from quietarm.ocp import Front, JointProfile, PointToPoint
-from quietarm.ocp.checks import takes, whole
-from quietarm.ocp.front.points import beyond, table_of
+from quietarm.ocp.checks import table_of, takes, whole
+from quietarm.ocp.front.points import beyond
 from quietarm.ocp.record import Setting
 
 if TYPE_CHECKING:

@@ -18,7 +18,6 @@ from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, Positive, positive, takes, whole
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import SAME, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.certify import excess_error, tighten
 from quietarm.ocp.planning.plan_move import plan_move
@@ -152,7 +151,6 @@ class Floor(MotionAnswer):
         return self.candidate.trajectory
 
 
-@one_at_a_time
 @takes(task=PointToPoint)
 def energy_floor(
     task: PointToPoint,

@@ -9,7 +9,6 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.front.curve import Curve, Report, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.best_of_starts import SolverName
 from quietarm.ocp.planning.certify import OVERRUN, judge
@@ -57,7 +56,6 @@ class CrossCheck:
         return float(np.max(np.abs([point.difference for point in self.points])))
 
 
-@one_at_a_time
 @takes(front=Front)
 def cross_check(front: Front, points: int = 7, report: Report = no_report) -> CrossCheck:
     """Solve points of a front by the solver that did not find them, from the plain cycloid.
@@ -94,7 +92,8 @@ def cross_check(front: Front, points: int = 7, report: Report = no_report) -> Cr
 def _compare(curve: Curve, point: FrontPoint) -> Compared:
     """A point by both, within the same limits at the nodes of the same steps."""
     transcription, asked = curve.problem()
-    peaks = transcription.peaks(transcription.evaluate(np.array(point.coefficients)))
+    motion = transcription.evaluate(np.array(point.coefficients))
+    peaks = transcription.measure(motion).peaks_of(0)
     own = judge(transcription, np.array(point.coefficients))
     # a limit that the point is at was tightened until it held between the nodes as well
     limits = [

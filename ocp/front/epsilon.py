@@ -13,7 +13,6 @@ from quietarm.ocp.checks import positive, several, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import SolverName, best_of_starts, better
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -36,7 +35,6 @@ Best = Mapping[float, Solution]
 """The best solution at each residual limit [m]."""
 
 
-@one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile)
 def epsilon_front(
     task: PointToPoint,

@@ -10,7 +10,6 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.solvers.problem import Solution
 
 
@@ -48,7 +47,6 @@ class Polish:
     gains: tuple[Gain, ...]
 
 
-@one_at_a_time
 @takes(front=Front)
 def polish_front(front: Front, *, steps: int | None = None, report: Report = no_report) -> Polish:
     """Start the gradient from every point of a front, with the point's residual as the limit.

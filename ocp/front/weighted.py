@@ -12,7 +12,6 @@ from quietarm.ocp.checks import not_negative, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Asked, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import SolverName, best_of_starts, objective_of
 from quietarm.ocp.planning.choose_profile import choose_profile
@@ -28,7 +27,6 @@ Array = NDArray[np.float64]
 Minimum = tuple[Solution, Asked]
 
 
-@one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile)
 def weighted_front(
     task: PointToPoint,

@@ -13,7 +13,6 @@ from typing import Any
 
 from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.least_time import LeastTime, least_time, rigid_duration
 from quietarm.ocp.planning.plan import Plan
@@ -62,9 +61,7 @@ class Fastest:
         return self.plan.task.duration
 
 
-@one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile)
-@one_at_a_time
 def fastest_move(
     task: PointToPoint,
     profile: JointProfile | None = None,

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import takes
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.best_of_starts import (
     SolverName,
@@ -68,7 +67,6 @@ class Moves:
     by_cvodes: NDArray[np.bool_]
 
 
-@one_at_a_time
 @takes(tasks=[PointToPoint], profile=JointProfile)
 def plan_moves(
     tasks: Sequence[PointToPoint],

@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import (
     SolverName,
@@ -70,7 +69,6 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
     return residual_limit
 
 
-@one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile)
 def plan_move(
     task: PointToPoint,
@@ -240,7 +238,7 @@ def _hold(
     limit = settings.residual_limit
     tightened = limit
     rounds = tightenings = 0
-    peaks = peaks_between(plan.task, profile, plan.coefficients, _ADDED)
+    peaks = peaks_between(plan.candidate, _ADDED)
     while True:
         plan = replace(plan, worst=peaks[0])
         excess = peaks[0].residual / limit - 1
@@ -272,7 +270,7 @@ def _hold(
                 raise
             tightenings = _TIGHTENINGS  # a tighter limit leads nowhere: more scenarios may
         else:
-            peaks = peaks_between(plan.task, profile, plan.coefficients, _ADDED)
+            peaks = peaks_between(plan.candidate, _ADDED)
     return replace(plan, residual_limit=settings.residual_limit)
 
 

@@ -14,9 +14,9 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion
+from quietarm.models.compiled import Compiled
 from quietarm.models.final import refuse_overridden
 from quietarm.ocp.checks import finite, hashable, instance
-from quietarm.ocp.interrupts import keep_interrupts
 
 Values = Sequence[Expression]
 """The coefficients, or what follows from them."""
@@ -305,7 +305,6 @@ def _refuse_difference(
             )
 
 
-@keep_interrupts()  # casadi loses a Ctrl-C
 def _compared_values(
     profile: JointProfile, coefficients: NDArray[np.float64], *move: float
 ) -> NDArray[np.float64]:
@@ -315,12 +314,16 @@ def _compared_values(
     """
     function = _comparison(profile)
     columns = np.tile([*coefficients, *move], (len(_SHARES), 1)).T
-    return function(np.vstack([_SHARES, columns])).full()
+    return function(np.vstack([_SHARES, columns]))[0]
 
 
 @lru_cache(maxsize=256)
-def _comparison(profile: JointProfile) -> ca.Function:
+def _comparison(profile: JointProfile) -> Compiled:
     """What `_compared_values` returns, of columns of a fraction, coefficients and a move."""
+    return Compiled(lambda: _build_comparison(profile))
+
+
+def _build_comparison(profile: JointProfile) -> ca.Function:
     symbols = ca.SX.sym("given", 1 + profile.size + 3)
     fraction, *given = ca.vertsplit(symbols)
     coefficients, move = given[: profile.size], given[profile.size :]

@@ -24,7 +24,6 @@ from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.solvers.quadratic import Model, Multipliers, Steps, convexify, least_steps
 
 Array = NDArray[np.float64]
@@ -110,18 +109,15 @@ def minimise(
     of them 0; trust regions have the radius `reach` at first, rows at most `most` iterations. `log`
     prints a line for each.
     """
-    with note_interrupts() as came:  # a step is whole, then Ctrl-C ends the work
-        run = _Run(evaluate, x, lower, upper, equalities, linear, groups, widths, reach)
+    run = _Run(evaluate, x, lower, upper, equalities, linear, groups, widths, reach)
+    if log:
+        print(_LOG_HEAD)
+    for number in range(most):
+        if not len(run.going):
+            break
         if log:
-            print(_LOG_HEAD)
-        for number in range(most):
-            if came or not len(run.going):
-                break
-            if log:
-                print(run.log_line(number))
-            run.iterate()
-    if came:
-        raise KeyboardInterrupt
+            print(run.log_line(number))
+        run.iterate()
     ends = [End.UNFINISHED if end is None else end for end in run.ends]
     return Ended(run.x, run.violation, run.multipliers, ends, run.iterations)
 

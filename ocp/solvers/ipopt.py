@@ -25,9 +25,9 @@ from typing import Any, ClassVar, NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.models.compiled import Compiled
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.simulation.objective import integrated
 from quietarm.ocp.simulation.rollout import Simulation, SymbolicRollout
@@ -66,7 +66,6 @@ class Ipopt:
 
     print_level: int = 0
 
-    @keep_interrupts()  # casadi loses a Ctrl-C
     def solve(
         self,
         problems: Sequence[Problem],
@@ -88,13 +87,18 @@ class _Program(NamedTuple):
     rows: energy, what is missed on arrival, tip displacements and limited quantities in SI units.
     """
 
-    solver: ca.Function
+    solver: Compiled
     counts: dict[str, int]
-    figures: ca.Function
+    figures: Compiled
 
 
 @lru_cache(maxsize=16)
-def compile_program(
+def compile_program(*form: Any) -> _Program:
+    """The program of a form, as of `_build_program`."""
+    return Compiled.guard(lambda: _build_program(*form))
+
+
+def _build_program(
     simulation: Simulation,
     scenarios: tuple[Scenario, ...],
     tip_rows: tuple[int, ...],
@@ -135,12 +139,13 @@ def compile_program(
         "g": ca.vertcat(*constraints.values()),
     }
     options = {**(_WARM if warm else _OPTIONS), "print_level": print_level}
+    solver = compile_nlp(nlp, options)
+    outputs = [nominal.energy, missed.T, *values.values()]
+    figures = ca.Function("figures", [a, row, wanted, *tips], list(map(ca.densify, outputs)))
     return _Program(
-        compile_nlp(nlp, options),
+        Compiled(lambda: solver, silent=True),  # casadi warns of every failure
         {name: value.numel() for name, value in constraints.items()},
-        ca.Function(
-            "figures", [a, row, wanted, *tips], [nominal.energy, missed.T, *values.values()]
-        ),
+        Compiled(lambda: figures),
     )
 
 
@@ -178,14 +183,14 @@ class _Run:
 
     def figures(self, coefficients: Array) -> tuple[float, Array, dict[str, float]]:
         """Energy [J], what is missed on arrival in every scenario, residual and peaks by name."""
-        energy, missed, *values = self.program.figures.call([coefficients, *self.given])
+        energy, missed, *values = self.program.figures(coefficients, *self.given)
         transcription = self.problem.transcription
         names = RESIDUAL, *(limit.name for limit in transcription.task.limits)
         peaks = {
             name: float(transcription.limits[name].peak(value.min(), value.max()))
-            for name, value in zip(names, (value.full() for value in values))
+            for name, value in zip(names, values)
         }
-        return float(energy), missed.full(), peaks
+        return energy.item(), missed, peaks
 
     def solve(self, start: Array) -> Solution:
         """Run IPOPT for one width after another."""

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from quietarm.models.interrupts import note_interrupts
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.files import check_writable, unwritable
-from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
 from quietarm.studies.report.saving import STDOUT, SUFFIXES, File, drawing

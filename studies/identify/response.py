@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import JointMotion, Plant
+from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Modes
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
@@ -62,7 +63,8 @@ class Response:
         K, D = (ca.vertcat(*(ca.horzcat(*row) for row in M)) for M in (system.K, system.D))
         A = ca.blockcat([[ca.SX(modes, modes), ca.SX.eye(modes)], [-K, -D]])
         of_p = [ca.densify(A), ca.densify(ca.jacobian(ca.vec(A), p))]
-        self._at_rest = ca.Function("A", [p, angle], of_p)
+        at_rest = ca.Function("A", [p, angle], of_p)
+        self._at_rest = Compiled(lambda: at_rest)
         given, X = ca.SX.sym("given", 4 + 3 * NODES), ca.SX.sym("X", size, 1 + size)
         joints = [JointMotion(*ca.vertsplit(given[k : k + 3])) for k in range(1, 4 + 3 * NODES, 3)]
         constant, by_state = step(changed, joints[:NODES], given[0]).transition()
@@ -78,7 +80,7 @@ class Response:
         """Whether signals answer the joint's acceleration alone, the same at every angle."""
         return self._linear is not None
 
-    def _linear_system(self, plant: Plant, p: ca.SX) -> ca.Function | None:
+    def _linear_system(self, plant: Plant, p: ca.SX) -> Compiled | None:
         """A, B, C, D by p: the state answers an acceleration, and the signals both.
 
         None where the angle or a constant matters, or where it is not linear.
@@ -100,7 +102,8 @@ class Response:
         simple = ca.simplify(constant).is_zero() if constant.nnz() else True
         if not simple or ca.depends_on(slopes, ca.vertcat(inputs, angle)):
             return None
-        return ca.Function("linear", [p], [ca.densify(slopes)])
+        linear = ca.Function("linear", [p], [ca.densify(slopes)])
+        return Compiled(lambda: linear)
 
     def modal_form(self, p: Array) -> tuple[Array, Array, Array]:
         """Eigenvalues above the real axis or on it, slowest first; residues; what is fed through.
@@ -109,7 +112,7 @@ class Response:
         makes of the joint's acceleration, and that times the feed (signals,).
         """
         assert self._linear is not None
-        slopes, size = self._linear(p).full(), 2 * self.plant.modes
+        (slopes,), size = self._linear(p), 2 * self.plant.modes
         A, C = slopes[:size, :size], slopes[size:, :size]
         values: Any
         values, right = np.linalg.eig(A.astype(complex))
@@ -136,7 +139,7 @@ class Response:
 
     def eigenvalues(self, p: Array, angle: float = 0.0) -> tuple[Any, Any]:
         """Those that swing with the joint at rest, slowest first, and their derivatives by p."""
-        A, by_p = (entry.full() for entry in self._at_rest(p, angle))
+        A, by_p = self._at_rest(p, angle)
         values: Any
         values, right = np.linalg.eig(A)
         transposed = by_p.T.reshape(-1, *A.shape)
@@ -144,14 +147,17 @@ class Response:
         order = [k for k in np.argsort(values.imag) if values[k].imag > 0]
         return values[order], slopes[order]
 
-    def _march(self, count: int, derivatives: bool) -> ca.Function:
+    def _march(self, count: int, derivatives: bool) -> Compiled:
         """Columns of so many steps, and their derivatives by p."""
+        return Compiled(lambda: self._build_march(count, derivatives))
+
+    def _build_march(self, count: int, derivatives: bool) -> ca.Function:
         p, given = ca.MX.sym("p", len(self.names)), ca.MX.sym("given", 4 + 3 * NODES, count)
         size = 2 * self.plant.modes
         start = np.eye(size, 1 + size, 1)
         rows = self._step.mapaccum(count)(start, given, ca.repmat(p, 1, count))[1]
         by_p = [ca.jtimes(rows, p, ca.DM.eye(len(self.names)))] if derivatives else []
-        return ca.Function("march", [given, p], [rows, *by_p])
+        return ca.Function("march", [given, p], list(map(ca.densify, [rows, *by_p])))
 
 
 class FreeDecay:
@@ -296,14 +302,14 @@ class Driven:
         The last is of an accelerometer at some distance from the joint.
         """
         march = self._response.march(self._given.shape[1], derivatives)
-        found = march.call([self._given, p])
+        found = march(self._given, p)
         B, *dB = (self._columns(one, k == 0) for k, one in enumerate(found))
         return B[0], dB[0] if derivatives else B[:0]
 
-    def _columns(self, table: ca.DM, lever: bool) -> Array:
+    def _columns(self, table: Array, lever: bool) -> Array:
         """A table of the march by (parameters, signals, rows, columns), with the lever's."""
         signals = len(self._response.kinds)
-        steps = table.full().reshape(-1, signals, table.shape[1])
+        steps = table.reshape(-1, signals, table.shape[1])
         blocks = steps.reshape(*steps.shape[:2], -1, self._given.shape[1])[..., self._rows]
         found = blocks.transpose(2, 1, 3, 0)
         return np.concatenate(

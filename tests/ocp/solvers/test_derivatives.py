@@ -6,8 +6,8 @@ import pytest
 from quietarm.ocp.energy import ABSOLUTE_POWER, CopperLoss, PositivePower
 from quietarm.ocp.limits import QUANTITIES, Limit, TorqueSpeedLine
 from quietarm.ocp.simulation.objective import integrated, resolved_energy
-from quietarm.ocp.simulation.rollout import symbolic_rollout
-from quietarm.ocp.solvers.batch import Multipliers, batch
+from quietarm.ocp.simulation.rollout import Simulation, symbolic_rollout
+from quietarm.ocp.solvers.batch import Multipliers, batch_of
 
 import quietarm as qa
 
@@ -41,7 +41,7 @@ def case(request, plants):
     plant, profile, energy, names = request.param
     plant, profile, energy = plants[plant], PROFILES[profile], ENERGIES[energy]
     quantities = (*QUANTITIES.values(), LINE.quantity)
-    made = batch(plant, profile, STEPS, quantities, names, energy)
+    made = batch_of(Simulation(plant, profile, STEPS, quantities, names, energy))
     plant = qa.perturb_plant(plant, dict(zip(names, ERRORS, strict=False)))
     a, width = ca.MX.sym("a", profile.size), ca.MX.sym("width")
     rollout = symbolic_rollout(
