@@ -52,6 +52,7 @@ from parts.population.rows import CANDIDATES, SHARE, Method, methods
 from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.cost import COST
+from quietarm.ocp.simulation.evaluator import Evaluator
 from rich.table import Table
 
 SECOND_TASK = replace(TASK, start=-pi / 2, target=pi / 4, duration=1.0)
@@ -114,12 +115,16 @@ def threads_table(rng: np.random.Generator, rounds: int) -> Table:
     for count in (CANDIDATES, 10 * CANDIDATES, MANY):
         population = rng.uniform(-BOX, BOX, (count, PROFILE.size))
         times = [
-            [timed(lambda: objectives_of(evaluator(population)))[0] for evaluator in evaluators]
+            [timed(partial(_objectives, evaluator, population))[0] for evaluator in evaluators]
             for _ in range(rounds)
         ]
         one, two = (1e6 * min(column) / count for column in zip(*times, strict=True))
         table.add_row(f"{count:,}", f"{one:.2f} us", f"{two:.2f} us", f"{one / two:.2f}")
     return table
+
+
+def _objectives(evaluator: Evaluator, population: NDArray[np.float64]) -> NDArray[np.float64]:
+    return objectives_of(evaluator(population))
 
 
 def tasks_table(population: NDArray[np.float64]) -> Table:

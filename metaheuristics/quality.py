@@ -10,7 +10,7 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.objective.population import objectives_of
-from quietarm.ocp import Front, JointProfile, PointToPoint, Quality
+from quietarm.ocp import Front, Quality
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.simulation.evaluator import Evaluator
@@ -82,20 +82,20 @@ def within(points: Array, residuals: Sequence[float] | Array) -> Array:
     return np.array([one.min() if one.size else np.nan for one in found])
 
 
-def with_motions_between(
-    task: PointToPoint, profile: JointProfile, coefficients: Array, points: Array
-) -> Array:
+def with_motions_between(front: Front) -> Array:
     """Points of a front and of motions between neighbours, shape (n, 2).
 
     Coefficients are interpolated and the motions simulated: each can be driven, and stays in the
     box. Those that break a limit do not count. So a front is not judged by its number of points.
     """
+    points = objectives(front)
+    coefficients = front.coefficients
     between = ceil(BETWEEN / max(len(points) - 1, 1)) - 1
     if len(points) < 2 or between < 1:
         return points
     share = (np.arange(1, between + 1) / (between + 1))[:, None]
     inner = coefficients[:-1, None] * (1 - share) + coefficients[1:, None] * share
-    evaluation = Evaluator(task, profile)(inner.reshape(-1, profile.size))
+    evaluation = Evaluator(front.task, front.profile)(inner.reshape(-1, front.profile.size))
     table = objectives_of(evaluation)
     kept = np.isfinite(table).all(axis=1) & (evaluation.violations <= _KEPT).all(axis=1)
     return np.vstack([points, table[kept]])
@@ -106,7 +106,7 @@ def measured(front: Front, reference: Reference) -> Front:
     if not front.history:
         return front
     points = objectives(front)
-    between = with_motions_between(front.task, front.profile, front.coefficients, points)
+    between = with_motions_between(front)
     last = replace(
         front.history[-1], quality=reference.quality(points), between=reference.quality(between)
     )

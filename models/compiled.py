@@ -74,7 +74,7 @@ class Compiled:
             self._idle.append(buffer)
         return result
 
-    def solve(self, **inputs: ArrayLike) -> tuple[dict[str, Array], dict[str, Any]]:
+    def solve(self, **inputs: Any) -> tuple[dict[str, Array], dict[str, Any]]:
         """Columns of the outputs by name, and statistics, of a function that is a solver."""
         function = self.function
         with _TURN, self._muted(), Watch(holds=False):

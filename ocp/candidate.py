@@ -11,7 +11,7 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi as ca
 import numpy as np
@@ -69,6 +69,8 @@ class Candidate(Ranged):
     ValueError, SolverFailedError
         When a quantity is read, if the residual window is too long, or CVODES fails.
     """
+
+    example: ClassVar[str] = "a motion, as plan.candidate or Candidate.of_profile(task, profile, a)"
 
     task: PointToPoint
     path: PiecewiseMotion

@@ -5,14 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from threading import local
 from typing import Literal
 
 
 @dataclass
-class Cost(local):
-    """Work of this thread: motions simulated, processor seconds of CVODES and of compilation.
+class Cost:
+    """Work of a thread: motions simulated, processor seconds of CVODES and of compilation.
 
     `candidates` are simulated for their values alone, the others with first or second derivatives.
     """
@@ -29,7 +29,7 @@ class Cost(local):
 
     def copy(self) -> Cost:
         """It as it is now."""
-        return replace(self)
+        return Cost(**vars(self))
 
     @contextmanager
     def timed(self, name: Literal["checks", "builds"]) -> Iterator[None]:
@@ -41,5 +41,9 @@ class Cost(local):
             setattr(self, name, getattr(self, name) + time.thread_time() - began)
 
 
-COST = Cost()
+class _CostOfThread(local, Cost):
+    """What adds up in each thread by itself."""
+
+
+COST = _CostOfThread()
 """Of this thread; every batch, every run of IPOPT and every run of CVODES adds to it."""

@@ -10,6 +10,7 @@ import quietarm as qa
 # Of these classes; `Motions` is what the pictures of motions take.
 KINDS = (
     "PointToPoint", "JointProfile", "Plant", "Energy", "Front", "Plan", "Floor", "Motions",
+    "Candidate",
 )  # fmt: skip
 WRONG = {
     "PointToPoint": ("link", "'link'; give a task, as PointToPoint(SingleLinkManipulator(), "),
@@ -19,6 +20,7 @@ WRONG = {
     "Front": ("front.json", "'front.json'; give Front.load('front.json')"),
     "Plan": ("plan.json", "'plan.json'; give Plan.load('plan.json')"),
     "Floor": ("floor.json", "'floor.json'; give Floor.load('floor.json')"),
+    "Candidate": ("plan.json", "'plan.json'; give a motion, as plan.candidate or Candidate.of_p"),
     "Motions": (["plan.json"], "'plan.json'; give a line, as Line(plan, 'plan')"),
 }
 

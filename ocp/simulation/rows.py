@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import repeat
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -81,6 +82,6 @@ def widen(matrix: ca.MX, columns: int) -> list[ca.MX]:
     return [ca.repmat(column, 1, columns) for column in ca.horzsplit(matrix, 1)]
 
 
-def join(columns: Sequence[ca.MX], rows: int) -> ca.MX:
+def join(columns: Sequence[Any], rows: int) -> ca.MX:
     """A dense matrix of so many rows from its columns."""
     return ca.densify(ca.horzcat(ca.MX(rows, 0), *columns))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.quality import objectives, with_motions_between
+from quietarm.metaheuristics.quality import with_motions_between
 from quietarm.ocp import Front
 
 Array = NDArray[np.float64]
@@ -14,8 +14,7 @@ _STATIONS = 101
 
 def filled(front: Front) -> Array:
     """Residual and energy of a front and of motions between its points, rising in residual."""
-    points, coefficients = objectives(front), np.array([p.coefficients for p in front.points])
-    return best_of([with_motions_between(front.task, front.profile, coefficients, points)])
+    return best_of([with_motions_between(front)])
 
 
 def best_of(fronts: list[Array]) -> Array:
