@@ -80,12 +80,12 @@ class Batch:
         """How many there are: some more than asked for where the motion breaks."""
         return len(self.simulation.grid.lengths)
 
-    @property
+    @cached_property
     def places(self) -> Mapping[str, slice]:
         """Where the values of each limited quantity stand among all."""
         return places_of(self.simulation)
 
-    @property
+    @cached_property
     def limited(self) -> int:
         """How many values of limited quantities there are."""
         return max((place.stop for place in self.places.values()), default=0)
