@@ -165,7 +165,7 @@ class PointToPoint:
                 warnings.warn(
                     f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
                     f"quietarm.deg({angle:g})",
-                    stacklevel=5,
+                    stacklevel=3,
                 )
         if abs(self.span) < LEAST_MOVE:
             raise ValueError(
