@@ -29,15 +29,14 @@ import pandas as pd
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
-from quietarm.metaheuristics import NamedProblem, problem_of
-from quietarm.ocp import symbolic_rollout
-from quietarm.metaheuristics import PRESETS
-from quietarm.metaheuristics.score import CORNER, within
-from quietarm.ocp.front.points import LEVELS
 from results_page import BUDGET, SEEDS, differences
 from scipy.stats import mannwhitneyu
 
 import quietarm as qa
+from quietarm.metaheuristics import PRESETS, NamedProblem, problem_of
+from quietarm.metaheuristics.score import CORNER, within
+from quietarm.ocp import symbolic_rollout
+from quietarm.ocp.front.points import LEVELS
 
 Array = NDArray[np.float64]
 MOVES = ("single-link-90deg-1s", "arm-on-flexible-link-90deg-0.8s")
@@ -97,9 +96,7 @@ class BlackBox(Function):
     def __init__(self, problem: NamedProblem) -> None:
         super().__init__(problem)
         a = ca.SX.sym("a", problem.profile.size)
-        motion = symbolic_rollout(
-            problem.task.plant, problem.profile, a, problem.task.move, STEPS
-        )
+        motion = symbolic_rollout(problem.task.plant, problem.profile, a, problem.task.move, STEPS)
         speeds = [sample.path.speed for sample in motion.samples]
         nodes = [ca.vertcat(*map(ca.vec, each)) for each in (motion.torque, speeds, motion.weights)]
         self._simulate = ca.Function("simulate", [a], nodes)

@@ -46,14 +46,15 @@ import casadi as ca
 import numpy as np
 import rockit
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
+from rich.table import Table
+from rockit.sampling_method import FunctionGrid
+
 from quietarm.models import ArmOnFlexibleLink, JointMotion
 from quietarm.ocp import CycloidPolynomial, PointToPoint, energy_floor
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.floor.program import COLD, FloorProgram, first_grid
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.collocation import NODES
-from rich.table import Table
-from rockit.sampling_method import FunctionGrid
 
 try:
     import yapss

@@ -31,12 +31,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
+from rich.table import Table
+
 from quietarm.metaheuristics import SearchProgress, search
 from quietarm.metaheuristics.score import objectives
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, epsilon_front, plan_move
 from quietarm.studies.compare.staircase import filled
-from rich.table import Table
 
 PROFILE = CycloidPolynomial(6)
 CASES = {

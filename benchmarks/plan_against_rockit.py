@@ -46,6 +46,9 @@ import numpy as np
 import rockit
 from parts.conditions import conditions
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
+from rich.table import Table
+from rockit.sampling_method import FunctionGrid
+
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.simulation.collocation import NODES
@@ -53,8 +56,6 @@ from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.solvers.nlp import OPTIONS
 from quietarm.ocp.solvers.problem import RESIDUAL, Problem, Scalarization, Solution, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
-from rich.table import Table
-from rockit.sampling_method import FunctionGrid
 
 PROFILE = CycloidPolynomial(6)
 STEPS = (16, 24, 32, 50, 100, 200)

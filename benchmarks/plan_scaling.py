@@ -32,12 +32,13 @@ from time import process_time
 
 import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
+from rich.progress import track
+from rich.table import Table
+
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
 from quietarm.ocp.solvers.problem import RESIDUAL, Problem, Scalarization, Solution, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
-from rich.progress import track
-from rich.table import Table
 
 TASK = PointToPoint(ArmOnFlexibleLink(), target=pi / 2, duration=0.8)
 BOX = 0.5

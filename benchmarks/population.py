@@ -6,7 +6,7 @@
 The arm on a flexible link, 0 to pi/2 in 0.8 s, six terms, 200 candidates with random coefficients
 in the paper's box (|a_n| <= 0.5), one core; F1 over 1 s after arrival, F2 = integral |tau theta'|:
 
-- quietarm: `PopulationObjective`, as it comes;
+- quietarm: `Evaluator` with the residual as searches see it, as it comes;
 - numba: a scalar loop over candidates and steps of RK4, compiled, without fastmath;
 - NumPy: RK4 with the whole population in every operation, the joint's motion computed time by time,
   or for all times at once before the march;
@@ -49,10 +49,12 @@ from numpy.typing import NDArray
 from parts.measuring import console, forget_compiled, machine, timed
 from parts.population.equations import PROFILE, TASK
 from parts.population.rows import CANDIDATES, SHARE, Method, methods
-from quietarm.metaheuristics import PopulationObjective
-from quietarm.ocp import PointToPoint
-from quietarm.ocp.solvers.batch import batch
 from rich.table import Table
+
+from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
+from quietarm.ocp import PointToPoint
+from quietarm.ocp.cost import COST
+from quietarm.ocp.simulation.evaluator import Evaluator
 
 SECOND_TASK = replace(TASK, start=-pi / 2, target=pi / 4, duration=1.0)
 BOX, MANY = 0.5, 10_000
@@ -110,11 +112,11 @@ def threads_table(rng: np.random.Generator, rounds: int) -> Table:
     table = Table(title="two threads, wall time, least")
     for name in ("candidates", "one thread", "two threads", "one / two"):
         table.add_column(name, justify="right")
-    objectives = [PopulationObjective(TASK, PROFILE, threads=threads) for threads in (1, 2)]
+    evaluators = [search_evaluator(TASK, PROFILE, threads=threads) for threads in (1, 2)]
     for count in (CANDIDATES, 10 * CANDIDATES, MANY):
         population = rng.uniform(-BOX, BOX, (count, PROFILE.size))
         times = [
-            [timed(partial(objective, population))[0] for objective in objectives]
+            [timed(partial(_objectives, evaluator, population))[0] for evaluator in evaluators]
             for _ in range(rounds)
         ]
         one, two = (1e6 * min(column) / count for column in zip(*times, strict=True))
@@ -122,25 +124,31 @@ def threads_table(rng: np.random.Generator, rounds: int) -> Table:
     return table
 
 
+def _objectives(evaluator: Evaluator, population: NDArray[np.float64]) -> NDArray[np.float64]:
+    return objectives_of(evaluator(population))
+
+
 def tasks_table(population: NDArray[np.float64]) -> Table:
     """Objective and first population of a task, when nothing is built and when a like one is."""
 
     def values(task: PointToPoint) -> float:
-        return timed(lambda: PopulationObjective(task, PROFILE)(population))[0]
+        return timed(lambda: objectives_of(search_evaluator(task, PROFILE)(population)))[0]
 
     forget_compiled()
-    first, second = values(TASK), values(SECOND_TASK)
+    first = values(TASK)
+    before = COST.copy()
+    second = values(SECOND_TASK)
     table = Table(title=f"objective and {CANDIDATES} candidates, wall time")
-    for name in ("first task", "second task", "first / second", "functions built"):
+    for name in ("first task", "second task", "first / second", "built for the second"):
         table.add_column(name, justify="right")
-    built = str(batch.cache_info().misses)
+    built = f"{1e3 * COST.since(before).builds:.0f} ms"
     table.add_row(f"{1e3 * first:.0f} ms", f"{1e3 * second:.1f} ms", f"{first / second:.0f}", built)
     return table
 
 
 MEMORY = f"""
 import math, numpy as np
-from quietarm.metaheuristics import PopulationObjective
+from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint
 
@@ -149,9 +157,8 @@ def peak():  # ru_maxrss would start from the parent's peak
 
 population = np.random.default_rng(0).uniform(-{BOX}, {BOX}, ({MANY}, {PROFILE.size}))
 before = peak()
-PopulationObjective(
-    PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), CycloidPolynomial({PROFILE.size})
-)(population)
+task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
+objectives_of(search_evaluator(task, CycloidPolynomial({PROFILE.size}))(population))
 print((peak() - before) / 1024)
 """
 

@@ -23,12 +23,19 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pandas as pd
-from quietarm.metaheuristics import Job, LostJobsError, NamedProblem, finished_jobs, problem_of, run_jobs
-from quietarm.ocp import CycloidGaussians, CycloidNetwork
-from quietarm.metaheuristics.gradient import multistart_front
 from scipy.optimize import minimize
 
 import quietarm as qa
+from quietarm.metaheuristics import (
+    Job,
+    LostJobsError,
+    NamedProblem,
+    finished_jobs,
+    problem_of,
+    run_jobs,
+)
+from quietarm.metaheuristics.gradient import multistart_front
+from quietarm.ocp import CycloidGaussians, CycloidNetwork
 
 MOVES = (
     "single-link-30deg-0.8s", "single-link-90deg-1s", "single-link-90deg-1.1s",

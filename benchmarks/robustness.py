@@ -22,6 +22,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from parts.measuring import console, machine
+from rich.table import Table
+
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import (
     Plan,
@@ -32,7 +34,6 @@ from quietarm.ocp import (
     plan_move,
     shaped_cycloid,
 )
-from rich.table import Table
 
 LINK, ARM, LINKS = SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()
 MOVES = {
@@ -68,7 +69,7 @@ class Row(NamedTuple):
 def row_of(name: str, plan: Plan) -> Row:
     """The figures of a plan on the assumed plant, and its insensitivity."""
     ranges = {"frequency": WIDEST}
-    found = evaluate_robustness(plan.task, plan.profile, plan.coefficients, ranges, samples=1)
+    found = evaluate_robustness(plan.candidate, ranges, samples=1)
     low, high = found.sweeps[0].insensitivity or (0.0, 0.0)
     return Row(name, plan.energy, plan.motion.peak_acceleration, 100 * low, 100 * high)
 

@@ -19,7 +19,9 @@ from time import perf_counter, process_time
 
 import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
-from quietarm.metaheuristics import PRESETS, PopulationObjective, search
+from rich.table import Table
+
+from quietarm.metaheuristics import PRESETS, MoveFunction, search
 from quietarm.metaheuristics.parallel import side_by_side
 from quietarm.metaheuristics.spread import energies_at
 from quietarm.ocp import Front, evaluate_coefficients
@@ -31,7 +33,6 @@ from quietarm.studies.reproduce.paper import (
     SINGLE_LINK_SIXTH,
     Case,
 )
-from rich.table import Table
 
 METHODS = {"vepso": SINGLE_LINK_SIXTH, "nsga2": ARM_HALF}
 TARGETS = {"vepso": 2.0, "nsga2": 10.0}
@@ -43,15 +44,15 @@ SHARE = 0.25
 def evaluation_clock() -> list[float]:
     """Processor time [s] of every call of the objective from now on, in a list that grows."""
     spent: list[float] = []
-    evaluate = PopulationObjective.__call__
+    evaluate = MoveFunction.__call__
 
-    def clocked(self: PopulationObjective, *arguments: object) -> object:
+    def clocked(self: MoveFunction, *arguments: object) -> object:
         began = process_time()
         values = evaluate(self, *arguments)
         spent.append(process_time() - began)
         return values
 
-    PopulationObjective.__call__ = clocked
+    MoveFunction.__call__ = clocked
     return spent
 
 

@@ -27,6 +27,7 @@ from statistics import median
 
 import numpy as np
 import xarray as xr
+
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move, plan_moves
 from quietarm.studies.sweep.cells import plan_chunk

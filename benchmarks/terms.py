@@ -22,6 +22,7 @@ import numpy as np
 import pandas as pd
 import ruckig  # noqa: F401 - without it its motions would be left out
 from parts.measuring import console, machine, timed
+
 from quietarm.models import DualLinkManipulator, Plant, SingleLinkManipulator
 from quietarm.ocp import (
     InfeasibleTaskError,

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from docutils import nodes
 from latex2mathml.converter import convert
+
 from quietarm import __version__
 from quietarm.studies.cli.application import COMMANDS
 

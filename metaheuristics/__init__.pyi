@@ -11,8 +11,6 @@ from .jobs import Job as Job
 from .jobs import LostJobsError as LostJobsError
 from .jobs import finished_jobs as finished_jobs
 from .jobs import run_jobs as run_jobs
-from .objective.population import PopulationObjective as PopulationObjective
-from .objective.population import PopulationValues as PopulationValues
 from .problems.catalogue import PROBLEMS as PROBLEMS
 from .problems.catalogue import NamedProblem as NamedProblem
 from .problems.catalogue import problem_of as problem_of

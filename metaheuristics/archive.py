@@ -9,6 +9,7 @@ from importlib import metadata
 import moocore
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.metaheuristics.score import share_of_box
 from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, reference_corner

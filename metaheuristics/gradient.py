@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+
 from quietarm.metaheuristics.archive import search_versions
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, epsilon_front, weighted_front
 from quietarm.ocp.checks import has_no, whole

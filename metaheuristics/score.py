@@ -14,10 +14,12 @@ from types import MappingProxyType
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.objective.stated_figures import fine_objective
+
+from quietarm.metaheuristics.objective.population import objectives_of
 from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import Front, Mark
 from quietarm.ocp.checks import takes
+from quietarm.ocp.simulation.evaluator import Evaluator
 
 Array = NDArray[np.float64]
 CORNER = 1.1
@@ -241,9 +243,9 @@ def filled(front: Front) -> Array:
         return points
     share = (np.arange(1, between + 1) / (between + 1))[:, None]
     inner = coefficients[:-1, None] * (1 - share) + coefficients[1:, None] * share
-    values = fine_objective(front.task, front.profile)(inner.reshape(-1, front.profile.size))
-    table = np.column_stack([values.residual, values.energy])
-    usable = np.isfinite(table).all(axis=1) & (values.violations <= _OVERRUN).all(axis=1)
+    evaluation = Evaluator(front.task, front.profile)(inner.reshape(-1, front.profile.size))
+    table = objectives_of(evaluation)
+    usable = np.isfinite(table).all(axis=1) & (evaluation.violations <= _OVERRUN).all(axis=1)
     return np.vstack([points, table[usable]])
 
 

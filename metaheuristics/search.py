@@ -11,6 +11,7 @@ from math import inf, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset, preset_of
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import instance, takes, whole
@@ -19,6 +20,7 @@ from quietarm.ocp.planning.choose_profile import choose_profile
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from pymoo.core.algorithm import Algorithm
+
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
 MOST_INDIVIDUALS, MOST_GENERATIONS, MOST_EVALUATIONS = 100_000, 1_000_000, 1_000_000_000
@@ -253,6 +255,7 @@ def _own(
 ) -> tuple[Algorithm, dict[str, Any]]:
     """A copy of an algorithm that was given, and what it is set to."""
     from pymoo.core.algorithm import Algorithm as PymooAlgorithm
+
     from quietarm.metaheuristics.algorithms.own import own_algorithm
     from quietarm.metaheuristics.algorithms.own_settings import settings_of
 

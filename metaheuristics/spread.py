@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
 from quietarm.metaheuristics.score import final_share_of_box
 from quietarm.metaheuristics.search import SEARCH_RESIDUAL
 from quietarm.ocp import Front

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.front.points import LEVELS
 
 MOST_POINTS = 100

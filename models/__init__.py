@@ -1,4 +1,4 @@
-"""What moves: plants as symbolic equations, and nothing else."""
+"""What moves: plants as symbolic equations; and the door to CasADi's functions (`compiled`)."""
 
 import casadi
 import lazy_loader

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import casadi as ca
 import numpy as np
+
 from quietarm.models.drawing import TIP_SLOPE, Body, flexible_link, rigid_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.plant import TIP, Plant, parameter

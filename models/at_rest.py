@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models.joint_motion import Array
 
 _TINY = 1e-12

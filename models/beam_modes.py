@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
+
 from quietarm.models.joint_motion import Expression
 
 _NODES, _WEIGHTS = ((part / 2).tolist() for part in np.polynomial.legendre.leggauss(24))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
 from quietarm.models.beam_modes import beam_modes, mode_shape
 from quietarm.models.joint_motion import Array
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.plant import COUNT, Plant, parameter

@@ -18,6 +18,7 @@ from typing import Any, ClassVar, final
 
 import casadi as ca
 import numpy as np
+
 from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.final import refuse_overridden
 from quietarm.models.joint_motion import LINEAR, ROTARY, Expression, JointMotion, Modes

@@ -20,7 +20,9 @@ from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
+
 from quietarm.models import at_rest
+from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Array, Expression, JointMotion
 
 if TYPE_CHECKING:
@@ -149,8 +151,10 @@ def _motions(angles: Array, modes: int) -> Array:
 
 def _evaluate(plant: Plant, motions: Array) -> Iterator[Array]:
     """Outputs of motions in the last axis; then their slopes, in the order of `_equations`."""
-    for table in _equations(plant)(motions.reshape(-1, motions.shape[-1]).T):
-        yield table.full().T.reshape(*motions.shape[:2], -1)
+    columns = motions.reshape(-1, motions.shape[-1]).T
+    tables = Compiled.guard(lambda: [table.full() for table in _equations(plant)(columns)])
+    for table in tables:
+        yield table.T.reshape(*motions.shape[:2], -1)
 
 
 @lru_cache(maxsize=256)

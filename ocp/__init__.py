@@ -2,8 +2,8 @@
 
 What is asked: `task` with its limits, and how a joint may move, `profiles`. What a motion costs:
 `simulation`, `robustness`. The gradient's answers: `solvers` solve, and `planning`, `front` and
-`floor` ask it. An answer is `saved` with its `record`; `checks`, `errors`, `files` and
-`interrupts` serve all. What a user needs is here.
+`floor` ask it. An answer is `saved` with its `record`; `checks`, `errors` and `files` serve all.
+What a user needs is here.
 """
 
 import lazy_loader

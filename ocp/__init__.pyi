@@ -50,6 +50,8 @@ from .robustness import Sensitivity as Sensitivity
 from .robustness import Sweep as Sweep
 from .robustness import Worst as Worst
 from .robustness import evaluate_robustness as evaluate_robustness
+from .simulation.evaluator import Evaluation as Evaluation
+from .simulation.evaluator import Evaluator as Evaluator
 from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
 from .simulation.rollout import SymbolicRollout as SymbolicRollout

@@ -9,20 +9,22 @@ from __future__ import annotations
 import math
 import reprlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any, ClassVar
 
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.models import JointMotion
 from quietarm.ocp.checks import takes
-from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import JERK, QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion, check_profile
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
+from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import PEAKS, Motion
@@ -59,6 +61,10 @@ class Candidate(Ranged):
         How the joint moves; `of_profile` and `of_free_motion` make one.
     errors : mapping of str to float
         Relative errors of the plant's parameters, as of `perturb_plant`.
+    profile : JointProfile or None
+        The profile that the path follows; None of a free motion.
+    coefficients : tuple of float
+        The profile's coefficients.
 
     Raises
     ------
@@ -66,9 +72,13 @@ class Candidate(Ranged):
         When a quantity is read, if the residual window is too long, or CVODES fails.
     """
 
+    example: ClassVar[str] = "a motion, as plan.candidate or Candidate.of_profile(task, profile, a)"
+
     task: PointToPoint
     path: PiecewiseMotion
     errors: Mapping[str, float] = field(default_factory=dict)
+    profile: JointProfile | None = None
+    coefficients: tuple[float, ...] = ()
 
     @classmethod
     @takes(task=PointToPoint)
@@ -78,8 +88,9 @@ class Candidate(Ranged):
         """The move along a profile; ValueError where coefficients or duration do not fit it."""
         check_profile(profile)
         path = PiecewiseMotion.of_profile(task, profile, coefficients)
-        check_motion(profile, path.given[: profile.size, 0], *task.move)
-        return cls(task, path)
+        checked = tuple(path.given[: profile.size, 0].tolist())
+        check_motion(profile, checked, *task.move)
+        return cls(task, path, profile=profile, coefficients=checked)
 
     @classmethod
     @takes(task=PointToPoint, free=FreeMotion)
@@ -89,7 +100,17 @@ class Candidate(Ranged):
 
     def perturbed(self, errors: Mapping[str, float]) -> Candidate:
         """The same motion on the plant with these relative errors, and on no other."""
-        return Candidate(self.task.certain, self.path, dict(errors))
+        return replace(self, task=self.task.certain, errors=dict(errors))
+
+    def on(self, task: PointToPoint) -> Candidate:
+        """The same motion for another task of the same move, as one with errors of its plant."""
+        return replace(self, task=task)
+
+    def by_steps(self, steps: int, **options: Any) -> Evaluator:
+        """Fixed steps along its profile, with the `options` of `Evaluator`."""
+        if self.profile is None:
+            raise ValueError("a free motion has no profile to follow by fixed steps")
+        return Evaluator(self.task, self.profile, steps, **options)
 
     @cached_property
     def scenarios(self) -> tuple[Candidate, ...]:
@@ -236,7 +257,6 @@ class Candidate(Ranged):
         outputs = self._run.outputs
         return Trajectory.from_outputs(self.task.plant, np.zeros(outputs.shape[1]), outputs)
 
-    @keep_interrupts()  # casadi loses a Ctrl-C
     def _after(self, later: NDArray[np.float64]) -> NDArray[np.float64]:
         """`outputs_of` the joint at rest, at times since arrival [s]."""
         states = self._vibration.states(self._run.arrival, later)

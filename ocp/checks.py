@@ -14,7 +14,9 @@ from functools import wraps
 from os import PathLike
 from typing import Annotated, Any, ParamSpec, TypeVar
 
+import numpy as np
 from msgspec import Meta
+from numpy.typing import ArrayLike, NDArray
 
 T = TypeVar("T")
 P = ParamSpec("P")
@@ -65,6 +67,30 @@ def not_negative(name: str, value: Any, unit: str = "") -> float:
     if number < 0:
         raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give 0 or more")
     return number
+
+
+def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.float64]:
+    """Coefficients, a row for each motion; without `columns` any number of them, and a row."""
+    if hasattr(coefficients, "filled"):  # to name numpy's class would load numpy.ma
+        raise ValueError(
+            "coefficients are a masked array; give plain numbers, as of its filled(value)"
+        )
+    try:
+        given = np.asarray(coefficients)
+        if given.dtype.kind not in "biufO":
+            raise TypeError
+        table = given.astype(float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(
+            f"coefficients are {reprlib.repr(coefficients)}; give a row of numbers for each motion"
+        ) from None
+    fits = table.ndim == 2 and (len(table) > 0 if columns is None else table.shape[1] == columns)
+    if not fits:
+        raise ValueError(
+            f"coefficients have shape {table.shape}; give (motions, {columns or 'coefficients'}), "
+            "one row for each motion"
+        )
+    return table
 
 
 def whole(name: str, value: Any, least: int, most: int | None = None, because: str = "") -> int:

@@ -1,17 +1,18 @@
-"""What was computed so far in this process: the work that methods are compared by."""
+"""What was computed so far in this thread: the work that methods are compared by."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from threading import local
 from typing import Literal
 
 
 @dataclass
 class Cost:
-    """Work of this process: motions simulated, processor seconds of CVODES and of compilation.
+    """Work of a thread: motions simulated, processor seconds of CVODES and of compilation.
 
     `candidates` are simulated for their values alone, the others with first or second derivatives.
     """
@@ -28,7 +29,7 @@ class Cost:
 
     def copy(self) -> Cost:
         """It as it is now."""
-        return replace(self)
+        return Cost(**vars(self))
 
     @contextmanager
     def timed(self, name: Literal["checks", "builds"]) -> Iterator[None]:
@@ -40,5 +41,9 @@ class Cost:
             setattr(self, name, getattr(self, name) + time.thread_time() - began)
 
 
-COST = Cost()
-"""Of this process; every batch, every run of IPOPT and every run of CVODES adds to it."""
+class _CostOfThread(local, Cost):
+    """What adds up in each thread by itself."""
+
+
+COST = _CostOfThread()
+"""Of this thread; every batch, every run of IPOPT and every run of CVODES adds to it."""

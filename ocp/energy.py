@@ -11,9 +11,10 @@ from typing import Any, ClassVar
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Expression
+from quietarm.models.compiled import Compiled
 from quietarm.ocp.checks import hashable, instance, not_negative, positive
-from quietarm.ocp.interrupts import keep_interrupts
 
 
 def power_of(torque: Any, speed: Any) -> Any:
@@ -158,7 +159,6 @@ def check_energy(energy: Energy) -> None:
 
 
 @lru_cache(maxsize=64)
-@keep_interrupts()  # casadi loses a Ctrl-C
 def _check_integrand(energy: Energy) -> None:
     name = f"absolute of energy {energy.name!r}"
     if not isinstance(energy.absolute, Real):
@@ -183,7 +183,8 @@ def _integrand(energy: Energy, torques: NDArray[np.float64], speeds: NDArray[np.
     torque, speed = (ca.MX.sym(name, len(torques)) for name in ("torque", "speed"))
     try:
         found = ca.MX.zeros(len(torques)) + energy.smooth(torque, speed)
-        return ca.Function("smooth", [torque, speed], [found])(torques, speeds).full().ravel()
+        smooth = Compiled(lambda: ca.Function("smooth", [torque, speed], [ca.densify(found)]))
+        return smooth(torques, speeds)[0].ravel()
     except Exception as error:  # of any kind: a user's own lines
         text = " ".join(f"{type(error).__name__}: {error}".split())
         raise ValueError(

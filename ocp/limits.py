@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Expression, Plant
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp.checks import not_negative

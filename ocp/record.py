@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 import numpy as np
+
 from quietarm import __version__
 from quietarm.ocp.checks import (
     Count,

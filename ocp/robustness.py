@@ -9,21 +9,20 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import NotNegative, takes, whole
-from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
+from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, after_arrival
 from quietarm.ocp.simulation.grid import ROLLOUT_STEPS, default_steps
-from quietarm.ocp.solvers.batch import Values, batch
 from quietarm.ocp.task import PointToPoint
-from quietarm.ocp.uncertainty import DAMPING, FREQUENCY, check_ranges, perturb_plant
+from quietarm.ocp.uncertainty import DAMPING, FREQUENCY, check_ranges
 
 OF_MODES = (FREQUENCY, DAMPING)
 MOST_SAMPLES = 1_000_000
@@ -42,41 +41,39 @@ _ZOOMS, _BESIDE = 3, (-1.0, -0.5, 0.0, 0.5, 1.0)
 
 Array = NDArray[np.float64]
 Report = Callable[[int, int], object]
-Simulated = Candidate | Values
 
 
-@keep_interrupts()  # casadi loses a Ctrl-C
-def perturbed_figures(
-    task: PointToPoint,
-    profile: JointProfile,
-    coefficients: ArrayLike,
-    ranges: Mapping[str, float],
-    errors: Array,
-    report: Report | None = None,
-) -> Array:
-    """Residual [m], energy [J] and peak torque [N m] on plants with errors, by fixed steps.
+@dataclass(frozen=True, eq=False)
+class Figures:
+    """F1 [m], F2 [J] and peak torque [N m] at the nodes of the steps: an entry for each plant."""
 
-    From errors of shape (plants, ranges) within the ranges to shape (plants, 3).
-    """
-    task, names = task.certain, tuple(ranges)
+    residual: Array
+    energy: Array
+    peak_torque: Array
+
+    def take(self, rows: slice) -> Figures:
+        """Those of some plants."""
+        return Figures(self.residual[rows], self.energy[rows], self.peak_torque[rows])
+
+
+def _along_errors(
+    candidate: Candidate, ranges: Mapping[str, float], errors: Array, report: Report | None = None
+) -> Figures:
+    """Figures on plants with errors of shape (plants, ranges), within the ranges."""
+    nominal = candidate.on(candidate.task.certain)
     faster = 1 + max(ranges.values())  # any of them may be a frequency
-    steps = max(ROLLOUT_STEPS, int(np.ceil(faster * default_steps(task, least=1))))
-    breaks = profile.breaks(task.duration)
-    rows = batch(task.plant, profile, steps, (QUANTITIES["torque"],), names, task.energy, breaks)
-    motion = profile.checked(coefficients, task.duration)
-    figures = np.empty((len(errors), 3))
+    steps = max(ROLLOUT_STEPS, int(np.ceil(faster * default_steps(nominal.task, least=1))))
+    evaluator = nominal.by_steps(steps, quantities=[QUANTITIES["torque"]], error_names=ranges)
+    parts: list[Figures] = []
     for first in range(0, len(errors), _BLOCK):
         block = errors[first : first + _BLOCK]
-        candidates, moves = (np.tile(one, (len(block), 1)) for one in (motion, task.row))
-        found = rows.values(candidates, moves, block)
-        plants = perturb_plant(task.plant, dict(zip(names, map(ca.DM, block.T))))
-        vibrations = FreeVibration(plants, [task.target] * len(block), task.residual_window)
-        residual = vibrations.peak(task.missed(found.arrival))
-        torque = np.abs(found.limited).max(axis=1)
-        figures[first : first + _BLOCK] = np.column_stack([residual, found.energy, torque])
+        evaluation = evaluator([candidate.coefficients], block)
+        figures = evaluation.residual, evaluation.energy, evaluation.largest("torque")
+        parts.append(Figures(*(figure[0] for figure in figures)))
         if report is not None:
             report(first + len(block), len(errors))
-    return figures
+    names = "residual", "energy", "peak_torque"
+    return Figures(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 @dataclass(frozen=True)
@@ -87,9 +84,9 @@ class Worst:
     residual: NotNegative
 
 
-def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Worst | None:
-    """The worst case of a motion; None where the task is certain."""
-    return peaks_between(task, profile, coefficients)[0] if task.ranges else None
+def worst_of(candidate: Candidate) -> Worst | None:
+    """The worst case of a motion along a profile; None where its task is certain."""
+    return peaks_between(candidate)[0] if candidate.task.ranges else None
 
 
 def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
@@ -102,16 +99,14 @@ def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
     return _peaks(residuals, candidate, ranges, _ALONG_BY_CVODES[len(ranges)])[0]
 
 
-def peaks_between(
-    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, most: int = 1
-) -> list[Worst]:
+def peaks_between(candidate: Candidate, most: int = 1) -> list[Worst]:
     """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first."""
+    ranges = candidate.task.ranges
 
     def residuals(errors: Array) -> Array:
-        return perturbed_figures(task, profile, coefficients, task.ranges, errors)[:, 0]
+        return _along_errors(candidate, ranges, errors).residual
 
-    candidate = Candidate.of_profile(task, profile, coefficients)
-    return _peaks(residuals, candidate, task.ranges, _ALONG[len(task.ranges)], most)
+    return _peaks(residuals, candidate, ranges, _ALONG[len(ranges)], most)
 
 
 def _peaks(
@@ -171,17 +166,15 @@ class Sensitivity:
     residual: float
 
 
-@one_at_a_time
-def sensitivities(
-    task: PointToPoint, profile: JointProfile, coefficients: Sequence[float]
-) -> tuple[Sensitivity, ...]:
+def sensitivities(candidate: Candidate) -> tuple[Sensitivity, ...]:
     """By central differences of CVODES; the parameter that adds most vibration comes first."""
-    candidate = Candidate.of_profile(task.certain, profile, coefficients)
+    task = candidate.task
     vibration = after_arrival(task)[0]
 
     def of(name: str) -> Sensitivity:
         above, below = (candidate.perturbed({name: error}) for error in (_STEP, -_STEP))
-        energy, residual = _slopes(above, below, vibration)
+        energy = _slope(above.energy, below.energy)
+        residual = vibration.peak(_slope(above.arrival, below.arrival))
         return Sensitivity(name, float(energy), float(residual[0]))
 
     known = (name for name, value in task.plant.measured.items() if value)
@@ -189,38 +182,29 @@ def sensitivities(
     return tuple(sorted(map(of, names), key=lambda one: -one.residual))
 
 
-@one_at_a_time
 def sensitivities_of_moves(
     tasks: Sequence[PointToPoint], profile: JointProfile, coefficients: Array
 ) -> dict[str, tuple[Array, Array]]:
     """Energies and residuals as of `sensitivities`, for many moves of one plant by fixed steps."""
-    one, moves = tasks[0], np.array([task.row for task in tasks])
-    rows = batch(one.plant, profile, max(map(default_steps, tasks)), (), OF_MODES, one.energy)
+    steps = max(map(default_steps, tasks))
+    evaluator = Evaluator(tasks, profile, steps, quantities=(), error_names=OF_MODES)
+    both_sides = np.concatenate([np.eye(len(OF_MODES)), -np.eye(len(OF_MODES))])
+    evaluation = evaluator(coefficients, _STEP * both_sides)
+    above = slice(None, len(OF_MODES))
+    below = slice(len(OF_MODES), None)
+    energies = _slope(evaluation.energy[:, above], evaluation.energy[:, below])
+    arrivals = _slope(evaluation.arrival[:, above], evaluation.arrival[:, below])
     targets = [task.target for task in tasks]
     windows = [task.residual_window for task in tasks]
-    vibrations = FreeVibration(one.plant, targets, windows)
-
-    def of(error: Array) -> tuple[Array, Array]:
-        errors = np.tile(_STEP * error, (len(tasks), 1))
-        above, below = (rows.values(coefficients, moves, each) for each in (errors, -errors))
-        return _slopes(above, below, vibrations)
-
-    return dict(zip(OF_MODES, map(of, np.eye(2))))
+    vibrations = FreeVibration(tasks[0].plant, targets, windows)
+    return {
+        name: (energies[:, i], vibrations.peak(arrivals[:, i])) for i, name in enumerate(OF_MODES)
+    }
 
 
-def _slopes(above: Simulated, below: Simulated, vibration: FreeVibration) -> tuple[Any, Array]:
-    """Change of the energy, and F1 of that of the state on arrival, by a relative error of 1."""
-    arrival = (above.arrival - below.arrival) / (2 * _STEP)
-    return (above.energy - below.energy) / (2 * _STEP), vibration.peak(arrival)
-
-
-@dataclass(frozen=True, eq=False)
-class Figures:
-    """F1 [m], F2 [J] and peak torque [N m] at the nodes of the steps: an entry for each plant."""
-
-    residual: Array
-    energy: Array
-    peak_torque: Array
+def _slope(above: Any, below: Any) -> Any:
+    """Change by a relative error of 1."""
+    return (above - below) / (2 * _STEP)
 
 
 @dataclass(frozen=True, eq=False)
@@ -298,12 +282,9 @@ def _plain(task: PointToPoint) -> Candidate:
     return Candidate.of_profile(task.certain, CycloidPolynomial(0), [])
 
 
-@one_at_a_time
-@takes(task=PointToPoint, profile=JointProfile)
+@takes(candidate=Candidate)
 def evaluate_robustness(
-    task: PointToPoint,
-    profile: JointProfile,
-    coefficients: ArrayLike,
+    candidate: Candidate,
     ranges: Mapping[str, float],
     *,
     samples: int = 10_000,
@@ -314,10 +295,9 @@ def evaluate_robustness(
 
     Parameters
     ----------
-    task : PointToPoint
-        The move; of an uncertain task the nominal plant counts.
-    profile : JointProfile
-        How the joint moves, with these `coefficients`.
+    candidate : Candidate
+        The motion along a profile, as `Plan.candidate`; of an uncertain task the nominal plant
+        counts.
     ranges : mapping of str to float
         Largest relative errors by name, as of `Uncertainty`.
     samples, seed : int
@@ -334,8 +314,9 @@ def evaluate_robustness(
     ------
     ValueError
         When there is no such parameter, a number is out of range, a plant within the ranges breaks
-        its contract, or the coefficients or the duration do not fit the profile.
+        its contract, or the motion has no profile.
     """
+    task = candidate.task
     ranges = check_ranges(task.plant, ranges)
     samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)
@@ -344,19 +325,20 @@ def evaluate_robustness(
     alone = [np.outer(shares, own) for own in np.diag(largest)]
     random = np.random.default_rng(seed).uniform(-largest, largest, (samples, len(largest)))
     every = np.vstack([*alone, random]).astype(float)
-    found = perturbed_figures(task, profile, coefficients, ranges, every, report)
-    *swept, sampled = np.split(found, len(shares) * np.arange(1, len(ranges) + 1))
+    figures = _along_errors(candidate, ranges, every, report)
+    count = len(shares)
+    swept = [figures.take(slice(i * count, (i + 1) * count)) for i in range(len(ranges))]
     cycloid = _plain(task).residual
     return Robustness(
         ranges=ranges,
         cycloid=cycloid,
-        assumed=Figures(*swept[0][[_SIDE]].T),
+        assumed=swept[0].take(slice(_SIDE, _SIDE + 1)),
         sweeps=tuple(
-            _sweep(name, size * shares, Figures(*rows.T), TOLERATED * cycloid)
-            for (name, size), rows in zip(ranges.items(), swept)
+            _sweep(name, size * shares, part, TOLERATED * cycloid)
+            for (name, size), part in zip(ranges.items(), swept)
         ),
         errors=random,
-        samples=Figures(*sampled.T),
+        samples=figures.take(slice(count * len(ranges), None)),
         seed=seed,
     )
 

@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
+
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes
 from quietarm.ocp.energy import power_of

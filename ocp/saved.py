@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Self, TypeVar
 
 import msgspec
 import numpy as np
+
 from quietarm.models import Plant, file_of_plant, known_plants
 from quietarm.ocp.checks import known
 from quietarm.ocp.energy import Energy, Mix
@@ -271,6 +272,8 @@ def _with_whole_numbers(entry: Any) -> Any:
         case list():
             return [_with_whole_numbers(value) for value in entry]
     return entry
+
+
 def _indented(document: Any, margin: str = "\n") -> str:
     """A document as JSON of one entry a line; a list of numbers or texts stands on one."""
     inner = f"{margin}  "

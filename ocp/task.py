@@ -12,12 +12,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import joint_unit
 from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import finite, has_no, instance, positive, several, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
-from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.limits import (
     QUANTITIES,
     Bounds,
@@ -145,8 +145,6 @@ class PointToPoint:
     uncertainty: Uncertainty | None = None
     torque_speed: tuple[tuple[float, float], ...] | None = None
 
-    @one_at_a_time
-    @keep_interrupts()  # casadi loses a Ctrl-C
     def __post_init__(self) -> None:
         if not isinstance(self.plant, Plant):
             known_plants()  # so that each is known by its name
@@ -178,7 +176,7 @@ class PointToPoint:
                 warnings.warn(
                     f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
                     f"quietarm.deg({angle:g})",
-                    stacklevel=5,
+                    stacklevel=3,
                 )
         if abs(self.span) < LEAST_MOVE:
             raise ValueError(

@@ -12,7 +12,9 @@ from typing import ClassVar
 
 import casadi as ca
 import numpy as np
+
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Modes
 from quietarm.models.validation import check_contract, outputs_of
 from quietarm.ocp.checks import has_no, positive, takes
@@ -196,7 +198,8 @@ def _check_symbols(plant: Plant, name: str, value: float) -> None:
     symbol = ca.SX.sym(name)
     motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 2 * plant.modes).tolist()
     expressions = outputs_of(with_values(plant, {name: symbol}), motion)
-    found = ca.Function("found", [symbol], [ca.vertcat(*expressions)])(value).full().ravel()
+    outputs = ca.densify(ca.vertcat(*expressions))
+    found = Compiled(lambda: ca.Function("found", [symbol], [outputs]))(value)[0].ravel()
     anew = outputs_of(replace(plant, **{name: value}), motion)
     if not np.allclose(found, [float(entry) for entry in anew], rtol=_SAME, atol=0.0):
         raise ValueError(

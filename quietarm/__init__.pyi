@@ -19,8 +19,8 @@ from .ocp import CycloidSpline as CycloidSpline
 from .ocp import Energy as Energy
 from .ocp import Front as Front
 from .ocp import InfeasibleTaskError as InfeasibleTaskError
-from .ocp import JointProfile as JointProfile
 from .ocp import Ipopt as Ipopt
+from .ocp import JointProfile as JointProfile
 from .ocp import JointSpline as JointSpline
 from .ocp import Plan as Plan
 from .ocp import PointToPoint as PointToPoint

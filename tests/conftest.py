@@ -13,6 +13,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NUMBA_OPT", "0")
 
 from pages import blocks
+
 from quietarm.models import DualLinkManipulator, Plant
 
 # A shell lets what it starts in the background ignore Ctrl-C, which these tests send.

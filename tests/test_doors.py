@@ -12,7 +12,7 @@ import quietarm as qa
 # Of these classes; `Motions` is what the pictures of motions take.
 KINDS = (
     "PointToPoint", "JointProfile", "Plant", "Energy", "Solver", "Front", "Plan", "Floor",
-    "Motions",
+    "Motions", "Candidate",
 )  # fmt: skip
 WRONG = {
     "PointToPoint": ("link", "'link'; give a task, as PointToPoint(SingleLinkManipulator(), "),
@@ -23,6 +23,7 @@ WRONG = {
     "Front": ("front.json", "'front.json'; give Front.load('front.json')"),
     "Plan": ("plan.json", "'plan.json'; give Plan.load('plan.json')"),
     "Floor": ("floor.json", "'floor.json'; give Floor.load('floor.json')"),
+    "Candidate": ("plan.json", "'plan.json'; give a motion, as plan.candidate or Candidate.of_p"),
     "Motions": (["plan.json"], "'plan.json'; give a line, as Line(plan, 'plan')"),
 }
 
@@ -92,7 +93,7 @@ def test_the_doors_are_found():
         "plan_move-solver", "polish_front-solver", "sweep-solver",
         "epsilon_front-task", "weighted_front-profile", "search-start", "sweep-profile",
         "evaluate_coefficients-task", "energy_floor-task", "cross_check-front",
-        "polish_front-front", "shaped_cycloid-task", "evaluate_robustness-profile",
+        "polish_front-front", "shaped_cycloid-task", "evaluate_robustness-candidate",
         "Candidate.of_profile-profile", "PointToPoint-plant", "PointToPoint-energy",
         "motion_figure-motions",
     } <= names  # fmt: skip
@@ -119,7 +120,10 @@ def test_something_else_is_told_what_to_give(right, function, name, kind, many):
     [
         (6, "profile is 6; give a profile, as CycloidPolynomial(6) or CycloidSpline(12)"),
         (qa.CycloidSpline, "profile is CycloidSpline; give an object, as CycloidSpline()"),
-        (qa.ocp.ShapedCycloid, "give an object, as ShapedCycloid(shaper, frequencies, damping_ratios)"),
+        (
+            qa.ocp.ShapedCycloid,
+            "give an object, as ShapedCycloid(shaper, frequencies, damping_ratios)",
+        ),
         ("cycloid-spline", "give an object, as CycloidSpline()"),
         ([0.1, 0.2], "profile is [0.1, 0.2]; give a profile, as"),
     ],
@@ -206,7 +210,13 @@ def test_an_argument_that_is_not_known_is_pythons_own_error(right):
 
 
 NUMBERS = {
-    "bound": (qa.plan_move, qa.epsilon_front, qa.weighted_front, qa.search, qa.metaheuristics.MoveFunction),
+    "bound": (
+        qa.plan_move,
+        qa.epsilon_front,
+        qa.weighted_front,
+        qa.search,
+        qa.metaheuristics.MoveFunction,
+    ),
     "residual_limit": (qa.plan_move,),
     "starts": (qa.plan_move, qa.epsilon_front, qa.energy_floor),
     "seed": (qa.plan_move, qa.epsilon_front, qa.search),

@@ -5,6 +5,7 @@ import shlex
 
 import pytest
 from pages import COMMANDS, PAGES, README, ROOT, TWO_COMMANDS
+
 from quietarm.ocp import evaluate_coefficients, plan_move
 from quietarm.studies.cli import quietarm
 from quietarm.studies.reproduce.paper import SINGLE_LINK_SIXTH

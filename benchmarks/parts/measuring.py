@@ -26,7 +26,7 @@ def load_plugins() -> None:
 def forget_compiled() -> None:
     """Empty every cache, so that the next plan or search builds all of its functions anew."""
     for name, module in list(sys.modules.items()):
-        if name.startswith(("ocp.", "metaheuristics.")):
+        if name.startswith(("quietarm.ocp.", "quietarm.metaheuristics.")):
             for value in vars(module).values():
                 if hasattr(value, "cache_clear"):
                     value.cache_clear()

@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from polish import polished
+
 from quietarm.metaheuristics import PROBLEMS
 from quietarm.ocp import (
     Candidate,

@@ -16,6 +16,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.metaheuristics import PROBLEMS
 from quietarm.metaheuristics.problems.catalogue import FRONTS
 from quietarm.ocp import Candidate, Front, FrontPoint, QuietarmError, non_dominated

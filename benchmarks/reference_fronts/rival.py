@@ -13,11 +13,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.optimize import minimize
+
 from quietarm.models import JointMotion
 from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.sample import sample_plant
-from scipy.integrate import solve_ivp
-from scipy.optimize import minimize
 
 Array = NDArray[np.float64]
 STEPS = 601

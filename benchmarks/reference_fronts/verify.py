@@ -15,10 +15,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from rival import STEPS, Rival, by_dop853
+
 from quietarm.metaheuristics import PROBLEMS, NamedProblem
 from quietarm.metaheuristics.problems.catalogue import FRONTS
 from quietarm.ocp import Candidate, Front, FrontPoint, PointToPoint, QuietarmError, non_dominated
-from rival import STEPS, Rival, by_dop853
 
 EVERY = 5
 """One point in so many is solved again from itself, and the last."""

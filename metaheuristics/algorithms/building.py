@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
+
 from quietarm.metaheuristics.algorithms.settings import Value
 from quietarm.metaheuristics.algorithms.velocity import VelocityRule
 from quietarm.ocp.checks import install

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 import numpy as np
+
 from quietarm.ocp.checks import not_negative, positive
 
 Array = np.ndarray

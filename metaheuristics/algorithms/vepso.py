@@ -25,6 +25,7 @@ from pymoo.core.population import Population
 from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.survival.rank_and_crowding.metrics import calc_crowding_distance
 from pymoo.util.display.multi import MultiObjectiveOutput
+
 from quietarm.metaheuristics.algorithms.velocity import (
     BOUNDARIES,
     CONSTRICTION,

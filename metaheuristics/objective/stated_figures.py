@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.objective.population import PopulationObjective
-from quietarm.ocp import Front, JointProfile, Plan, PointToPoint
+
+from quietarm.metaheuristics.objective.population import objectives_of
+from quietarm.ocp import Front, Plan
+from quietarm.ocp.checks import table_of
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.front.points import refuse_beyond_box, table_of
+from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.limits import quantities_of
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.ocp.robustness import worst_of
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.evaluator import Evaluator
 
 _SAMPLE = 100
 """Points that are evaluated again: as many as one call takes. An edit or a conversion rarely leaves
@@ -31,12 +32,6 @@ T = TypeVar("T", float, Array)
 def agrees(stated: T, gives: T, least: float | Array) -> Any:
     """Whether a stated figure is what a motion gives, element by element; what is NaN is not."""
     return abs(stated - gives) <= AGREEMENT * abs(gives) + least
-
-
-@lru_cache(maxsize=4)
-def fine_objective(task: PointToPoint, profile: JointProfile) -> PopulationObjective:
-    """The objective at the steps that fronts are verified with; made once for a task."""
-    return PopulationObjective(task, profile, steps=default_steps(task))
 
 
 def check_figures(front: Front, name: str, remedy: str = "find the front again") -> None:
@@ -92,9 +87,10 @@ def _evaluated_again(front: Front, table: Array) -> Iterator[tuple[int, Array, A
         return
     places = np.unique(np.linspace(0, count - 1, min(count, _SAMPLE)).round().astype(int))
     with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused
-        values = fine_objective(front.task, front.profile)(table[places])
-    figures = np.column_stack([values.residual, values.energy])
-    yield from zip(places.tolist(), figures, values.violations)
+        evaluation = Evaluator(front.task, front.profile)(table[places])
+        figures = objectives_of(evaluation)
+        violations = evaluation.violations
+    yield from zip(places.tolist(), figures, violations)
 
 
 def _refuse_other_figures(which: str, stated: tuple[float, float], figures: Array) -> None:
@@ -135,8 +131,7 @@ def _check_worst(plan: Plan, name: str) -> None:
     """Find the worst case of a plan for an uncertain plant again, and compare."""
     if plan.worst is None:
         return
-    where = plan.task, plan.profile, plan.coefficients
-    found, stated = worst_of(*where), plan.worst.residual
+    found, stated = worst_of(plan.candidate), plan.worst.residual
     if found is None or list(found.errors) != list(plan.worst.errors):
         what = ", ".join(plan.worst.errors) or "none"
         raise ValueError(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+
 from quietarm.metaheuristics.score import objectives
 from quietarm.ocp import Front
 

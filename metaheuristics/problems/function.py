@@ -8,7 +8,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.metaheuristics.objective.population import PopulationObjective, replace_failures
+
+from quietarm.metaheuristics.objective.population import (
+    objectives_of,
+    replace_failures,
+    search_evaluator,
+)
 from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.checks import takes, unknown
 from quietarm.ocp.limits import QUANTITIES, quantities_of
@@ -91,10 +96,7 @@ class MoveFunction:
                     "one number"
                 )
         measured: Any = replace(task, **limits)
-        self._objective = PopulationObjective(
-            measured, profile, steps=steps,
-            threads=threads,
-        )  # fmt: skip
+        self._evaluator = search_evaluator(measured, profile, steps, threads)
         measures = [limit.name for limit in measured.limits]
         self._limited = [measures.index(name) for name in limited]
         self._peaked = [measures.index(name) for name in self.peaks]
@@ -122,11 +124,11 @@ class MoveFunction:
             When they are no plain numbers, or the shape is another.
         """
         with np.errstate(all="ignore"):  # coefficients of any size
-            values = self._objective(candidates)
-        peaks = (values.violations[:, self._peaked] + 1) * self._sizes
-        table = np.column_stack(
-            [values.residual, values.energy, peaks, values.violations[:, self._limited]]
-        )
+            evaluation = self._evaluator(candidates)
+            objectives = objectives_of(evaluation)
+            violations = evaluation.violations
+        peaks = (violations[:, self._peaked] + 1) * self._sizes
+        table = np.column_stack([objectives, peaks, violations[:, self._limited]])
         replace_failures(table)
         count = len(self.objectives)
         return table[:, :count], table[:, count:]

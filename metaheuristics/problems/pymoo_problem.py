@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
+
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.ocp.checks import whole
 

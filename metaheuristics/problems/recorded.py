@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.metaheuristics.archive import Archive
 from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.ocp import Front, JointProfile, PointToPoint
-from quietarm.ocp.checks import takes, whole
-from quietarm.ocp.front.points import beyond, table_of
+from quietarm.ocp.checks import table_of, takes, whole
+from quietarm.ocp.front.points import beyond
 from quietarm.ocp.record import Setting
 
 Array = NDArray[np.float64]

@@ -9,10 +9,11 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.compiled import Compiled
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import Limit, Quantity
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
@@ -123,7 +124,6 @@ class FloorProgram:
     `_interval`) and both parts of the power at the nodes, scaled by what the plain cycloid reaches.
     """
 
-    @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, task: PointToPoint, smooth: bool, solver: Solver = Ipopt()) -> None:
         jerk = task.limit_of("jerk")
         if jerk is not None and not smooth:
@@ -137,8 +137,8 @@ class FloorProgram:
         joints = len(task.plant.joint_names)
         self._parts = NODES * joints if task.energy.absolute else 0
         quantities = [limit.quantity for limit in task.limits]
-        self._interval = _interval(task.plant, smooth, quantities, task.energy)
-        self._solver = lru_cache(maxsize=4)(self._build)
+        self._interval = Compiled(lambda: _interval(task.plant, smooth, quantities, task.energy))
+        self._solver = lru_cache(maxsize=4)(self._compile)
         cycloid = self.along(CycloidPolynomial(0).path([], *task.move), first_grid(_SCALE_STEPS))
         columns, (power, rest, *limited) = self._simulate(cycloid)
         self._scale = np.abs(columns).max(axis=1)
@@ -153,6 +153,11 @@ class FloorProgram:
         each = zip(self._limits, limited)
         return [float(limit.peak(values.min(), values.max())) for limit, values in each]
 
+    def _compile(self, steps: int, warm: bool) -> tuple[Compiled, Array]:
+        """What `_build` gives, guarded."""
+        solver, upper = Compiled.guard(lambda: self._build(steps, warm))
+        return Compiled(lambda: solver, silent=True), upper
+
     def _build(self, steps: int, warm: bool) -> tuple[ca.Function, Array]:
         """IPOPT, of lengths and weights of what is least, and its constraints' upper bounds."""
         rows, states, parts = len(self._scale), self._states, self._parts
@@ -161,7 +166,7 @@ class FloorProgram:
         lengths, weights = ca.MX.sym("lengths", steps), ca.MX.sym("weights", 1 + len(measures))
         peaks, x = ca.MX.sym("peaks", len(measures)), ca.MX.sym("x", rows + 2 * parts, steps)
         columns, forward, backward = ca.vertsplit(x, [0, rows, rows + parts, rows + 2 * parts])
-        after, equations, power, rest, *values = self._interval.map(steps)(
+        after, equations, power, rest, *values = self._interval.function.map(steps)(
             columns * scale, lengths.T
         )
         arrived = ca.DM(self._resting(self.task.target, self.task.final_state))
@@ -207,7 +212,6 @@ class FloorProgram:
             return FreeMotion(times, acceleration[:-1], np.diff(acceleration) / h)
         return FreeMotion(times, np.diff(path(times, 1)) / h, np.zeros(len(h)))
 
-    @keep_interrupts()
     def solve(
         self, free: FreeMotion, limits: Sequence[Limit], minimise: str = ENERGY, warm: bool = False
     ) -> FreeSolution:
@@ -221,14 +225,15 @@ class FloorProgram:
             (np.zeros(len(upper)), upper),
             np.append(free.lengths, units[[ENERGY, *names].index(minimise)]),
         )
-        mean = solver.get_function("nlp_f")(stop.unknowns, np.append(free.lengths, units[0]))
+        objective = Compiled(lambda: solver.function.get_function("nlp_f"))
+        (mean,) = objective(stop.unknowns, np.append(free.lengths, units[0]))
         peaks, found = np.split(stop.unknowns, [len(names)])
         columns = found.reshape(free.steps, -1).T[: len(self._scale)] * self._scale[:, None]
         last = columns[self._states]
         acceleration, jerk = (columns[2], last) if self.smooth else (last, np.zeros(free.steps))
         return FreeSolution(
             free=FreeMotion(free.times, acceleration, jerk),
-            energy=float(mean * self.task.duration * self._measures[0]),
+            energy=float(mean.item() * self.task.duration * self._measures[0]),
             peaks=dict(zip(names, (peaks * self._measures[1:]).tolist())),
             status=SolveStatus.from_ipopt(stop.return_status),
         )
@@ -257,6 +262,9 @@ class FloorProgram:
 
     def _simulate(self, free: FreeMotion) -> tuple[Array, list[Array]]:
         """The columns of a motion, and the values of `_interval` from the power on."""
+        return Compiled.guard(lambda: self._values_along(free))
+
+    def _values_along(self, free: FreeMotion) -> tuple[Array, list[Array]]:
         h = ca.DM(free.lengths).T
         given = [*free.boundaries(self.task.start)[:, :-1], free.acceleration, free.jerk]
         begun = [ca.DM(row).T for row in given[: 3 + self.smooth]]
@@ -264,7 +272,8 @@ class FloorProgram:
         W, dW, _ = march(*one.transition(), h.shape, self.task.initial_state)
         ddW = [ca.DM.zeros(h.shape) + entry for node in one.accelerations(W, dW) for entry in node]
         columns = ca.vertcat(*begun[:-1], *W, *dW, begun[-1], *ddW)
-        return columns.full(), [values.full() for values in self._interval(columns, h)[2:]]
+        outputs = self._interval.function(columns, h)
+        return columns.full(), [values.full() for values in outputs[2:]]
 
 
 def _flat(peaks: ArrayLike, columns: Array) -> Array:

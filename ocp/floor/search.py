@@ -14,11 +14,11 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, Positive, positive, takes, whole
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import SAME, Sought, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.certify import excess_error, tighten
 from quietarm.ocp.planning.plan_move import plan_move
@@ -154,7 +154,6 @@ class Floor(MotionAnswer):
         return self.candidate.trajectory
 
 
-@one_at_a_time
 @takes(task=PointToPoint, solver=Solver)
 def energy_floor(
     task: PointToPoint,

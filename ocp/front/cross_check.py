@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.curve import Curve, Report, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN, judge
 from quietarm.ocp.record import number_of_points
@@ -59,7 +59,6 @@ class CrossCheck:
         return float(np.max(np.abs([point.difference for point in self.points])))
 
 
-@one_at_a_time
 @takes(front=Front, solver=Solver)
 def cross_check(
     front: Front,
@@ -107,7 +106,8 @@ def cross_check(
 def _compare(curve: Curve, point: FrontPoint) -> Compared:
     """A point by both, within the same limits at the nodes of the same steps."""
     transcription, asked = curve.problem()
-    peaks = transcription.peaks(transcription.evaluate(np.array(point.coefficients)))
+    motion = transcription.evaluate(np.array(point.coefficients))
+    peaks = transcription.measure(motion).peaks_of(0)
     own = judge(transcription, np.array(point.coefficients))
     # a limit that the point is at was tightened until it held between the nodes as well
     limits = [

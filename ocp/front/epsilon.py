@@ -9,11 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.checks import positive, several, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.planning.setup import Setup
@@ -39,7 +39,6 @@ Best = Mapping[float, Solution]
 """The best solution at each residual limit [m]."""
 
 
-@one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile, solver=Solver)
 def epsilon_front(
     task: PointToPoint,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import (
     IF_STATED,
@@ -17,6 +18,7 @@ from quietarm.ocp.checks import (
     NotNegative,
     Positive,
     not_negative,
+    table_of,
     takes,
     whole,
 )
@@ -28,9 +30,7 @@ from quietarm.ocp.front.points import (
     Mark,
     evaluated,
     non_dominated,
-    table_of,
 )
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, Record, Setting
@@ -166,7 +166,6 @@ class Front(Answer):
         write_whole(path, "\n".join(lines) + "\n")
 
     @classmethod
-    @one_at_a_time
     @takes(task=PointToPoint, profile=JointProfile)
     def from_coefficients(
         cls,

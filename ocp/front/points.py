@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import reprlib
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -11,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import IF_STATED, Count, CountFromOne, NotNegative, Share, positive
 from quietarm.ocp.errors import SolverFailedError
@@ -177,30 +177,6 @@ class Evaluated(NamedTuple):
     points: tuple[FrontPoint, ...]
     failed: int
     infeasible: int
-
-
-def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.float64]:
-    """Coefficients, a row for each motion; without `columns` any number of them, and a row."""
-    if hasattr(coefficients, "filled"):  # to name numpy's class would load numpy.ma
-        raise ValueError(
-            "coefficients are a masked array; give plain numbers, as of its filled(value)"
-        )
-    try:
-        given = np.asarray(coefficients)
-        if given.dtype.kind not in "iufO":
-            raise TypeError
-        table = given.astype(float)
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(
-            f"coefficients are {reprlib.repr(coefficients)}; give a row of numbers for each motion"
-        ) from None
-    fits = table.ndim == 2 and (len(table) > 0 if columns is None else table.shape[1] == columns)
-    if not fits:
-        raise ValueError(
-            f"coefficients have shape {table.shape}; give (motions, {columns or 'coefficients'}), "
-            "one row for each motion"
-        )
-    return table
 
 
 def beyond(table: NDArray[np.float64], lower: ArrayLike, upper: ArrayLike) -> NDArray[np.int64]:

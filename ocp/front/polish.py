@@ -6,11 +6,11 @@ import time
 from dataclasses import dataclass, replace
 
 import numpy as np
+
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.solver import NAME, Solver
@@ -51,7 +51,6 @@ class Polish:
     gains: tuple[Gain, ...]
 
 
-@one_at_a_time
 @takes(front=Front, solver=Solver)
 def polish_front(
     front: Front,

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.checks import not_negative, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Asked, Curve, Report, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import best_of_starts, objective_of
 from quietarm.ocp.planning.choose_profile import choose_profile
@@ -31,7 +31,6 @@ Array = NDArray[np.float64]
 Minimum = tuple[Solution, Asked]
 
 
-@one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile, solver=Solver)
 def weighted_front(
     task: PointToPoint,

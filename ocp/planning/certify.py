@@ -12,13 +12,13 @@ from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.limits import QUANTITIES, Limit, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion
-from quietarm.ocp.simulation.free_vibration import FreeVibration
+from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.solvers.batch import Batch, Values, batch
 from quietarm.ocp.solvers.problem import (
     MOST_SOLVER_STEPS,
     STILL,
@@ -284,16 +284,11 @@ def _judge_by_cvodes(rows: Sequence[_Row]) -> None:
 def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
     for own in _alike(rows):
         of = [row.transcription for row in own]
-        tasks = [each.task for each in of]
-        values = _values(_finer(of[0]), of, _table(own))
-        targets = [task.target for task in tasks]
-        windows = [task.residual_window for task in tasks]
-        vibrations = FreeVibration(tasks[0].plant, targets, windows)
-        wanted = np.array([task.final_state for task in tasks])
-        figures = zip(values.energy, vibrations.peak(values.arrival - wanted))
-        for row, arrival, (energy, residual) in zip(own, values.arrival, figures):
+        finer = _by_finer_steps(of, _table(own))
+        figures = zip(finer.energy[:, 0], finer.residual[:, 0], finer.arrival)
+        for row, (energy, residual, arrival) in zip(own, figures):
             check_motion(of[0].profile, row.best.coefficients, *row.transcription.task.move)
-            row.judged(FinerFigures(float(energy), float(residual), arrival[None]))
+            row.judged(FinerFigures(float(energy), float(residual), arrival))
 
 
 def _confirm(found: Sequence[Outcome]) -> Sequence[Outcome]:
@@ -327,22 +322,19 @@ def _table(rows: Sequence[_Row]) -> Array:
 
 def finer_peaks(of: Sequence[Transcription], coefficients: Array) -> dict[str, Array]:
     """Peaks of every quantity of one motion of each task, at the nodes of finer steps."""
-    finer = _finer(of[0], tuple(QUANTITIES.values()))
-    limited = _values(finer, of, coefficients).limited
-    return {name: np.abs(limited[:, place]).max(axis=1) for name, place in finer.places.items()}
+    finer = _by_finer_steps(of, coefficients, tuple(QUANTITIES.values()))
+    return {name: finer.largest(name)[:, 0] for name in QUANTITIES}
 
 
-def _finer(one: Transcription, quantities: tuple[Quantity, ...] = ()) -> Batch:
-    steps = max(default_steps(one.task), _FINER * one.steps)
-    breaks = one.profile.breaks(one.task.duration)
-    return batch(
-        one.task.plant, one.profile, steps, quantities, energy=one.task.energy, breaks=breaks
-    )
-
-
-def _values(finer: Batch, of: Sequence[Transcription], coefficients: Array) -> Values:
-    move = np.array([one.task.row for one in of])
-    return finer.values(coefficients, move, np.zeros((len(of), 0)))
+def _by_finer_steps(
+    of: Sequence[Transcription], coefficients: Array, quantities: Sequence[Quantity] = ()
+) -> Evaluation:
+    """A motion of each task, on its nominal plant."""
+    first = of[0]
+    steps = max(default_steps(first.task), _FINER * first.steps)
+    tasks = [transcription.task.certain for transcription in of]
+    evaluator = Evaluator(tasks, first.profile, steps, quantities=quantities)
+    return evaluator(coefficients)
 
 
 def judge(transcription: Transcription, coefficients: Array) -> Candidate:

@@ -15,6 +15,7 @@ import time
 from dataclasses import replace
 
 import numpy as np
+
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.least_time import fitting_spline, least_time

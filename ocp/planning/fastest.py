@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.least_time import LeastTime, least_time
 from quietarm.ocp.planning.plan import Plan
@@ -68,7 +67,6 @@ class Fastest:
         return self.plan.task.duration
 
 
-@one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile, solver=Solver)
 def fastest_move(
     task: PointToPoint,

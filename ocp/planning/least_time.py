@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.planning.rigid_motion import (
     RigidMotion,

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import takes
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
@@ -66,7 +66,6 @@ class Moves:
     by_cvodes: NDArray[np.bool_]
 
 
-@one_at_a_time
 @takes(tasks=[PointToPoint], profile=JointProfile, solver=Solver)
 def plan_moves(
     tasks: Sequence[PointToPoint],

@@ -13,12 +13,12 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
+
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import NotNegative, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.files import write_whole
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -26,11 +26,9 @@ from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import REST, Record, Setting, Verification
 from quietarm.ocp.robustness import Sensitivity, Worst, sensitivities, worst_of
 from quietarm.ocp.saved import MotionAnswer, to_html
-from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
-from quietarm.ocp.solvers.batch import batch
 from quietarm.ocp.solvers.problem import STILL
 from quietarm.ocp.task import PointToPoint
 
@@ -104,9 +102,8 @@ class Plan(MotionAnswer):
 
     def on(self, task: PointToPoint) -> Plan:
         """The same motion for an uncertain task with the same nominal plant."""
-        motion = Candidate.of_profile(task, self.profile, self.coefficients).motion
-        worst = worst_of(task, self.profile, self.coefficients)
-        return replace(self, task=task, motion=motion, worst=worst)
+        candidate = Candidate.of_profile(task, self.profile, self.coefficients)
+        return replace(self, task=task, motion=candidate.motion, worst=worst_of(candidate))
 
     @cached_property
     def candidate(self) -> Candidate:
@@ -121,7 +118,7 @@ class Plan(MotionAnswer):
     @cached_property
     def sensitivities(self) -> tuple[Sensitivity, ...]:
         """What energy and arrival change with each parameter of the plant; see `Sensitivity`."""
-        return sensitivities(self.task, self.profile, self.coefficients)
+        return sensitivities(self.candidate)
 
     @property
     def turns_back(self) -> float:
@@ -208,7 +205,6 @@ class Plan(MotionAnswer):
         write_whole(path, text.getvalue())
 
 
-@one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile)
 def evaluate_coefficients(
     task: PointToPoint,
@@ -239,17 +235,17 @@ def evaluate_coefficients(
     began, settings = time.perf_counter(), {} if settings is None else settings
     if profile is None:
         profile = CycloidPolynomial.of_size(np.size(coefficients))
-    checked = profile.checked(coefficients)
-    motion = Candidate.of_profile(task, profile, checked).motion
+    candidate = Candidate.of_profile(task, profile, coefficients)
+    motion = candidate.motion
     return Plan(
         task=task,
         profile=profile,
-        coefficients=checked,
+        coefficients=candidate.coefficients,
         motion=motion,
         status=SolveStatus.NOT_OPTIMISED,
-        verification=Verification.between(*_by_fixed_steps(task, profile, checked), motion),
+        verification=_verify(candidate, motion),
         record=Record(method, settings, seconds=time.perf_counter() - began),
-        worst=worst_of(task, profile, checked),
+        worst=worst_of(candidate),
     )
 
 
@@ -275,18 +271,12 @@ def only_motion(
     return replace(plan, residual_limit=residual_limit)
 
 
-def _by_fixed_steps(
-    task: PointToPoint, profile: JointProfile, coefficients: tuple[float, ...]
-) -> tuple[int, float, float]:
-    """Default steps, F2 [J] and F1 [m] by them."""
-    steps, errors = default_steps(task), np.array(task.scenarios)
-    breaks = profile.breaks(task.duration)
-    fixed = batch(task.plant, profile, steps, (), task.error_names, task.energy, breaks)
-    motion, row = (np.tile(one, (len(errors), 1)) for one in (coefficients, task.row))
-    found = fixed.values(motion, row, errors)
-    each = zip(after_arrival(task), task.missed(found.arrival))
-    residual = max(float(vibration.peak(state)) for vibration, state in each)
-    return steps, float(found.energy[0]), residual
+def _verify(candidate: Candidate, motion: Motion) -> Verification:
+    """Distance of its figures by CVODES from those by fixed steps."""
+    steps = default_steps(candidate.task)
+    evaluation = candidate.by_steps(steps, quantities=())([candidate.coefficients])
+    energy = float(evaluation.energy[0, 0])
+    return Verification.between(steps, energy, float(evaluation.residual.max()), motion)
 
 
 def ticks_of_move(duration: float, sample_rate: float) -> int:

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.limits import RESIDUAL
@@ -176,7 +177,7 @@ def _solve_and_look_between(
     plan, others = plan_from_starts(task, profile, setup, limit, starts, quick=quick)
     if task.uncertainty is None:
         return plan, others, []
-    return plan, others, peaks_between(plan.task, profile, plan.coefficients, _ADDED)
+    return plan, others, peaks_between(plan.candidate, _ADDED)
 
 
 def plan_from_starts(

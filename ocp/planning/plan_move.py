@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
+
 from quietarm.ocp.checks import takes
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.choose_profile import plan_on_chosen_profile
 from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.planning.plan_along import plan_along
@@ -24,7 +24,6 @@ from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 
-@one_at_a_time
 @takes(task=PointToPoint, profile=JointProfile, solver=Solver)
 def plan_move(
     task: PointToPoint,

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.limits import TORQUE_SPEED, Limit, Shares, TorqueSpeedLine
 from quietarm.ocp.simulation.free_vibration import FreeVibration

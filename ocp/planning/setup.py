@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.checks import finite, instance, whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Record, Setting, coefficient_bound, digits, number_of_starts

@@ -8,8 +8,9 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from quietarm.models.compiled import Compiled
 from quietarm.ocp.checks import hashable, instance
-from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 
 _FRACTIONS = np.array([0.0, 1.0, *np.random.default_rng(0).uniform(0.02, 0.98, 15)])
@@ -114,17 +115,21 @@ def _refuse_wrong(
         )
 
 
-@keep_interrupts()  # casadi loses a Ctrl-C
 def _compare(profile: JointProfile, coefficients: Array, *move: float) -> _Comparison:
     """One motion, and what it has to be."""
     function = _comparison_function(profile)
     columns = np.tile([*coefficients, *move], (len(_FRACTIONS), 1)).T
-    return _Comparison(*function(np.vstack([_FRACTIONS, columns])).full())
+    (rows,) = function(np.vstack([_FRACTIONS, columns]))
+    return _Comparison(*rows)
 
 
 @lru_cache(maxsize=256)
-def _comparison_function(profile: JointProfile) -> ca.Function:
+def _comparison_function(profile: JointProfile) -> Compiled:
     """The rows of a `_Comparison`, of columns of a fraction, coefficients and a move."""
+    return Compiled(lambda: _build_comparison(profile))
+
+
+def _build_comparison(profile: JointProfile) -> ca.Function:
     symbols = ca.SX.sym("x", 1 + profile.size + 3)
     fraction, *numbers = ca.vertsplit(symbols)
     coefficients = numbers[: profile.size]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import casadi as ca
+
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.profiles.b_splines import spline
 from quietarm.ocp.profiles.differentiate import Derivatives, differentiate

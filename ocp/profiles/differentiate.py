@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import casadi as ca
+
 from quietarm.models import Expression
 
 Derivatives = tuple[Expression, Expression, Expression]

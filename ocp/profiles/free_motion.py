@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import PointToPoint

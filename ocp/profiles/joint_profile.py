@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Self, final
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.models import Expression, JointMotion
 from quietarm.models.final import refuse_overridden
 from quietarm.ocp.checks import finite

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Expression
 from quietarm.ocp.checks import finite, several
 from quietarm.ocp.profiles.b_splines import spline

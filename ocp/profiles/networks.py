@@ -9,6 +9,7 @@ from typing import ClassVar, NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.models import Expression
 from quietarm.ocp.profiles.cycloid import Cycloid, with_bump
 from quietarm.ocp.profiles.differentiate import Derivatives

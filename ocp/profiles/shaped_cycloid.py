@@ -13,6 +13,7 @@ from functools import partial
 from typing import ClassVar, NamedTuple, Self
 
 import casadi as ca
+
 from quietarm.models import Expression
 from quietarm.ocp.checks import finite, positive, several
 from quietarm.ocp.profiles.joint_profile import JointProfile, Values

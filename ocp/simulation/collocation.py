@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
+
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes, is_zero
 

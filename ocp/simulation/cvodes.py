@@ -9,20 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Plant
+from quietarm.models.compiled import Compiled
 from quietarm.ocp.cost import COST
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time, silent_errors
 from quietarm.ocp.profiles.free_motion import Law, PiecewiseMotion
 from quietarm.ocp.sample import symbolic_sample
-from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import integrated, spent
@@ -51,8 +51,6 @@ class Run(NamedTuple):
     net_work: float
 
 
-@one_at_a_time
-@keep_interrupts()  # casadi loses a Ctrl-C
 def integrate(
     plant: Plant,
     errors: Mapping[str, float],
@@ -64,13 +62,10 @@ def integrate(
     """Follow a motion on a plant with errors, by so many steps of the quadrature on a piece."""
     with COST.timed("checks"), _refusing(path.remedy):
         figures = _figures(plant, path.law, path.given.shape, steps, tuple(errors), energy)
-        given = path.given.T, [list(errors.values())], [initial]
-        outputs, arrival, spent, net_work = (value.T.copy() for value in figures(*given))
+        outputs, arrival, spent, net_work = figures(path.given, list(errors.values()), initial)
     return Run(outputs, arrival[:, 0], spent.item(), net_work.item())
 
 
-@one_at_a_time
-@keep_interrupts()
 def integrate_to(
     plant: Plant,
     errors: Mapping[str, float],
@@ -80,16 +75,16 @@ def integrate_to(
 ) -> Array:
     """`outputs_of` at these fractions of a motion in one piece, 0 the first of them."""
     with _refusing(path.remedy):
-        along = _along(plant, path.law, path.given.shape, fractions, tuple(errors))
-        return along(path.given, ca.DM([*errors.values()]), initial)[1].full()
+        shape, names = path.given.shape, tuple(errors)
+        along = Compiled(lambda: _along(plant, path.law, shape, fractions, names), silent=True)
+        return along(path.given, list(errors.values()), initial)[1]
 
 
 @contextmanager
 def _refusing(motion: str) -> Iterator[None]:
     """Let CVODES be called in this block; name the motion that it cannot follow."""
     try:
-        with silent_errors():  # the error below is enough
-            yield
+        yield
     except RuntimeError as error:
         raise SolverFailedError(f"CVODES could not follow this motion{motion}") from error
 
@@ -102,8 +97,20 @@ def _figures(
     steps: int,
     names: tuple[str, ...],
     definition: Energy,
-) -> BufferedFunction:
+) -> Compiled:
     """(given, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
+    build = partial(_build_figures, plant, law, shape, steps, names, definition)
+    return Compiled(build, silent=True)  # the error of `_refusing` is enough
+
+
+def _build_figures(
+    plant: Plant,
+    law: Law,
+    shape: tuple[int, int],
+    steps: int,
+    names: tuple[str, ...],
+    definition: Energy,
+) -> ca.Function:
     given, grid = ca.MX.sym("p", *shape), Grid(steps)
     errors, initial = ca.MX.sym("e", len(names)), ca.MX.sym("x", 2 * plant.modes)
     states, outputs = _along(plant, law, shape, grid.samples, names)(given, errors, initial)
@@ -118,7 +125,7 @@ def _figures(
     net_work = integrated([sample.power for sample in nodes], h)
     figures = [outputs, states[:, -1], ca.sum1(energy), ca.sum1(net_work)]
     dense = [ca.densify(figure) for figure in figures]  # a plant's output may be zero throughout
-    return BufferedFunction(ca.Function("figures", [given, errors, initial], dense))
+    return ca.Function("figures", [given, errors, initial], dense)
 
 
 def _along(
@@ -135,7 +142,7 @@ def _along(
     ]
     joint = law(at_samples, ca.DM(np.tile(fractions, pieces)).T, jerk=True)
     outputs = outputs_of(_perturbed(plant, names, errors), joint, states)
-    return ca.Function("along", [given, errors, initial], [states, outputs])
+    return ca.Function("along", [given, errors, initial], [states, ca.densify(outputs)])
 
 
 def _over_a_piece(

@@ -9,9 +9,9 @@ from functools import cached_property, lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.checks import takes
-from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.simulation.collocation import modal_system
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.window import MOST_RADIANS
@@ -62,8 +62,6 @@ class FreeVibration:
         When the window is too long to be resolved.
     """
 
-    @one_at_a_time
-    @keep_interrupts()  # casadi loses a Ctrl-C
     @takes(plant=Plant)
     def __init__(self, plant: Plant, angle: ArrayLike, window: ArrayLike = 0.0) -> None:
         self.window: Array = np.asarray(window, dtype=float)

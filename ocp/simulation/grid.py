@@ -10,6 +10,7 @@ from itertools import pairwise
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Expression
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import GAUSS_NODES

@@ -9,6 +9,7 @@ from functools import lru_cache
 
 import casadi as ca
 import numpy as np
+
 from quietarm.models import Expression
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.limits import RESIDUAL, Quantity, Ranged

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
+
 from quietarm.models import Expression, Plant
 from quietarm.models.joint_motion import is_zero
 from quietarm.ocp.checks import takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import Quantity, ask_for_jerk
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.sample import Sample, sample_plant
 from quietarm.ocp.simulation.collocation import (
     GAUSS_WEIGHTS,
+    NODES,
     NodeState,
     at_each_node,
     collocate,
@@ -89,9 +90,9 @@ class Simulation(NamedTuple):
     plant: Plant
     profile: JointProfile
     steps: int
-    quantities: tuple[Quantity, ...]
-    errors: tuple[str, ...]
-    energy: Energy
+    quantities: tuple[Quantity, ...] = ()
+    errors: tuple[str, ...] = ()
+    energy: Energy = ABSOLUTE_POWER
     breaks: tuple[float, ...] = ()
 
     @property
@@ -114,7 +115,18 @@ class Simulation(NamedTuple):
         )  # fmt: skip
 
 
-@one_at_a_time
+@lru_cache(maxsize=128)
+def places_of(simulation: Simulation) -> Mapping[str, slice]:
+    """Where the values of each quantity stand among all of a candidate."""
+    places: dict[str, slice] = {}
+    first = 0
+    for quantity in simulation.quantities:
+        count = quantity.rows(simulation.plant) * NODES * len(simulation.grid.lengths)
+        places[quantity.name] = slice(first, first + count)
+        first += count
+    return places
+
+
 @takes(plant=Plant, profile=JointProfile, energy=Energy)
 def symbolic_rollout(
     plant: Plant,

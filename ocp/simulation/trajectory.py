@@ -9,6 +9,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes
 from quietarm.ocp.sample import Sample, sample_plant, symbolic_sample

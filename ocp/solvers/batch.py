@@ -1,4 +1,4 @@
-"""Candidates in rows: what each costs, leaves and asks of the joint, with exact derivatives.
+"""Candidates in rows: the values of the evaluator with exact derivatives.
 
 A row is a candidate with a move and errors of the plant of its own. `derivatives` builds the
 expressions; here they are compiled for blocks of rows and called.
@@ -6,54 +6,28 @@ expressions; here they are compiled for blocks of rows and called.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
-from itertools import repeat
 from typing import Any, Self
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import Plant
+
+from quietarm.models.compiled import Compiled
 from quietarm.ocp.cost import COST
-from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
-from quietarm.ocp.interrupts import keep_interrupts
-from quietarm.ocp.limits import Quantity
-from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
-from quietarm.ocp.simulation.rollout import Simulation
-from quietarm.ocp.solvers.derivatives import compile_derivatives, compile_values
+from quietarm.ocp.simulation.evaluator import Values
+from quietarm.ocp.simulation.rollout import Simulation, places_of
+from quietarm.ocp.simulation.rows import RowFunction, copy_rows
+from quietarm.ocp.solvers.derivatives import compile_derivatives
 from quietarm.ocp.solvers.node import path_of
 
 Array = NDArray[np.float64]
-Unpack = Callable[[list[Array], int], tuple[Array, ...]]
-"""From outputs whose columns are candidates to copies with a row for each."""
-_OF_VALUES, _OF_DERIVATIVES = (1, 8, 100), (1, 4, 8)
-"""Rows of a compiled call: to build one takes as long as hundreds of its calls."""
+_ROWS = (1, 4, 8)
 _LEAST_STRETCH = 1e-3
 """Share of the largest speed below which a direction in a box counts as this share."""
-_PADDED = 200
-"""So many times single rows take a larger function before one of their own is built."""
-
-
-@dataclass(frozen=True)
-class Values:
-    """What candidates cost, a row each: F2 [J], state on arrival, limited quantities at the nodes.
-
-    Shapes are (rows,), (rows, 2 * modes) and (rows, values); `Batch.places` tells which value is of
-    which quantity.
-    """
-
-    energy: Array
-    arrival: Array
-    limited: Array
-
-    def take(self, rows: slice) -> Self:
-        """Some rows."""
-        return type(self)(**{name: part[rows] for name, part in vars(self).items()})
 
 
 @dataclass(frozen=True)
@@ -95,62 +69,12 @@ class Derivatives(Values):
         )
 
 
-class _Compiled:
-    """A function of rows, compiled for a block of rows when one of that size is first needed."""
-
-    def __init__(
-        self,
-        build: Callable[[int], ca.Function],
-        sizes: tuple[int, ...],
-    ) -> None:
-        self._build, self._sizes, self._singles = build, sizes, 0
-        self._functions = dict[int, ca.Function]()
-        self._idle = dict[int, list[BufferedFunction]]()
-
-    def __call__(self, inputs: Sequence[Array], unpack: Unpack, threads: int = 1) -> list[Array]:
-        """The outputs, a row each, a block for each thread at a time."""
-        most, rows = self._sizes[-1], max(len(inputs[0]), 1)
-        blocks = [[one[i : i + most] for one in inputs] for i in range(0, rows, most)]
-        sizes = [self.prepare(len(one[0])) for one in blocks]  # in this thread, whose time counts
-        if threads > 1 and len(blocks) > 1:
-            with ThreadPoolExecutor(threads) as pool:
-                parts = list(pool.map(self._evaluate, blocks, sizes, repeat(unpack)))
-        else:
-            parts = list(map(self._evaluate, blocks, sizes, repeat(unpack)))
-        return [np.concatenate(part) for part in zip(*parts)]
-
-    def prepare(self, rows: int) -> int:
-        """The size of block for so many rows, built; single ones use another for a while."""
-        size = next((one for one in self._sizes if one >= rows), self._sizes[-1])
-        larger = [one for one in self._functions if one > size]
-        if size == 1 and size not in self._functions and larger and self._singles < _PADDED:
-            self._singles += 1
-            return min(larger)
-        if size not in self._functions:
-            with COST.timed("builds"):
-                self._functions[size] = self._build(size)
-            self._idle[size] = []
-        return size
-
-    def _evaluate(self, block: Sequence[Array], size: int, unpack: Unpack) -> tuple[Array, ...]:
-        rows = len(block[0])
-        try:
-            function = self._idle[size].pop()
-        except IndexError:  # all are in use by other threads, or none is made yet
-            function = BufferedFunction(self._functions[size])
-        outputs = function(*(np.resize(one, (size, one.shape[1])).T for one in block))
-        found = unpack(outputs, rows)
-        self._idle[size].append(function)
-        return found
-
-
 class Batch:
     """A plant's motion along a profile in a number of steps, for many candidates at once."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
-        self._values = _Compiled(partial(compile_values, simulation), _OF_VALUES)
-        self._derivatives = _Compiled(partial(compile_derivatives, simulation), _OF_DERIVATIVES)
+        self._derivatives = RowFunction(partial(compile_derivatives, simulation), _ROWS)
 
     @cached_property
     def _steps(self) -> int:
@@ -158,16 +82,11 @@ class Batch:
         return len(self.simulation.grid.lengths)
 
     @cached_property
-    def places(self) -> dict[str, slice]:
+    def places(self) -> Mapping[str, slice]:
         """Where the values of each limited quantity stand among all."""
-        places, first = dict[str, slice](), 0
-        for quantity in self.simulation.quantities:
-            count = quantity.rows(self.simulation.plant) * NODES * self._steps
-            places[quantity.name] = slice(first, first + count)
-            first += count
-        return places
+        return places_of(self.simulation)
 
-    @property
+    @cached_property
     def limited(self) -> int:
         """How many values of limited quantities there are."""
         return max((place.stop for place in self.places.values()), default=0)
@@ -181,7 +100,7 @@ class Batch:
         times the iterations. With a box on the coefficients directions that hardly matter are
         stretched less: else the box is so thin along them that rounding loses it.
         """
-        columns = self._speeds
+        columns = Compiled.guard(lambda: self._speeds)
         if columns is None:
             return np.eye(self.simulation.profile.size)
         if boxed:
@@ -200,17 +119,6 @@ class Batch:
         table, weights = path.jacobian([0.0] * size, []), np.sqrt(np.tile(grid.lengths, NODES))
         speeds = [table.get((1, n), ca.DM.zeros(1, len(weights))).full()[0] for n in range(size)]
         return (weights * np.array(speeds)).T
-
-    @keep_interrupts()  # casadi loses a Ctrl-C
-    def values(self, coefficients: Array, move: Array, errors: Array, threads: int = 1) -> Values:
-        """Evaluate candidates without derivatives.
-
-        Arguments as for `derivatives`; the energy takes in what neighbouring steps say, and is a
-        little more exact.
-        """
-        COST.candidates += len(coefficients)
-        energy, arrival, limited = self._values((coefficients, move, errors), _copy, threads)
-        return Values(energy[:, 0], arrival, limited)
 
     def derivatives(
         self,
@@ -254,7 +162,7 @@ class Batch:
     def _unpack_first(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
         """The same without second derivatives: they are those of no sum."""
         size = self.simulation.profile.size
-        energy, arrival, limited, gradient, arrival_jacobian = _copy(outputs[:5], rows)
+        energy, arrival, limited, gradient, arrival_jacobian = copy_rows(outputs[:5], rows)
         limited_jacobian = self._by_coefficient(outputs[5], rows)
         return (
             energy[:, 0], arrival, limited, gradient, arrival_jacobian.reshape(rows, -1, size),
@@ -268,19 +176,5 @@ class Batch:
         return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
 
 
-def _copy(outputs: list[Array], rows: int) -> tuple[Array, ...]:
-    return tuple(one[:, :rows].T.copy() for one in outputs)
-
-
-@lru_cache(maxsize=32)
-def batch(
-    plant: Plant,
-    profile: JointProfile,
-    steps: int,
-    quantities: tuple[Quantity, ...] = (),
-    errors: tuple[str, ...] = (),
-    energy: Energy = ABSOLUTE_POWER,
-    breaks: tuple[float, ...] = (),
-) -> Batch:
-    """The compiled functions of a plant, a profile and a number of steps."""
-    return Batch(Simulation(plant, profile, steps, quantities, errors, energy, breaks))
+batch_of = lru_cache(maxsize=32)(Batch)
+"""A batch that is kept for the next who asks for it."""

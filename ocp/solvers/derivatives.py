@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
+
 from quietarm.models import Expression, Plant
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.limits import ask_for_jerk
@@ -24,15 +25,15 @@ from quietarm.ocp.simulation.collocation import (
     collocate,
     modal_system,
 )
+from quietarm.ocp.simulation.evaluator import MOST_STEPS_OF_CSE
 from quietarm.ocp.simulation.objective import quadratic, quadratic_zeros
 from quietarm.ocp.simulation.rollout import Simulation, march, modes_at_nodes
+from quietarm.ocp.simulation.rows import join, widen
 from quietarm.ocp.solvers.node import Node, Table, path_of, product, transpose
 from quietarm.ocp.uncertainty import perturb_plant
 
-_STEPS_OF_CSE, _ROWS_OF_CSE = 48, 4
-"""Common terms are looked for up to these steps, and for more rows of derivatives than these: that
-takes a tenth off a call, but doubles the time to build it, and grows with the square of the steps.
-"""
+_ROWS_OF_CSE = 4
+"""Common terms are looked for where there are more rows than these."""
 _LEAST_SLOPE = 1e-4
 """Smaller slopes of the power at its zeros count as this share of its root mean square."""
 _TINY = 1e-300
@@ -120,24 +121,6 @@ def differentiate_absolute(
     return gradient, zeros
 
 
-def compile_values(simulation: Simulation, rows: int) -> ca.Function:
-    """The values of so many candidates.
-
-    (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
-    """
-    steps, modes = len(simulation.grid.lengths), simulation.plant.modes
-    counts = simulation.profile.size, 3 + 2 * modes, len(simulation.errors)
-    inputs = [ca.MX.sym("x", rows, count) for count in counts]
-    nodes = NODES * steps
-    a, row, errors = (_widen(one, nodes) for one in inputs)
-    initial = ca.horzsplit(inputs[1], 1)[3:]
-    rollout = simulation.rollout(a, [*row[:3], *initial], errors, rows)
-    limited = [x for one in simulation.quantities for x in rollout.values(one)]
-    found = [[rollout.energy], [rollout.arrival], limited]
-    options = {"cse": steps <= _STEPS_OF_CSE}
-    return ca.Function("values", inputs, [_join(one, rows) for one in found], options)
-
-
 def compile_derivatives(simulation: Simulation, rows: int) -> ca.Function:
     """The values of so many candidates with their derivatives.
 
@@ -164,7 +147,7 @@ class _Differentiated:
         counts = [self.size, 3 + 2 * plant.modes, len(names), 1, 1, 2 * plant.modes, limited]
         self.inputs = [ca.MX.sym("x", rows, count) for count in counts]
         self.a, row, errors, (self.width,), (self.of_energy,) = (
-            _widen(one, nodes) for one in self.inputs[:5]
+            widen(one, nodes) for one in self.inputs[:5]
         )
         self.move, self.initial = row[:3], ca.horzsplit(self.inputs[1], 1)[3:]
         _, self.length = grid.columns(rows)
@@ -326,18 +309,9 @@ class _Differentiated:
             *self.hessian_factors(energies, of_outputs, of_forcing),
             self.path_hessian(of_outputs, of_forcing),
         ]
-        outputs = [_join(x, rows) for x in found]
-        options = {"cse": rows > _ROWS_OF_CSE and steps <= _STEPS_OF_CSE}
+        outputs = [join(x, rows) for x in found]
+        options = {"cse": rows > _ROWS_OF_CSE and steps <= MOST_STEPS_OF_CSE}
         return ca.Function("derivatives", self.inputs, outputs, options)
-
-
-def _widen(matrix: ca.MX, columns: int) -> list[ca.MX]:
-    """Its columns, each repeated so many times."""
-    return [ca.repmat(column, 1, columns) for column in ca.horzsplit(matrix, 1)]
-
-
-def _join(columns: Sequence[Any], rows: int) -> ca.MX:
-    return ca.densify(ca.horzcat(ca.MX(rows, 0), *columns))
 
 
 def _swap(entry: ca.MX, groups: int) -> ca.MX:

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.interrupts import note_interrupts
+
 from quietarm.ocp.solvers.quadratic import Model, Multipliers, Steps, convexify, least_steps
 
 Array = NDArray[np.float64]
@@ -124,18 +124,15 @@ def minimise(
     `groups` are starts of one program: once half of them, and more than one, agree on the least f,
     the others are stopped.
     """
-    with note_interrupts() as came:  # a step is whole, then Ctrl-C ends the work
-        run = _Run(evaluate, x, lower, upper, equalities, linear, groups, course)
+    run = _Run(evaluate, x, lower, upper, equalities, linear, groups, course)
+    if course.log:
+        print(_LOG_HEAD)
+    for number in range(course.iterations):
+        if not len(run.going):
+            break
         if course.log:
-            print(_LOG_HEAD)
-        for number in range(course.iterations):
-            if came or not len(run.going):
-                break
-            if course.log:
-                print(run.log_line(number))
-            run.iterate()
-    if came:
-        raise KeyboardInterrupt
+            print(run.log_line(number))
+        run.iterate()
     ends = [End.UNFINISHED if end is None else end for end in run.ends]
     return Ended(run.x, run.violation, run.multipliers, ends, run.iterations)
 

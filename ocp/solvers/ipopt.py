@@ -25,9 +25,10 @@ from typing import Any, ClassVar, NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
+from quietarm.models.compiled import Compiled
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.sample import total
 from quietarm.ocp.simulation.objective import integrated, smooth_power
@@ -68,7 +69,6 @@ class Ipopt(Solver):
 
     name: ClassVar[str] = "ipopt"
 
-    @keep_interrupts()  # casadi loses a Ctrl-C
     def solve(
         self,
         problems: Sequence[Problem],
@@ -90,9 +90,9 @@ class _Program(NamedTuple):
     rows: energy, what is missed on arrival, tip displacements and limited quantities in SI units.
     """
 
-    solver: ca.Function
+    solver: Compiled
     counts: dict[str, int]
-    figures: ca.Function
+    figures: Compiled
 
 
 class _Form(NamedTuple):
@@ -122,6 +122,11 @@ class _Form(NamedTuple):
 
 @lru_cache(maxsize=16)
 def compile_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bool) -> _Program:
+    """The program of a form, as of `_build_program`."""
+    return Compiled.guard(lambda: _build_program(simulation, form, solver, warm))
+
+
+def _build_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bool) -> _Program:
     """The program in symbols; whatever else differs between problems is a parameter of it."""
     modes, quantities = 2 * simulation.plant.modes, simulation.quantities
     a, p = ca.MX.sym("a", simulation.profile.size), ca.MX.sym("p", form.peak is not None)
@@ -157,12 +162,13 @@ def compile_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bo
         **options_of(solver),
         "acceptable_obj_change_tol": solver.tolerance / 10,
     }
+    compiled_solver = compile_nlp(nlp, options)
+    outputs = [nominal.energy, missed.T, *values.values()]
+    figures = ca.Function("figures", [a, row, wanted, *tips], list(map(ca.densify, outputs)))
     return _Program(
-        compile_nlp(nlp, options),
+        Compiled(lambda: compiled_solver, silent=True),  # casadi warns of every failure
         {name: value.numel() for name, value in constraints.items()},
-        ca.Function(
-            "figures", [a, row, wanted, *tips], [nominal.energy, missed.T, *values.values()]
-        ),
+        Compiled(lambda: figures),
     )
 
 
@@ -200,14 +206,14 @@ class _Run:
 
     def figures(self, coefficients: Array) -> tuple[float, Array, dict[str, float]]:
         """Energy [J], what is missed on arrival in every scenario, residual and peaks by name."""
-        energy, missed, *values = self.program.figures.call([coefficients, *self.given])
+        energy, missed, *values = self.program.figures(coefficients, *self.given)
         transcription = self.problem.transcription
         names = RESIDUAL, *(limit.name for limit in transcription.task.limits)
         peaks = {
             name: float(transcription.limits[name].peak(value.min(), value.max()))
-            for name, value in zip(names, (value.full() for value in values))
+            for name, value in zip(names, values)
         }
-        return float(energy), missed.full(), peaks
+        return energy.item(), missed, peaks
 
     def solve(self, start: Array) -> Solution:
         """Run IPOPT for one width after another."""

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import daqp
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.batch import Derivatives
 from quietarm.ocp.solvers.problem import Problem

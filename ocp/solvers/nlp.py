@@ -10,8 +10,9 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
+from quietarm.models.compiled import Compiled
 from quietarm.ocp.cost import COST
-from quietarm.ocp.interrupts import keep_interrupts, silent_errors
 from quietarm.ocp.solvers.solver import Solver
 
 Options = Mapping[str, str | int | float]
@@ -84,21 +85,18 @@ Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def run_ipopt(
-    solver: ca.Function,
+    solver: Compiled,
     start: NDArray[np.float64],
     bounds: Bounds,
     constraint_bounds: Bounds,
     parameters: NDArray[np.float64],
 ) -> Stop:
     """Run IPOPT from a point, within lower and upper bounds of unknowns and of constraints."""
-    with keep_interrupts(), silent_errors():  # casadi warns of every failure
-        result = solver(
-            x0=start, lbx=bounds[0], ubx=bounds[1], lbg=constraint_bounds[0],
-            ubg=constraint_bounds[1], p=parameters,
-        )  # fmt: skip
-    x, of_constraints = (result[name].full().ravel() for name in ("x", "lam_g"))
-    stats = solver.stats()
+    result, stats = solver.solve(
+        x0=start, lbx=bounds[0], ubx=bounds[1], lbg=constraint_bounds[0],
+        ubg=constraint_bounds[1], p=parameters,
+    )  # fmt: skip
     COST.candidates += int(stats.get("n_call_nlp_f", 0))
     COST.gradients += int(stats.get("n_call_nlp_grad_f", 0))
     COST.hessians += int(stats.get("n_call_nlp_hess_l", 0))
-    return Stop(x, of_constraints, str(stats["return_status"]), int(stats["iter_count"]))
+    return Stop(result["x"], result["lam_g"], str(stats["return_status"]), int(stats["iter_count"]))

@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import Any
 
 import casadi as ca
+
 from quietarm.models import JointMotion, Plant
 from quietarm.models.joint_motion import is_zero
 from quietarm.ocp.energy import Energy

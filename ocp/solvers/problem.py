@@ -11,14 +11,13 @@ from typing import NamedTuple
 import daqp
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.profiles.check_profile import check_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.free_vibration import after_arrival
+from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, Values
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.solvers.batch import Derivatives, Values, batch
+from quietarm.ocp.solvers.batch import Derivatives, batch_of
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
@@ -38,8 +37,10 @@ class Transcription:
 
     Attributes
     ----------
+    evaluator : Evaluator
+        Evaluates candidates by these steps.
     batch : Batch
-        Evaluates candidates in any scenario.
+        Their derivatives, in any scenario.
     errors : ndarray, shape (scenarios, ranges)
         The plant's errors in every scenario, the nominal one first.
     limits : dict of str to Limit
@@ -49,14 +50,11 @@ class Transcription:
     """
 
     def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
-        check_profile(profile)
         self.task, self.profile, self.steps = task, profile, steps
         self.wanted = np.array(task.final_state)
-        self.errors = np.array(task.scenarios, dtype=float)
-        self.batch = batch(
-            task.plant, profile, steps, tuple(one.quantity for one in task.limits),
-            task.error_names, task.energy, profile.breaks(task.duration),
-        )  # fmt: skip
+        self.evaluator = Evaluator(task, profile, steps)
+        self.errors = self.evaluator.scenarios
+        self.batch = batch_of(self.evaluator.simulation)
         residual = Limit.of_residual(np.inf, task.plant.tip_unit)
         self.limits = {limit.name: limit for limit in (*task.limits, residual)}
 
@@ -67,10 +65,10 @@ class Transcription:
         """On so many steps, or on as many as the task and the profile take to begin with."""
         return cls(task, profile, steps or first_steps(task, profile))
 
-    @cached_property
+    @property
     def tip_rows(self) -> list[Array]:
         """For each scenario, rows that give tip displacements from the state on arrival."""
-        return [vibration.rows for vibration in after_arrival(self.task)]
+        return self.evaluator.tip_rows
 
     @cached_property
     def plain(self) -> Derivatives:
@@ -93,29 +91,20 @@ class Transcription:
         """Scale of the residual or of a limited quantity."""
         if name == RESIDUAL:
             return max(float(np.abs(r * self.arrival_scale).max()) for r in self.tip_rows) or 1.0
-        return self.peak(self.plain, name) or 1.0
+        return float(self.measure(self.plain).limited_peaks[name][0]) or 1.0
 
     @property
     def plain_residual(self) -> float:
         """Residual of the plain motion [m]."""
-        return self.peaks(self.plain)[RESIDUAL]
+        return float(self.measure(self.plain).peaks[RESIDUAL][0])
 
     def evaluate(self, coefficients: Array) -> Derivatives:
         """One candidate in all scenarios."""
         return evaluate([self], coefficients[None])[0]
 
-    def peaks(self, of: Values, offset: Array | float = 0.0) -> dict[str, float]:
-        """The largest residual of all scenarios [m], and the peaks of the limited quantities."""
-        missed = of.arrival - self.wanted + offset
-        tips = [np.abs(r @ z).max() for r, z in zip(self.tip_rows, missed)]
-        limited = {name: self.peak(of, name) for name in self.batch.places}
-        return {RESIDUAL: float(max(tips)), **limited}
-
-    def peak(self, of: Values, name: str) -> float:
-        """The peak of a limited quantity [SI unit], in the scenarios where its limit counts."""
-        counted = slice(None if self.limits[name].quantity.in_scenarios else 1)
-        values = of.limited[counted, self.batch.places[name]]
-        return float(self.limits[name].peak(values.min(), values.max()))
+    def measure(self, values: Values, offset: Array | float = 0.0) -> Evaluation:
+        """What one candidate's values in all scenarios mean, with this added to its arrivals."""
+        return self.evaluator.of_values(values, offset)
 
 
 def first_steps(task: PointToPoint, profile: JointProfile) -> int:
@@ -131,7 +120,6 @@ def first_steps(task: PointToPoint, profile: JointProfile) -> int:
     return steps
 
 
-@keep_interrupts()  # casadi loses a Ctrl-C
 def evaluate(transcriptions: Sequence[Transcription], coefficients: Array) -> list[Derivatives]:
     """A candidate of each of several transcriptions of one batch, in all its scenarios.
 

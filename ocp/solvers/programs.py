@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.solvers.batch import Derivatives
 from quietarm.ocp.solvers.batch import Multipliers as MotionMultipliers

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.problem import Problem, Solution

@@ -8,8 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, Course, End, Ended, minimise
 from quietarm.ocp.solvers.problem import Problem, Solution, evaluate, shadow_prices
@@ -56,10 +56,9 @@ class Sqp(Solver):
         for places in _group_by_form(problems):
             own = [problems[i] for i in places]
             transcription = own[0].transcription
-            with keep_interrupts():  # casadi loses a Ctrl-C
-                transcription.batch.prepare(len(own) * len(transcription.errors))
-                programs = Programs(own)
-                x = programs.start(np.array([starts[i] for i in places]))
+            transcription.batch.prepare(len(own) * len(transcription.errors))
+            programs = Programs(own)
+            x = programs.start(np.array([starts[i] for i in places]))
             ended = minimise(
                 programs.evaluate,
                 x,
@@ -95,7 +94,8 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     motions = evaluate([problem.transcription for problem in problems], coefficients)
     prices, solutions = _shadow_prices(programs, ended, problems), list[Solution]()
     for i, ((transcription, asked), motion) in enumerate(zip(problems, motions)):
-        peaks, end = transcription.peaks(motion, asked.offset), ended.ends[i]
+        peaks = transcription.measure(motion, asked.offset).peaks_of(0)
+        end = ended.ends[i]
         if asked.at_rest and ended.violation[i] <= _NONE:
             peaks[RESIDUAL] = 0.0
         solutions.append(

@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 from matplotlib.figure import Figure
+
 from quietarm.studies.bench.results import Results, bench_label, derivative_free
 from quietarm.studies.bench.statistics import ALPHA, Ranking
 from quietarm.studies.figures.axes import TITLE, legend_below, logarithmic, new_figure

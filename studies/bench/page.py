@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+
 from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.score import HYPERVOLUME, INDICATORS, Indicator
 from quietarm.ocp.front.points import LEVELS

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.metaheuristics import Job, NamedProblem
 from quietarm.metaheuristics.run_files import is_sealed
 from quietarm.metaheuristics.score import (

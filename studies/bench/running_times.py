@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+
 from quietarm.ocp.files import write_whole
 
 Array = NDArray[np.float64]

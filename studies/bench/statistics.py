@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy import stats
+
 from quietarm.metaheuristics import NamedProblem
 from quietarm.studies.bench.results import Results, bench_label, quartiles, told_apart
 from quietarm.studies.report.words import counted
-from scipy import stats
 
 Array = NDArray[np.float64]
 ALPHA = 0.05

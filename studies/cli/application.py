@@ -11,9 +11,10 @@ from contextlib import suppress
 from importlib import import_module
 
 import click
+
+from quietarm.models.interrupts import STOPS
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.checks import cut, printable, unknown
-from quietarm.ocp.interrupts import STOPS
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 _STANDARD_ERROR = 2

@@ -9,18 +9,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from rich.console import Console
+
+from quietarm.models.interrupts import note_interrupts
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.files import check_writable, unwritable
-from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
 from quietarm.studies.report.saving import STDOUT, SUFFIXES, File, drawing
 from quietarm.studies.report.terminal import show, show_facts
 from quietarm.studies.report.words import print_lines
-from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
     from quietarm.studies.report import Report
 
 PICTURE, FOLDER, DATASET = SUFFIXES[0], "", ".zarr"

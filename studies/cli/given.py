@@ -8,6 +8,8 @@ from typing import Any
 
 import click
 from click.core import ParameterSource
+from rich.console import Console
+
 from quietarm.models import Plant
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import JointProfile, PointToPoint, Solver
@@ -25,7 +27,6 @@ from quietarm.studies.cli.quantities import RESIDUAL_LIMIT, parse_of_plant
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.report.words import print_lines
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
-from rich.console import Console
 
 _OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()), TORQUE_SPEED)
 """Options that are read once the plant is known: in radians, or in metres of a linear axis."""

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import click
+from rich.console import Console
+
 from quietarm.metaheuristics.parallel import scheduler_address
 from quietarm.models import load_plant_file
 from quietarm.ocp.limits import QUANTITIES
@@ -28,7 +30,6 @@ from quietarm.studies.cli.types import SETTING, TIME, Named, Parsed
 from quietarm.studies.reading.profiles import POLYNOMIAL, families
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
-from rich.console import Console
 
 
 def option(*names: str, help: str, multiple: bool = False, **settings: Any) -> click.Option:  # noqa: A002

@@ -7,6 +7,8 @@ from dataclasses import MISSING, fields, replace
 from functools import partial
 from math import tau
 
+from rich.console import Console
+
 from quietarm.models import FlexibleBeam, Plant, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import has_no, unknown
@@ -14,7 +16,6 @@ from quietarm.studies.cli.quantities import MEASURED, once, parse_parameter
 from quietarm.studies.identify import Identified
 from quietarm.studies.report.words import print_lines
 from quietarm.studies.sweep.grid import axis_values
-from rich.console import Console
 
 Kind = type[Plant] | Identified
 """What PLANT names: a class of plants, or an identified machine."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+
 from quietarm.ocp.checks import spelling, unknown
 from quietarm.studies.cli.quantities import parse_pair, parse_usual
 

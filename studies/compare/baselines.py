@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
+
 from quietarm.ocp import Candidate, Plan, PointToPoint, evaluate_coefficients, shaped_cycloid
 from quietarm.ocp.checks import install, several, takes, unknown
 from quietarm.ocp.profiles.free_motion import FreeMotion

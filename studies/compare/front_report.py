@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import pandas as pd
+
 from quietarm.metaheuristics.score import BETWEEN, INDICATORS
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import moocore
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.metaheuristics.run_files import CHECKSUM
 from quietarm.metaheuristics.score import CORNER, Scale, filled, objectives, within
 from quietarm.metaheuristics.spread import Spread

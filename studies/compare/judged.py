@@ -86,11 +86,11 @@ def judge(
     )
     if isinstance(moved, Plan):
         uncertain = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)
-        path = uncertain, moved.profile, moved.coefficients
+        motion = moved.candidate.on(uncertain)
         own = replace(
             own,
-            worst=worst_of(*path),
-            robustness=evaluate_robustness(*path, ranges, samples=samples)
+            worst=worst_of(motion),
+            robustness=evaluate_robustness(motion, ranges, samples=samples)
             if ranges and samples else None,
             parameters=moved.profile.size,
             turns_back=moved.turns_back,

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 
 import pandas as pd
+
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import Plan, PointToPoint, QuietarmError
 from quietarm.ocp.checks import takes

@@ -27,6 +27,7 @@ from bokeh.models import (
 )
 from bokeh.themes import Theme
 from jinja2 import Environment, PackageLoader
+
 from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
 from quietarm.studies.explore.move import FILES, Dial, Explored

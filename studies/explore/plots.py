@@ -12,6 +12,7 @@ from bokeh.document import Document
 from bokeh.models import ColumnDataSource, CustomJS, DataRange1d, ScaleBar
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.models import Plant
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
@@ -145,7 +146,7 @@ def _quantity(lines: list[Line], name: str) -> Rows:
 def _robustness(plan: Plan) -> Rows:
     """The residual over the error of the frequency [%], and what is tolerated."""
     ranges = {"frequency": FREQUENCY}
-    found = evaluate_robustness(plan.task, plan.profile, plan.coefficients, ranges, samples=1)
+    found = evaluate_robustness(plan.candidate, ranges, samples=1)
     scale = tip_scale(plan.task.plant.tip_unit)[1]
     (sweep,), tolerated = found.sweeps, scale * found.tolerated
     errors, residuals = _plain(100 * sweep.errors), _plain(scale * sweep.figures.residual)

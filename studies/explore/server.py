@@ -14,14 +14,15 @@ from bokeh.document import Document
 from bokeh.server.server import BaseServer
 from bokeh.server.tornado import BokehTornado
 from bokeh.server.util import bind_sockets
-from quietarm.studies.explore.move import Explored
-from quietarm.studies.explore.opening import menu
-from quietarm.studies.explore.page import Page
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPServerRequest
 from tornado.ioloop import IOLoop
 from tornado.routing import Matcher, Rule
 from tornado.web import RequestHandler
+
+from quietarm.studies.explore.move import Explored
+from quietarm.studies.explore.opening import menu
+from quietarm.studies.explore.page import Page
 
 _HOSTS = ("localhost", "127.0.0.1", "[::1]")
 """What this machine is called in a browser. A name of the network that leads here belongs to a

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import casadi as ca
 import numpy as np
+
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile

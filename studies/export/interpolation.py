@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Expression, JointMotion
 from quietarm.models.joint_motion import joint_label
 from quietarm.ocp import Candidate, Plan

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import Plan

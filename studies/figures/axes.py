@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
+
 from quietarm.studies.report.words import window_words
 from quietarm.studies.tips import tip_scale
 

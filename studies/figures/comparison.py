@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+
 from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
     TITLE,

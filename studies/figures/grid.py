@@ -8,6 +8,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
+
 from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
     logarithmic,

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+
 from quietarm.studies.figures.axes import new_figure
 from quietarm.studies.figures.looks import BLUE, GREY, RED
 from quietarm.studies.identify import Identified, Part, Recording

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
 from quietarm.ocp import Robustness
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.record import REST

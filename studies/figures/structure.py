@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Body
 from quietarm.ocp import Candidate, Floor, Plan, Trajectory
 from quietarm.studies.figures.motion import Line

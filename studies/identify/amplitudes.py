@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.machine import Part
 
 Array = NDArray[np.float64]

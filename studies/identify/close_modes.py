@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.columns import Columns, parts
 from quietarm.studies.identify.envelope import phasor
 from quietarm.studies.identify.fitting import Fit, fit

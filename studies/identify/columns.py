@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Protocol
 
-import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.recursion import decaying_sums
@@ -203,16 +203,16 @@ class Driven(Columns):
         The last is of an accelerometer at some distance from the joint.
         """
         march = self._response.march(self._motion.shape[1], derivatives)
-        table, *slopes = march.call([self._motion, p])
+        table, *slopes = march(self._motion, p)
         columns = self._columns(table, self._lever)[0]
         if not derivatives:
             return columns, columns[:0]
         return columns, self._columns(slopes[0], 0 * self._lever)
 
-    def _columns(self, table: ca.DM, lever: Array) -> Array:
+    def _columns(self, table: Array, lever: Array) -> Array:
         """A table of the march by (parameters, signals, rows, columns), with the lever's."""
         signals = len(self._response.kinds)
-        steps = table.full().reshape(-1, signals, table.shape[1])
+        steps = table.reshape(-1, signals, table.shape[1])
         by_step = steps.reshape(*steps.shape[:2], -1, self._motion.shape[1])
         by_row = by_step[..., self._rows].transpose(2, 1, 3, 0)
         levers = np.broadcast_to(lever, (*by_row.shape[:3], 1))

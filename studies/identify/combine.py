@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.machine import Estimate, Part
 from quietarm.studies.identify.words import say
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.recording import noise_of, resolution_of
 from quietarm.studies.identify.running import running_median
 from quietarm.studies.identify.words import say

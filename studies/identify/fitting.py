@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.least_squares import bounded_step, least_squares, variances_of
 from quietarm.studies.identify.swing_model import Model
 

@@ -7,6 +7,7 @@ from math import tau
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models.joint_motion import ROTARY
 from quietarm.studies.identify.envelope import envelope, evenly
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+
 from quietarm.studies.identify.columns import FreeDecay
 from quietarm.studies.identify.diagnosis import doubt
 from quietarm.studies.identify.machine import Part

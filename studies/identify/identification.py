@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Plant
 from quietarm.ocp.checks import takes
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
 from quietarm.studies.identify.combine import combine
@@ -37,7 +37,6 @@ _BAD = 0.4
 """Share of the swing's size beside the noise that a fit may leave, to count."""
 
 
-@one_at_a_time
 @takes(plant=Plant)
 def identify(
     recordings: Sequence[Recording],

@@ -9,6 +9,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.saved import Saved
 from quietarm.ocp.uncertainty import with_values

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.recording import Recording, noise_of
 from quietarm.studies.identify.running import running_maximum
 from quietarm.studies.identify.words import say

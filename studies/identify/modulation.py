@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.fitting import Fit, deviation_of, power_near
 from quietarm.studies.identify.least_squares import least_squares
 

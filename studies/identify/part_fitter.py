@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY
 from quietarm.studies.identify.columns import Columns, Driven, Forced, FreeDecay

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import Plant
 from quietarm.ocp.checks import takes
 from quietarm.studies.identify.frequencies import find_frequencies

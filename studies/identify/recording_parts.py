@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+
 from quietarm.studies.identify.fitting import Fit
 from quietarm.studies.identify.hub_swing import with_hub
 from quietarm.studies.identify.machine import Part

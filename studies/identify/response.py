@@ -14,7 +14,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import JointMotion, Plant
+from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Modes
 from quietarm.ocp.simulation.collocation import NODES, modal_system, step
 from quietarm.ocp.uncertainty import with_values
@@ -52,7 +54,7 @@ class Response:
         """Whether signals answer the joint's acceleration alone, the same at every angle."""
         return self._linear is not None
 
-    def _state_matrix(self, plant: Plant, p: ca.SX) -> ca.Function:
+    def _state_matrix(self, plant: Plant, p: ca.SX) -> Compiled:
         """That of the modes with the joint at rest at an angle, and its derivatives by p."""
         modes = plant.modes
         angle = ca.SX.sym("angle")
@@ -60,7 +62,8 @@ class Response:
         K, D = (ca.vertcat(*(ca.horzcat(*row) for row in M)) for M in (system.K, system.D))
         A = ca.blockcat([[ca.SX(modes, modes), ca.SX.eye(modes)], [-K, -D]])
         by_p = ca.jacobian(ca.vec(A), p)
-        return ca.Function("A", [p, angle], [ca.densify(A), ca.densify(by_p)])
+        function = ca.Function("A", [p, angle], [ca.densify(A), ca.densify(by_p)])
+        return Compiled(lambda: function)
 
     def _one_step(self, plant: Plant, p: ca.SX) -> ca.Function:
         """Columns of the state a step later, and what is recorded of them before it.
@@ -78,7 +81,7 @@ class Response:
         seen = self._seen(plant, motions[-1], X)
         return ca.Function("step", [X, joint, p], [after, ca.vec(seen)], {"cse": True})
 
-    def _linear_system(self, plant: Plant, p: ca.SX) -> ca.Function | None:
+    def _linear_system(self, plant: Plant, p: ca.SX) -> Compiled | None:
         """A, B, C, D by p: the state answers an acceleration, and the signals both.
 
         None where the angle or a constant matters, or where it is not linear.
@@ -100,7 +103,8 @@ class Response:
         no_constant = ca.simplify(constant).is_zero() if constant.nnz() else True
         if not no_constant or ca.depends_on(slopes, ca.vertcat(inputs, angle)):
             return None
-        return ca.Function("linear", [p], [ca.densify(slopes)])
+        function = ca.Function("linear", [p], [ca.densify(slopes)])
+        return Compiled(lambda: function)
 
     def modal_form(self, p: Array) -> tuple[Array, Array, Array]:
         """Eigenvalues above the real axis or on it, slowest first; residues; what is fed through.
@@ -109,7 +113,7 @@ class Response:
         makes of the joint's acceleration, and that times the feed (signals,).
         """
         assert self._linear is not None
-        slopes = self._linear(p).full()
+        (slopes,) = self._linear(p)
         size = 2 * self.plant.modes
         A = slopes[:size, :size]
         C = slopes[size:, :size]
@@ -138,7 +142,7 @@ class Response:
 
     def eigenvalues(self, p: Array, angle: float = 0.0) -> tuple[Any, Any]:
         """Those that swing with the joint at rest, slowest first, and their derivatives by p."""
-        A, by_p = (entry.full() for entry in self._at_rest(p, angle))
+        A, by_p = self._at_rest(p, angle)
         values: Any
         values, right = np.linalg.eig(A)
         transposed = by_p.T.reshape(-1, *A.shape)
@@ -146,15 +150,18 @@ class Response:
         order = [k for k in np.argsort(values.imag) if values[k].imag > 0]
         return values[order], slopes[order]
 
-    def _march(self, count: int, derivatives: bool) -> ca.Function:
+    def _march(self, count: int, derivatives: bool) -> Compiled:
         """Columns of so many steps, and their derivatives by p."""
+        return Compiled(lambda: self._build_march(count, derivatives))
+
+    def _build_march(self, count: int, derivatives: bool) -> ca.Function:
         p = ca.MX.sym("p", len(self.names))
         joint = ca.MX.sym("joint", 4 + 3 * NODES, count)
         size = 2 * self.plant.modes
         start = np.eye(size, 1 + size, 1)
         rows = self._step.mapaccum(count)(start, joint, ca.repmat(p, 1, count))[1]
         by_p = [ca.jtimes(rows, p, ca.DM.eye(len(self.names)))] if derivatives else []
-        return ca.Function("march", [joint, p], [rows, *by_p])
+        return ca.Function("march", [joint, p], [ca.densify(rows), *map(ca.densify, by_p)])
 
 
 @lru_cache(maxsize=64)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+
 from quietarm.studies.identify.diagnosis import exceeds, saturated
 from quietarm.studies.identify.fitting import Fit
 from quietarm.studies.identify.machine import Part

@@ -9,6 +9,7 @@ from math import tau
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.amplitudes import spread_of
 from quietarm.studies.identify.close_modes import CloseModes, find_close_modes
 from quietarm.studies.identify.diagnosis import doubt, saturated

@@ -6,6 +6,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.columns import Columns
 from quietarm.studies.identify.least_squares import least_squares
 from quietarm.studies.identify.recording import Recording

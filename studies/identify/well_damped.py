@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
 from quietarm.studies.identify.running import running_mean
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.studies.identify.machine import Part
 from quietarm.studies.identify.part_fitter import FEW_SAMPLES, PartFitter
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp import FileFormatError
 from quietarm.studies.reading.table import ARRAYS, Column, read_table, reading
 

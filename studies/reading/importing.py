@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.metaheuristics import MoveFunction
 from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.objective.stated_figures import FIGURES, agrees

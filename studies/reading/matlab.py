@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.files import MOST_BYTES
 

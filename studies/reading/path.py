@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.profiles.free_motion import FreeMotion

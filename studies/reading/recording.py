@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from quietarm.ocp import FileFormatError
 from quietarm.studies.identify import Recording
 from quietarm.studies.reading.table import read_table

@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import msgspec
+
 from quietarm.metaheuristics.objective.stated_figures import check_figures, check_plan
 from quietarm.ocp import FileFormatError, Front, Plan
 from quietarm.ocp.files import read_bytes

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.checks import cut, nearest
 from quietarm.ocp.files import MOST_BYTES, read_bytes

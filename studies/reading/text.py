@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp import FileFormatError
 from quietarm.studies.reading.cells import is_clock, is_number, numbers_of, seconds_of
 from quietarm.studies.reading.units import is_unit

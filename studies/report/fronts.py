@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from math import isfinite
 
 import numpy as np
+
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
-from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
+from quietarm.ocp import Candidate, CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness import worst_of
@@ -132,7 +133,7 @@ def _point_in_words(front: Front, point: FrontPoint) -> str:
     """Energy and residual; of an uncertain plant also the worst case."""
     tip_unit = front.task.plant.tip_unit
     words = f"{point.energy:.4g} J at {residual_words(point.residual, tip_unit)}"
-    worst = worst_of(front.task, front.profile, point.coefficients)
+    worst = worst_of(Candidate.of_profile(front.task, front.profile, point.coefficients))
     return words if worst is None else f"{words}; worst case {worst_in_words(worst, tip_unit)}"
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import (
     CycloidPolynomial,

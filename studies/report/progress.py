@@ -9,11 +9,6 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from math import isnan
 
-from quietarm.metaheuristics import SearchProgress
-from quietarm.metaheuristics.score import final_share_of_box
-from quietarm.ocp import Front
-from quietarm.studies.report.words import print_lines
-from quietarm.studies.tips import tip_scale, tip_words
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -25,6 +20,12 @@ from rich.progress import (
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
+
+from quietarm.metaheuristics import SearchProgress
+from quietarm.metaheuristics.score import final_share_of_box
+from quietarm.ocp import Front
+from quietarm.studies.report.words import print_lines
+from quietarm.studies.tips import tip_scale, tip_words
 
 PLAIN_SECONDS = 2.0
 """Seconds between plain lines, where the pieces are too many for one line each."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+
 from quietarm.ocp import SolveStatus
 from quietarm.ocp.record import REST
 from quietarm.studies.report.words import moved, residual_place

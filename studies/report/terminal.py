@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from quietarm.ocp.checks import printable
-from quietarm.studies.report.report import Report
-from quietarm.studies.report.words import print_lines
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
+
+from quietarm.ocp.checks import printable
+from quietarm.studies.report.report import Report
+from quietarm.studies.report.words import print_lines
 
 _LEAST_VALUE = 30
 """Least width of the column of values; below it they would be broken up."""

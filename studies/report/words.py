@@ -6,6 +6,8 @@ from dataclasses import fields
 from math import degrees, isfinite
 from typing import TYPE_CHECKING
 
+from rich.console import Console
+
 from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import ModalState, PointToPoint
@@ -13,7 +15,6 @@ from quietarm.ocp.checks import printable
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.record import REST
 from quietarm.studies.tips import tip_scale, tip_words
-from rich.console import Console
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.spread import Spread

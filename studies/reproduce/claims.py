@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy.stats import wilcoxon
+
 from quietarm.ocp import Plan
 from quietarm.studies.report.words import spread_words
 from quietarm.studies.reproduce.paper import (
@@ -22,7 +24,6 @@ from quietarm.studies.reproduce.paper import (
 )
 from quietarm.studies.reproduce.recompute import BEYOND_SIX, Reproduction
 from quietarm.studies.reproduce.searched import OLD_CONSTANTS, SIX_TERMS, Searched
-from scipy.stats import wilcoxon
 
 _AT_REST = 1e-7
 """A residual below this [m] counts as cancelled."""

@@ -7,6 +7,7 @@ from statistics import median
 
 import pandas as pd
 from matplotlib.figure import Figure
+
 from quietarm.ocp import Plan
 from quietarm.ocp.window import EQ_11
 from quietarm.studies.compare.plans import motions_table, remarks, shown

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+
 from quietarm.metaheuristics.spread import Spread, energies_at
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, Plan, evaluate_coefficients
 from quietarm.studies.reading.profiles import OTHERS

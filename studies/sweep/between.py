@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.ocp import Plan, PointToPoint
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.free_vibration import after_arrival
-from quietarm.ocp.solvers.problem import Transcription, first_steps
+from quietarm.ocp.simulation.evaluator import Evaluator
+from quietarm.ocp.solvers.problem import first_steps
 from quietarm.studies.sweep.grid import OF_MOVES, by_plant
 from quietarm.studies.tips import tip_words
 
@@ -157,18 +158,10 @@ def _figures(
 ) -> list[dict[str, float]]:
     """The same by fixed steps for moves of one plant; the energy in joules."""
     steps = _FINER * first_steps(max(tasks, key=lambda task: task.duration), profile)
-    transcriptions = [Transcription(task, profile, steps) for task in tasks]
-    scenarios = tasks[0].scenarios
-    values = transcriptions[0].batch.values(
-        np.repeat(coefficients, len(scenarios), axis=0),
-        np.repeat([task.row for task in tasks], len(scenarios), axis=0),
-        np.tile(scenarios, (len(tasks), 1)),
-    )
-    figures = list[dict[str, float]]()
-    for k, transcription in enumerate(transcriptions):
-        moved = values.take(slice(k * len(scenarios), (k + 1) * len(scenarios)))
-        missed = zip(after_arrival(tasks[k]), tasks[k].missed(moved.arrival))
-        residual = max(float(vibration.peak(state)) for vibration, state in missed)
-        peaks = {name: transcription.peak(moved, name) for name in transcription.batch.places}
-        figures.append({"energy": float(moved.energy[0]), RESIDUAL: residual, **peaks})
-    return figures
+    evaluation = Evaluator(tasks, profile, steps)(coefficients)
+    columns = {
+        "energy": evaluation.energy[:, 0],
+        RESIDUAL: evaluation.residual.max(axis=1),
+        **evaluation.limited_peaks,
+    }
+    return [{name: float(column[k]) for name, column in columns.items()} for k in range(len(tasks))]

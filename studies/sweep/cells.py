@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+
 from quietarm.ocp import (
     InfeasibleTaskError,
     PointToPoint,
@@ -16,7 +17,6 @@ from quietarm.ocp import (
     plan_move,
     plan_moves,
 )
-from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.robustness import sensitivities_of_moves
 from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
@@ -31,7 +31,6 @@ _ABOVE = 1e-4
 """Share of the energy by which none of these may be cheaper; else all of the chunk are."""
 
 
-@one_at_a_time
 def plan_chunk(definition: Definition, number: int) -> tuple[int, pd.DataFrame]:
     """The number of a chunk, and its cells; those of one plant are planned together."""
     tasks = definition.planned.tasks(definition.chunks[number])

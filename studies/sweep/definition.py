@@ -9,6 +9,7 @@ from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
+
 from quietarm.ocp import Solver, SolveStatus, Sqp
 from quietarm.ocp.checks import not_negative, positive
 from quietarm.ocp.limits import RESIDUAL, TORQUE_SPEED, quantities_of

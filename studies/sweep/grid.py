@@ -9,6 +9,7 @@ from itertools import groupby, product
 from typing import Any
 
 import numpy as np
+
 from quietarm.models import Plant
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint

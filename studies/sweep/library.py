@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from quietarm.ocp import InfeasibleTaskError, Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.studies.sweep.between import Between, assess

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
+from quietarm.models.interrupts import note_interrupts
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint, QuietarmError, Solver, Sqp
 from quietarm.ocp.checks import has_no, several, takes
-from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.sweep.cells import plan_chunk

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from quietarm.models.interrupts import note_interrupts
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import cut, install
-from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.record import versions
 from quietarm.ocp.saved import plain, typed
 from quietarm.studies.sweep.definition import COEFFICIENTS, DIGEST, JUMP, STATUS, Definition

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from floors import coarse_floors
 from pages import COMMAND_BLOCKS, PAGES, blocks
+
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,

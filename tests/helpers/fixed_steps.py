@@ -6,12 +6,11 @@ from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
+
 from quietarm.ocp import FreeVibration, Motion, symbolic_rollout
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import PEAKS, integrated
-
-import quietarm as qa
 
 
 @lru_cache(maxsize=64)

@@ -3,6 +3,7 @@
 from contextlib import contextmanager
 
 import pytest
+
 from quietarm.ocp.floor import search
 
 INTERVALS = 24

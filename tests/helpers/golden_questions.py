@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from quietarm.ocp import CycloidGaussians, CycloidNetwork, ModalState, PositivePower
 import quietarm as qa
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, ModalState, PositivePower
 
 ANSWERS = Path(__file__).parents[1] / "ocp" / "golden_answers.json"
 PEAKS = "torque", "speed", "acceleration", "jerk", "deflection"

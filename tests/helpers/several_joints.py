@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import casadi as ca
-from quietarm.models import JointMotion
 
 import quietarm as qa
+from quietarm.models import JointMotion
 
 
 def along(path, start, way):

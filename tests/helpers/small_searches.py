@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from moves import CASES
+
 from quietarm.metaheuristics import search
 from quietarm.ocp.saved import plain
 

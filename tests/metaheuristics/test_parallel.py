@@ -10,6 +10,7 @@ from functools import partial
 
 import psutil
 import pytest
+
 from quietarm.metaheuristics import parallel
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 

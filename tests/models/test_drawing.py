@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from quietarm.models.beam_modes import beam_modes, mode_shape
-from quietarm.models.drawing import TIP_SLOPE
 
 import quietarm as qa
+from quietarm.models.beam_modes import beam_modes, mode_shape
+from quietarm.models.drawing import TIP_SLOPE
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 

@@ -4,6 +4,7 @@ import casadi as ca
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from quietarm.models import DualLinkManipulator, JointMotion
 
 motions = st.floats(-10.0, 10.0)

@@ -3,6 +3,7 @@
 from math import pi
 
 import pytest
+
 from quietarm.models import FlexibleBeam, SingleLinkManipulator
 from quietarm.models.beam_modes import beam_modes
 from quietarm.models.joint_motion import JointMotion

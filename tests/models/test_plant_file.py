@@ -3,6 +3,7 @@
 import pickle
 
 import pytest
+
 from quietarm.models import known_plants, load_plant_file
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")

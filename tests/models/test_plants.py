@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from third_opinion import EQUATIONS, PHI
 
-from quietarm.models import JointMotion, joint_unit
 import quietarm as qa
+from quietarm.models import JointMotion, joint_unit
 
 motions = st.floats(-10.0, 10.0)
 """Angles, speeds, accelerations, amplitudes and rates: larger than any in the paper's figures."""

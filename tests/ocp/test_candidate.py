@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from quietarm.ocp.limits import QUANTITIES, Limit
 from third_opinion import COEFFICIENTS
 
 import quietarm as qa
+from quietarm.ocp.limits import QUANTITIES, Limit
 
 pi = math.pi
 

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from fixed_steps import rollout
 from numpy.polynomial import Polynomial
-from quietarm.ocp import Mix, PositivePower
-from quietarm.models import JointMotion
-from quietarm.ocp.checks import known
-from quietarm.ocp.sample import Sample
-from quietarm.ocp.simulation.collocation import GAUSS_NODES
-from quietarm.ocp.simulation.objective import spent
 from scipy.integrate import quad
 from third_opinion import ThirdOpinion
 
 import quietarm as qa
+from quietarm.models import JointMotion
+from quietarm.ocp import Mix, PositivePower
+from quietarm.ocp.checks import known
+from quietarm.ocp.sample import Sample
+from quietarm.ocp.simulation.collocation import GAUSS_NODES
+from quietarm.ocp.simulation.objective import spent
 
 SIX = [-0.05, -0.14, 0.04, 0.2, 0.05, -0.3]
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+
 from quietarm.ocp.files import check_writable, write_whole
 
 

@@ -6,11 +6,17 @@ import os
 import signal
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
+import casadi as ca
 import pytest
+
+from quietarm.models.compiled import Compiled
 from quietarm.ocp import Ipopt, energy_floor, epsilon_front, plan_move
-from quietarm.ocp.interrupts import keep_interrupts
+
+X = ca.SX.sym("x")
+SQUARE = Compiled(lambda: ca.Function("square", [X], [X * X]), side_by_side=True)
 
 
 def _swallow_ctrl_c():
@@ -20,14 +26,39 @@ def _swallow_ctrl_c():
         time.sleep(1.0)  # Python runs the handler at the next opportunity, at once
 
 
-def test_a_swallowed_ctrl_c_comes_after_the_block_in_place_of_errors_that_it_causes():
-    def work():
-        with keep_interrupts():
-            _swallow_ctrl_c()
-            raise AttributeError("'NoneType' object has no attribute 'T'")
+def _lose_ctrl_c_and_fail():
+    """What a build or a call is that CasADi has lost a Ctrl-C in: any error follows."""
+    _swallow_ctrl_c()
+    raise AttributeError("'NoneType' object has no attribute 'T'")
 
+
+DOORS = {
+    "a build": lambda: Compiled(_lose_ctrl_c_and_fail).function,
+    "a call": lambda: SQUARE.run([[3.0]], lambda _: _lose_ctrl_c_and_fail()),
+    "other work": lambda: Compiled.guard(_lose_ctrl_c_and_fail),
+    "without an error": lambda: Compiled.guard(_swallow_ctrl_c),
+}
+
+
+@pytest.mark.parametrize("name", DOORS)
+def test_a_swallowed_ctrl_c_comes_after_what_casadi_does_in_place_of_errors_that_it_causes(name):
+    outside = signal.getsignal(signal.SIGINT)
     with pytest.raises(KeyboardInterrupt):
-        work()
+        DOORS[name]()
+    assert signal.getsignal(signal.SIGINT) is outside
+    assert SQUARE([3.0])[0].item() == 9.0  # nothing is left behind
+
+
+def test_an_error_of_its_own_stays_one():
+    with pytest.raises(ZeroDivisionError):
+        Compiled.guard(lambda: 1 / 0)
+
+
+def test_calls_side_by_side_have_memory_of_their_own():
+    numbers = list(range(2000))
+    with ThreadPoolExecutor(4) as pool:
+        squares = list(pool.map(lambda x: SQUARE([x])[0].item(), numbers))
+    assert squares == [x**2 for x in numbers]
 
 
 WORK = {

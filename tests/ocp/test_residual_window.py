@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp import FreeVibration
-from quietarm.ocp.window import DefaultWindow, default_window
 from scipy.integrate import solve_ivp
 
 import quietarm as qa
+from quietarm.ocp import FreeVibration
+from quietarm.ocp.window import DefaultWindow, default_window
 
 # 0.1 Hz, 3 t of which 2 t swing
 CRANE = qa.LinearAxis(omega1=0.6283, zeta1=0.002, mass=3000.0, load=2000.0, friction=0.0)

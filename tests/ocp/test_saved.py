@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 from saved_files import edit
 
-from quietarm.ocp import CycloidGaussians, CycloidNetwork, FileFormatError
 import quietarm as qa
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, FileFormatError
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,9 @@ import sys
 
 import pytest
 
+import quietarm as qa
 from quietarm.models import load_plant_file
 from quietarm.ocp import FileFormatError
-import quietarm as qa
 
 
 @pytest.fixture

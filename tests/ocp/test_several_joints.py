@@ -12,8 +12,8 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from several_joints import Gantry, TwoLinks
 
-from quietarm.ocp import PositivePower
 import quietarm as qa
+from quietarm.ocp import PositivePower
 
 LINKS = qa.PointToPoint(TwoLinks(), target=1.0, duration=0.6)
 GANTRY = qa.PointToPoint(Gantry(), target=0.5, duration=0.7)

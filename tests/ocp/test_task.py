@@ -3,11 +3,11 @@
 import math
 
 import pytest
+
+import quietarm as qa
 from quietarm.models import JointMotion
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.sample import sample_plant
-
-import quietarm as qa
 
 LIMITS = tuple(one.limit for one in QUANTITIES.values())
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import pi
 
 import pytest
+
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CopperLoss, ModalState, PointToPoint, Uncertainty, task_difference
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from floors import coarse_floors
 from lines import COARSELY
+
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from quietarm.metaheuristics import NamedProblem
-from quietarm.studies.sweep import MoveLibrary
-from quietarm.metaheuristics import archive
+
+import quietarm as qa
+from quietarm.metaheuristics import NamedProblem, archive
 from quietarm.metaheuristics.jobs import Job, finished_jobs
 from quietarm.metaheuristics.run_files import is_sealed
 from quietarm.metaheuristics.score import (
@@ -26,8 +26,7 @@ from quietarm.metaheuristics.score import (
 from quietarm.studies.bench.results import Results
 from quietarm.studies.identify import Identified
 from quietarm.studies.reading.saved import load_front, load_plans
-
-import quietarm as qa
+from quietarm.studies.sweep import MoveLibrary
 
 FIXTURES = Path(__file__).parents[1] / "fixtures"
 DAYS = sorted(path.name for path in FIXTURES.iterdir() if path.is_dir())

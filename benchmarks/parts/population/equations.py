@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 from numpy.typing import NDArray
+
 from quietarm.models import ArmOnFlexibleLink, JointMotion
 from quietarm.ocp import CycloidPolynomial, PointToPoint
 from quietarm.ocp.simulation.collocation import modal_system

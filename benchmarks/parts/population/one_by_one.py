@@ -18,8 +18,9 @@ from parts.population.equations import (
     plant_at_arrays,
     plant_at_scalars,
 )
-from quietarm.ocp import FreeVibration
 from scipy.integrate import solve_ivp
+
+from quietarm.ocp import FreeVibration
 
 
 def rates_in_floats(x: Numbers, a: Sequence[float]) -> Callable[..., Any]:

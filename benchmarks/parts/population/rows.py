@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from parts.population.equations import PROFILE, TASK, Values, numbers, peak_after
 from parts.population.marches import march_arrays, march_compiled
 from parts.population.one_by_one import integrate, rates_in_floats, rates_in_numpy
-from quietarm.metaheuristics import PopulationObjective
+
+from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
+from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.solvers.batch import batch
 
 CANDIDATES = 200
 FEW, TUNING = 5, 40  # candidates of solve_ivp: to time, to choose its samples
@@ -62,13 +63,12 @@ def accurate(errors: tuple[NDArray[np.float64], ...]) -> bool:
 
 
 def by_rollout(population: NDArray[np.float64], steps: int) -> Values:
-    """The with the peak after arrival in closed form."""
-    x, count = numbers(TASK), len(population)
-    found = batch(TASK.plant, PROFILE, steps).values(
-        population, np.tile(TASK.row, (count, 1)), np.zeros((count, 0))
-    )
-    peaks = [peak_after(x, *arrival) for arrival in found.arrival]
-    return np.column_stack([peaks, found.energy, found.arrival[:, 0]])
+    """The same with the peak after arrival in closed form."""
+    x = numbers(TASK)
+    evaluation = Evaluator(TASK, PROFILE, steps)(population)
+    arrival = evaluation.arrival[:, 0]
+    peaks = [peak_after(x, *state) for state in arrival]
+    return np.column_stack([peaks, evaluation.energy[:, 0], arrival[:, 0]])
 
 
 def tuned(
@@ -91,19 +91,22 @@ def tuned(
 def ours(
     title: str, steps: int | None, population: NDArray[np.float64], reference: Values
 ) -> Method:
-    """The population objective with its default or another number of steps."""
-    objective = PopulationObjective(TASK, PROFILE, steps=steps)
-    values = objective(population)
-    arrival = by_rollout(population, objective.steps)[:, 2]
-    figures = np.column_stack([values.residual, values.energy, arrival])
-    call = partial(objective, population)
-    return Method(title, f"{objective.steps} graded", errors_of(figures, reference), call)
+    """The evaluator with the steps of every search or another number of steps."""
+    evaluator = search_evaluator(TASK, PROFILE, steps)
+
+    def objectives(population: NDArray[np.float64]) -> NDArray[np.float64]:
+        return objectives_of(evaluator(population))
+
+    arrival = by_rollout(population, evaluator.steps)[:, 2]
+    figures = np.column_stack([objectives(population), arrival])
+    call = partial(objectives, population)
+    return Method(title, f"{evaluator.steps} graded", errors_of(figures, reference), call)
 
 
 def methods(population: NDArray[np.float64]) -> list[Method]:
     """First quietarm, then the others, with steps that make them as accurate as asked."""
     x, reference = numbers(TASK), by_rollout(population, REFERENCE_STEPS)
-    fewer = (ours("quietarm, PopulationObjective", n, population, reference) for n in FEWER_STEPS)
+    fewer = (ours("quietarm, Evaluator", n, population, reference) for n in FEWER_STEPS)
     rows = [
         next(method for method in fewer if accurate(method.errors)),
         ours("quietarm, default steps", None, population, reference),

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import click
+from rich.console import Console
+
 from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
@@ -21,7 +23,6 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
-from rich.console import Console
 
 if TYPE_CHECKING:
     from quietarm.studies.bench.results import Results

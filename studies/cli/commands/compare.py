@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from rich.console import Console
+
 from quietarm.studies.cli.files import REPORT_OPTION, finish
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import ERROR, busy, command, option
@@ -16,7 +18,6 @@ from quietarm.studies.cli.types import INPUT, NAMES
 from quietarm.studies.compare.judged import SAMPLES
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import print_lines
-from rich.console import Console
 
 if TYPE_CHECKING:
     from quietarm.ocp import Front, Plan

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
+
 from quietarm.ocp.checks import install
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, command, option

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+
 from quietarm.ocp import Plan
 from quietarm.ocp.files import check_writable, write_whole
 from quietarm.studies.cli.files import finish

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import chain
 
 import click
+
 from quietarm.studies import figures
 from quietarm.studies import identify as identification
 from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_option

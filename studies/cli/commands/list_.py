@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import click
+
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS
 from quietarm.models import known_plants
 from quietarm.ocp import Front

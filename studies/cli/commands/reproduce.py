@@ -31,6 +31,7 @@ def reproduce(given: Given) -> None:
       quietarm reproduce --full --output results
     """  # noqa: D301  # \b is click's: do not rewrap
     import joblib
+
     from quietarm.ocp.checks import whole
     from quietarm.studies.report.progress import progress
     from quietarm.studies.reproduce.recompute import Effort, number_of_pieces, recompute_paper

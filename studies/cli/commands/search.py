@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
 from quietarm.metaheuristics.search import SECONDS_OF_CANDIDATE
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError

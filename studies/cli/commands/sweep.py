@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import click
+
 from quietarm.ocp import QuietarmError
 from quietarm.studies.cli.files import (
     DATASET,

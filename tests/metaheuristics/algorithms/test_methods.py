@@ -4,9 +4,10 @@ import dataclasses
 import itertools
 
 import pytest
+from small_searches import HALF, LIMITED, SIXTH, assert_is_a_front, exactly
+
 from quietarm.metaheuristics import PRESETS, search
 from quietarm.metaheuristics.algorithms.presets import preset_of
-from small_searches import HALF, LIMITED, SIXTH, assert_is_a_front, exactly
 
 SMALL = {"population": 8, "generations": 4, "bound": 0.3}
 IN_TURN = list(zip(PRESETS, itertools.cycle([SIXTH, HALF])))

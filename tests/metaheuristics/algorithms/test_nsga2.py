@@ -7,6 +7,7 @@ from pymoo.core.population import Population
 from pymoo.indicators.igd import IGD
 from pymoo.problems import get_problem
 from pymoo.termination.max_gen import MaximumGenerationTermination
+
 from quietarm.metaheuristics import PaperNSGA2
 from quietarm.metaheuristics.algorithms.nsga2 import ExactDuplicates
 

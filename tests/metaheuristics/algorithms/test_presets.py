@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+
 from quietarm.metaheuristics import PRESETS
 from quietarm.metaheuristics.algorithms import building
 

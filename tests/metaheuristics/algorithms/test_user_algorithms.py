@@ -10,9 +10,10 @@ from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.algorithms.soo.nonconvex.nelder import NelderMead
 from pymoo.operators.mutation.pm import PM
 from pymoo.util.ref_dirs import get_reference_directions
+from small_searches import HALF, LIMITED, assert_is_a_front
+
 from quietarm.metaheuristics import INERTIA_2002, VEPSO, PaperNSGA2, search
 from quietarm.ocp import Front
-from small_searches import HALF, LIMITED, assert_is_a_front
 
 
 def _moead():

@@ -3,6 +3,7 @@
 import pytest
 from moves import CASES
 from populations import pi
+
 from quietarm.ocp import PointToPoint
 
 

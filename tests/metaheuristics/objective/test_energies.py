@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp import PositivePower
-from quietarm.metaheuristics.objective.population import PopulationObjective
-from quietarm.ocp.simulation.grid import default_steps
 
 import quietarm as qa
+from quietarm.metaheuristics.objective.population import search_evaluator
+from quietarm.ocp import PositivePower
+from quietarm.ocp.simulation.evaluator import Evaluator
 
 
 @pytest.fixture(
@@ -25,9 +25,9 @@ def test_a_population_spends_what_cvodes_finds(tasks, name, energy):
     task, profile = replace(task, energy=energy), qa.CycloidPolynomial(4)
     X = np.random.default_rng(3).uniform(-bound, bound, (6, 4))
     expected = [qa.Candidate.of_profile(task, profile, x).energy for x in X]
-    fine = PopulationObjective(task, profile, steps=default_steps(task))(X).energy
+    fine = Evaluator(task, profile)(X).energy[:, 0]
     assert fine == pytest.approx(expected, rel=1e-5)
-    assert PopulationObjective(task, profile)(X).energy == pytest.approx(expected, rel=3e-3)
+    assert search_evaluator(task, profile)(X).energy[:, 0] == pytest.approx(expected, rel=3e-3)
 
 
 def test_a_search_states_what_cvodes_finds(tasks, energy):

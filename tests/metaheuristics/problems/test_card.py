@@ -3,6 +3,7 @@
 from math import pi
 
 import pytest
+
 from quietarm.metaheuristics.problems.card import card_of
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, PointToPoint, Record

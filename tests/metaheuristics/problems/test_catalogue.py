@@ -5,6 +5,7 @@ from dataclasses import replace
 import moocore
 import numpy as np
 import pytest
+
 from quietarm.metaheuristics import PROBLEMS, problem_of
 from quietarm.metaheuristics.objective.stated_figures import check_figures
 from quietarm.ocp import evaluate_coefficients

@@ -4,9 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
+from small_searches import HALF, SIXTH
+
 from quietarm.metaheuristics import MoveFunction, problem_of
 from quietarm.ocp import CycloidPolynomial, Front, evaluate_coefficients
-from small_searches import HALF, SIXTH
 
 LIMITED = dataclasses.replace(SIXTH, torque_limit=0.16, acceleration_limit=60.0)
 RANDOM = np.random.default_rng(4).uniform(-0.2, 0.2, (7, 3))

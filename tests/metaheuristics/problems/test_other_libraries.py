@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+
 from quietarm.metaheuristics import problem_of
 from quietarm.ocp import Front
 

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from quietarm.metaheuristics import Job, problem_of
-from quietarm.metaheuristics.score import final_share_of_box, shares_of_box
 from small_searches import assert_is_a_front
 
 import quietarm as qa
+from quietarm.metaheuristics import Job, problem_of
+from quietarm.metaheuristics.score import final_share_of_box, shares_of_box
 
 TASK = qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8)
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from fixed_steps import rollout
+
 from quietarm.metaheuristics import search
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import CycloidGaussians, CycloidNetwork, CycloidSpline, PointToPoint

@@ -4,9 +4,10 @@ import math
 
 import pytest
 from fixed_steps import rollout
+from small_searches import BOUNDS, METHODS, TASKS, found, run
+
 from quietarm.metaheuristics import search
 from quietarm.ocp import Candidate, CycloidPolynomial
-from small_searches import BOUNDS, METHODS, TASKS, found, run
 
 # -- what a front is --
 

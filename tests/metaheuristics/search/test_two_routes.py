@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_searches import HALF, SIXTH, found, pi
+
 from quietarm.metaheuristics import PAPER_BOX, search
 from quietarm.ocp import Candidate, PointToPoint, epsilon_front, plan_move, polish_front
-from small_searches import HALF, SIXTH, found, pi
 
 # -- the paper's energies --
 

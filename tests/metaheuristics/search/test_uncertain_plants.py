@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import pi
 
 import pytest
+
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.objective.stated_figures import check_figures
 from quietarm.models import ArmOnFlexibleLink

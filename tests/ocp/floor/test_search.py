@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from floors import coarse_floors
 from moves import ARM
-from quietarm.ocp import SolveStatus
-from quietarm.ocp.floor.search import Level
 
 import quietarm as qa
+from quietarm.ocp import SolveStatus
+from quietarm.ocp.floor.search import Level
 
 pytestmark = pytest.mark.slow
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from moves import CASES
+
 from quietarm.ocp import (
     Candidate,
     CycloidPolynomial,

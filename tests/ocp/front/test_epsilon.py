@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from moves import CASES
-from quietarm.ocp.solvers.problem import STILL
 
 import quietarm as qa
+from quietarm.ocp.solvers.problem import STILL
 
 POINTS = 8
 

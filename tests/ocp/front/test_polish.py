@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from quietarm.ocp import FrontPoint, Record, non_dominated
 import quietarm as qa
+from quietarm.ocp import FrontPoint, Record, non_dominated
 
 TASK, BOUND, PROFILE = (
     qa.PointToPoint(qa.ArmOnFlexibleLink(), math.pi / 2, 0.8),

@@ -7,8 +7,8 @@ from math import pi
 
 import pytest
 
-from quietarm.ocp import perturb_plant
 import quietarm as qa
+from quietarm.ocp import perturb_plant
 
 RANGE, POINTS = 0.15, 4
 PROFILE = qa.CycloidPolynomial(4)

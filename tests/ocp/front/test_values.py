@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from moves import ARM
 
-from quietarm.ocp import FileFormatError, FrontPoint, Mark, Record, non_dominated
 import quietarm as qa
+from quietarm.ocp import FileFormatError, FrontPoint, Mark, Record, non_dominated
 
 
 def _points(*figures):

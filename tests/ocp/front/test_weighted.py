@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 from moves import CASES
-from quietarm.ocp.front import curve
 
 import quietarm as qa
+from quietarm.ocp.front import curve
 
 POINTS = 10
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from quietarm.ocp import Verification
 import quietarm as qa
+from quietarm.ocp import Verification
 
 # Table 1, N = 2.
 TWO_TERMS = [3.347e-3, -1.697e-1]

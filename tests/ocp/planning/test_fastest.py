@@ -5,6 +5,9 @@ from math import pi, radians, sqrt
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
+from scipy.optimize import linprog
+
 from quietarm.models import ArmOnFlexibleLink, FlexibleBeam, LinearAxis, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -18,8 +21,6 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.ocp.planning.fastest import fastest_residual_limit
-from scipy.linalg import expm
-from scipy.optimize import linprog
 
 LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8, torque_limit=0.15)
 SIX = CycloidPolynomial(6)

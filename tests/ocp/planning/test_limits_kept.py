@@ -5,10 +5,11 @@ from math import pi
 import casadi as ca
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+
 from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.sample import sample_plant
-from scipy.integrate import solve_ivp
 
 MOVES = {
     "single link, back": ("single link", 0.2, -1.0, 0.7),

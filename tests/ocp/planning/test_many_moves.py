@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp import SolveStatus, SolverFailedError
-from quietarm.ocp.planning import many
 
 import quietarm as qa
+from quietarm.ocp import SolverFailedError, SolveStatus
+from quietarm.ocp.planning import many
 
 DURATIONS = np.linspace(0.7, 1.2, 4)
 

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+
 from quietarm.ocp import PointToPoint
 
 pi = math.pi

@@ -5,6 +5,7 @@ from math import inf, pi, sqrt
 
 import numpy as np
 import pytest
+
 from quietarm.models import ArmOnFlexibleLink, LinearAxis, SingleLinkManipulator
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.planning.rigid_motion import (

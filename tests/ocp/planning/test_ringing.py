@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fixed_steps import rollout
-from quietarm.ocp import FreeVibration, ModalState, perturb_plant
-from quietarm.metaheuristics.objective.population import PopulationObjective
 from third_opinion import ThirdOpinion
 
 import quietarm as qa
+from quietarm.ocp import FreeVibration, ModalState, perturb_plant
+from quietarm.ocp.simulation.evaluator import Evaluator
 
 SIX = qa.CycloidPolynomial(6)
 
@@ -50,8 +50,9 @@ def test_a_move_that_begins_ringing_arrives_still_and_scipy_agrees(ringing, name
 
 def test_searches_see_what_cvodes_does(ringing):
     population = np.random.default_rng(3).uniform(-0.2, 0.2, (5, 6))
-    found = PopulationObjective(ringing, SIX, steps=140)(population)
-    for a, residual, energy in zip(population, found.residual, found.energy, strict=True):
+    found = Evaluator(ringing, SIX, steps=140)(population)
+    figures = zip(population, found.sampled_residual[:, 0], found.energy[:, 0], strict=True)
+    for a, residual, energy in figures:
         exact = qa.Candidate.of_profile(ringing, SIX, a).motion
         assert energy == pytest.approx(exact.energy, rel=1e-5)
         assert residual == pytest.approx(exact.residual, rel=3e-4)
@@ -62,7 +63,8 @@ def test_searches_see_what_cvodes_does(ringing):
 
 def test_errors_of_the_plant_begin_in_the_same_state(ringing):
     profile, a, errors = qa.CycloidPolynomial(3), [0.05, -0.1, 0.02], {"frequency": 0.07}
-    figures = qa.evaluate_robustness(ringing, profile, a, errors, samples=1).sweeps[0].figures
+    candidate = qa.Candidate.of_profile(ringing, profile, a)
+    figures = qa.evaluate_robustness(candidate, errors, samples=1).sweeps[0].figures
     wrong = replace(ringing, plant=perturb_plant(ringing.plant, errors))
     exact = qa.Candidate.of_profile(wrong, profile, a).motion
     assert figures.residual[-1] == pytest.approx(exact.residual, rel=1e-4)
@@ -115,8 +117,9 @@ def test_the_residual_is_the_distance_from_the_wanted_free_vibration(tasks, name
     profile = qa.CycloidPolynomial(2)
     assert qa.Candidate.of_profile(task, profile, a).residual == pytest.approx(expected, rel=3e-6)
     assert rollout(task, profile, a).motion.residual == pytest.approx(expected, rel=1e-4)
-    found = PopulationObjective(task, profile, steps=140)(np.array([a]))
-    assert found.residual[0] == pytest.approx(expected, rel=1e-4)
+    found = Evaluator(task, profile, steps=140)([a])
+    assert found.sampled_residual == pytest.approx(expected, rel=1e-4)
+    assert found.residual == pytest.approx(expected, rel=1e-5)
     vibration = FreeVibration(task.plant, task.target, task.residual_window)
     peak = vibration.peak(task.missed(other.during.y[:, -1]))
     assert peak == pytest.approx(expected, rel=3e-6)

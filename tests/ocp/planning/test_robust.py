@@ -7,10 +7,10 @@ from math import pi
 
 import numpy as np
 import pytest
-from quietarm.ocp import SolverFailedError, perturb_plant
-from quietarm.ocp.planning import plan_along
 
 import quietarm as qa
+from quietarm.ocp import SolverFailedError, perturb_plant
+from quietarm.ocp.planning import plan_along
 
 RANGE = 0.1
 

@@ -5,8 +5,8 @@ from math import pi
 import casadi as ca
 import pytest
 
-from quietarm.ocp import symbolic_rollout
 import quietarm as qa
+from quietarm.ocp import symbolic_rollout
 
 TASK = qa.PointToPoint(qa.SingleLinkManipulator(), target=pi / 6, duration=0.8, torque_limit=0.14)
 

@@ -8,8 +8,8 @@ import pytest
 from fixed_steps import rollout
 from third_opinion import followed
 
-from quietarm.models import JointMotion
 import quietarm as qa
+from quietarm.models import JointMotion
 
 pi = math.pi
 LINEAR = qa.SingleLinkManipulator(beta2=0.0, zeta=0.0)

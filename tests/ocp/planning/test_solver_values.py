@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 import pytest
-from quietarm.ocp import cross_check
-from quietarm.metaheuristics.gradient import multistart_front
-from quietarm.ocp.front.polish import polish_front
-from quietarm.ocp.solvers.choice import other_solver, stand_in, stated_solver
 
 import quietarm as qa
+from quietarm.metaheuristics.gradient import multistart_front
+from quietarm.ocp import cross_check
+from quietarm.ocp.front.polish import polish_front
+from quietarm.ocp.solvers.choice import other_solver, stand_in, stated_solver
 
 TWO = qa.CycloidPolynomial(2)
 TASK = qa.PointToPoint(qa.SingleLinkManipulator(), target=qa.deg(30), duration=0.8)

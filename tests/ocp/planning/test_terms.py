@@ -5,6 +5,7 @@ from dataclasses import replace
 from math import pi, radians
 
 import pytest
+
 from quietarm.metaheuristics import search
 from quietarm.models import DualLinkManipulator, FlexibleBeam, LinearAxis, SingleLinkManipulator
 from quietarm.ocp import (

@@ -4,8 +4,9 @@ from math import pi
 
 import numpy as np
 import pytest
-from quietarm.ocp import CycloidPolynomial, JointSpline
 from scipy.interpolate import BSpline
+
+from quietarm.ocp import CycloidPolynomial, JointSpline
 
 KNOTS = (0.05, 0.1, 0.3, 0.5, 0.77, 0.9)
 PROFILE = JointSpline(KNOTS)

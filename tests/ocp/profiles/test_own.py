@@ -7,11 +7,11 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 import pytest
+
+import quietarm as qa
 from quietarm.ocp.profiles.cycloid import Cycloid
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.solvers.node import Path
-
-import quietarm as qa
 
 pi = math.pi
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from quietarm.ocp import CycloidPolynomial, CycloidSpline
 
 angles = st.floats(-2 * math.pi, 2 * math.pi)

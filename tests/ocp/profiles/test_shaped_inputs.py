@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from quietarm.ocp import CycloidGaussians, CycloidNetwork
 import quietarm as qa
+from quietarm.ocp import CycloidGaussians, CycloidNetwork
 
 UNITS = {"gaussians": CycloidGaussians, "network": CycloidNetwork}
 FAMILIES = {**UNITS, "spline": qa.CycloidSpline}

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from quietarm.ocp import CycloidPolynomial, ShapedCycloid
 from quietarm.ocp.profiles.shaped_cycloid import LEAST_SHARE, SHAPERS, convolved
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from quietarm.ocp import perturb_plant
 import quietarm as qa
+from quietarm.ocp import perturb_plant
 
 LINEAR = qa.SingleLinkManipulator(beta2=0.0, zeta=0.0)
 RANGES = {
@@ -19,7 +19,7 @@ RANGES = {
 
 
 def of_plan(plan, ranges, **settings):
-    return qa.evaluate_robustness(plan.task, plan.profile, plan.coefficients, ranges, **settings)
+    return qa.evaluate_robustness(plan.candidate, ranges, **settings)
 
 
 def alone(plan, errors):
@@ -103,7 +103,8 @@ def ends(excess, step=1e-3):
 def test_the_insensitivity_of_shapers_is_that_of_the_closed_form(shaper, duration):
     task = qa.PointToPoint(LINEAR, 1.0, duration)
     profile = qa.shaped_cycloid(task, shaper)
-    found = qa.evaluate_robustness(task, profile, [], {"frequency": 0.6}, samples=1)
+    candidate = qa.Candidate.of_profile(task, profile, [])
+    found = qa.evaluate_robustness(candidate, {"frequency": 0.6}, samples=1)
     sweep, plain = found.sweeps[0], plain_residual(1.0, task, duration)
     assert found.cycloid == pytest.approx(plain, rel=1e-5)
     expected = [left(shaper, 1 + error, task, profile) for error in sweep.errors]

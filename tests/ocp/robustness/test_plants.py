@@ -8,9 +8,9 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+import quietarm as qa
 from quietarm.models import JointMotion
 from quietarm.ocp import FreeVibration, perturb_plant
-import quietarm as qa
 
 PLANTS = [qa.SingleLinkManipulator(), qa.ArmOnFlexibleLink(), qa.DualLinkManipulator()]
 plants = pytest.mark.parametrize("plant", PLANTS, ids=lambda plant: plant.name)

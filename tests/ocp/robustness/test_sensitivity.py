@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import pi
 
 import pytest
+
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import PointToPoint, evaluate_coefficients, plan_move
 from quietarm.ocp.uncertainty import perturb_plant

@@ -8,10 +8,10 @@ from math import pi
 import numpy as np
 import pytest
 from fixed_steps import rollout
-from quietarm.ocp import perturb_plant
-from quietarm.ocp.robustness import perturbed_figures
 
 import quietarm as qa
+from quietarm.ocp import perturb_plant
+from quietarm.ocp.simulation.evaluator import Evaluator
 
 MOVE = [0.003347, -0.1697]  # the paper's, N = 2
 
@@ -59,7 +59,7 @@ def test_figures_are_the_worst_of_the_parts_alone(of, request):
 def test_worst_is_what_a_dense_search_finds(task, evaluated):
     grid = np.meshgrid(np.linspace(-0.1, 0.1, 60), np.linspace(-0.05, 0.05, 60))
     errors = np.reshape(grid, (2, -1)).T
-    largest = perturbed_figures(task, evaluated.profile, MOVE, task.ranges, errors)[:, 0].max()
+    largest = Evaluator(task, evaluated.profile, 160)([MOVE], errors).residual.max()
     assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
     there = perturb_plant(task.plant, evaluated.worst.errors)
     again = qa.Candidate.of_profile(

@@ -6,10 +6,10 @@ from math import cos, sin
 
 import numpy as np
 import pytest
-from quietarm.ocp.profiles.free_motion import PiecewiseMotion
-from quietarm.ocp.profiles.joint_profile import JointProfile
 
 import quietarm as qa
+from quietarm.ocp.profiles.free_motion import PiecewiseMotion
+from quietarm.ocp.profiles.joint_profile import JointProfile
 
 pi = math.pi
 PLAIN = qa.CycloidPolynomial(0)

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from quietarm.ocp import CycloidGaussians, CycloidNetwork, PositivePower, symbolic_rollout
 import quietarm as qa
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, PositivePower, symbolic_rollout
 
 PLANTS = {
     "link": qa.SingleLinkManipulator(),

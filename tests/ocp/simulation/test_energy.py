@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
+
+import quietarm as qa
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS
 from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import beyond_quadratic, resolved_energy
 from quietarm.ocp.solvers.derivatives import differentiate_absolute
-
-import quietarm as qa
 
 numbers = st.floats(-10.0, 10.0)
 NODE = np.array(GAUSS_NODES)

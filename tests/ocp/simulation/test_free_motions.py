@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from quietarm.models import JointMotion
-from quietarm.ocp.profiles.free_motion import FreeMotion
 from third_opinion import followed
 
 import quietarm as qa
+from quietarm.models import JointMotion
+from quietarm.ocp.profiles.free_motion import FreeMotion
 
 
 def simulate(task, free):

@@ -5,10 +5,10 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from quietarm.ocp import FreeVibration, perturb_plant
-from quietarm.ocp.simulation.free_vibration import fastest_along
 
 import quietarm as qa
+from quietarm.ocp import FreeVibration, perturb_plant
+from quietarm.ocp.simulation.free_vibration import fastest_along
 
 
 def _decay(W, dW, omega, zeta, t):

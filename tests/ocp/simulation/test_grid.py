@@ -7,9 +7,9 @@ from typing import ClassVar
 import casadi as ca
 import pytest
 from fixed_steps import rollout
-from quietarm.ocp.simulation.grid import default_steps
 
 import quietarm as qa
+from quietarm.ocp.simulation.grid import default_steps
 
 PLAIN = qa.CycloidPolynomial(0)
 

@@ -3,9 +3,9 @@
 import math
 
 import pytest
-from quietarm.ocp.simulation.grid import default_steps
 
 import quietarm as qa
+from quietarm.ocp.simulation.grid import default_steps
 
 TASK = qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8)
 PROFILE = qa.CycloidPolynomial(2)

@@ -6,10 +6,10 @@ import casadi as ca
 import numpy as np
 import pytest
 from fixed_steps import rollout
-from quietarm.ocp import ModalState, symbolic_rollout
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 
 import quietarm as qa
+from quietarm.ocp import ModalState, symbolic_rollout
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 
 pi = math.pi
 PLAIN = qa.CycloidPolynomial(0)

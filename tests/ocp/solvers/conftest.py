@@ -1,6 +1,7 @@
 """What the tests of `quietarm.ocp.solvers` share."""
 
 import pytest
+
 from quietarm.ocp import CycloidPolynomial
 from quietarm.ocp.solvers.problem import Transcription
 

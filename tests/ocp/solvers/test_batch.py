@@ -6,11 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fixed_steps import rollout
-from quietarm.ocp import ModalState, perturb_plant
-from quietarm.ocp.limits import QUANTITIES as BY_NAME
-from quietarm.ocp.solvers.batch import Multipliers, batch
 
 import quietarm as qa
+from quietarm.ocp import ModalState, perturb_plant
+from quietarm.ocp.limits import QUANTITIES as BY_NAME
+from quietarm.ocp.simulation.evaluator import simulate
+from quietarm.ocp.simulation.rollout import Simulation
+from quietarm.ocp.solvers.batch import Multipliers, batch_of
 
 QUANTITIES = tuple(BY_NAME.values())
 LIMITS = tuple(one.limit for one in QUANTITIES)
@@ -49,18 +51,18 @@ def test_figures_are_those_of_the_rollout(task, errors):
     profile, steps = qa.CycloidPolynomial(4), 40
     ringing = ModalState(*np.reshape([0.01, -0.1, 0.02, 0.05][: 2 * task.plant.modes], (2, -1)))
     task = replace(task, start=-0.2, initial=ringing, **dict.fromkeys(LIMITS, 1.0))
-    made = batch(task.plant, profile, steps, QUANTITIES, tuple(errors))
+    made = batch_of(Simulation(task.plant, profile, steps, QUANTITIES, tuple(errors)))
     a = _candidates(1, made.simulation)[0]
     inputs = a, np.array([task.row]), np.array([list(errors.values())])
     wrong = replace(task, plant=perturb_plant(task.plant, errors))
     expected = rollout(wrong, profile, a[0], steps=steps)
-    for found in (made.values(*inputs), _derivatives(made, inputs)):
+    for found in (simulate(made.simulation, *inputs), _derivatives(made, inputs)):
         assert found.arrival[0] == pytest.approx(np.array(expected.arrival), rel=1e-8, abs=1e-12)
         for name, part in made.places.items():
             peak = np.abs(found.limited[0, part]).max()
             assert peak == pytest.approx(expected.motion.peak(name), rel=1e-8)
     energy = expected.motion.energy
-    assert made.values(*inputs).energy[0] == pytest.approx(energy, rel=1e-9)
+    assert simulate(made.simulation, *inputs).energy[0] == pytest.approx(energy, rel=1e-9)
     # Without what neighbouring steps tell, of fourth order in their length: up to 25/steps^4.
     assert _derivatives(made, inputs).energy[0] == pytest.approx(energy, rel=25 / steps**4)
 
@@ -68,11 +70,11 @@ def test_figures_are_those_of_the_rollout(task, errors):
 @pytest.mark.parametrize(("rows", "threads"), [(3, 1), (20, 2)])
 def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
     profile = qa.CycloidPolynomial(4)
-    made = batch(plants["arm"], profile, 12, (BY_NAME["torque"],), ("frequency",))
+    made = batch_of(Simulation(plants["arm"], profile, 12, (BY_NAME["torque"],), ("frequency",)))
     candidates = _candidates(rows, made.simulation)
     weights = _weights(made, rows)
     together = _derivatives(made, candidates, 0.1, weights)
-    valued = made.values(*candidates, threads=threads)
+    valued = simulate(made.simulation, *candidates, threads=threads)
     for row in {0, rows // 2, rows - 1}:
         only = slice(row, row + 1)
         alone = [one[only] for one in candidates]
@@ -82,13 +84,13 @@ def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
             whole = vars(expected)[name][0]
             size = np.abs(whole).max()
             assert part[row] == pytest.approx(whole, rel=1e-10, abs=1e-12 * size), name
-        for name, part in vars(made.values(*alone)).items():
+        for name, part in vars(simulate(made.simulation, *alone)).items():
             assert vars(valued)[name][row] == pytest.approx(part[0], rel=1e-10, abs=1e-13)
 
 
 @pytest.mark.parametrize("name", ["arm", "two links"])
 def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants, name):
-    made = batch(plants[name], qa.CycloidPolynomial(3), 30)
+    made = batch_of(Simulation(plants[name], qa.CycloidPolynomial(3), 30))
     candidates = _candidates(2, made.simulation, seed=5)
     none = np.zeros((2, 2 * made.simulation.plant.modes))
     weights = Multipliers(np.ones(2), none, np.zeros((2, 0)))

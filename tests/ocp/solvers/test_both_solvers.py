@@ -5,14 +5,15 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
-from quietarm.ocp import SolveStatus
-from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, TorqueSpeedLine
-from quietarm.ocp.solvers import ipopt as ipopt_module
-from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem, Scalarization, Transcription
-from quietarm.ocp.solvers.sqp import Sqp
 
 import quietarm as qa
+from quietarm.ocp import SolveStatus
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, TorqueSpeedLine
+from quietarm.ocp.simulation.evaluator import Evaluation
+from quietarm.ocp.solvers import ipopt as ipopt_module
+from quietarm.ocp.solvers.ipopt import Ipopt
+from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.sqp import Sqp
 
 TERMS = 6
 PROFILE = qa.CycloidPolynomial(TERMS)
@@ -155,8 +156,8 @@ def test_what_the_sqp_misreads_of_a_motion_does_not_reach_ipopt(link_and_arm, mo
     steps, _, box = link_and_arm["arm"]
     asked = _ask({RESIDUAL: 2e-3}, box)
     right = [_solved(steps, asked, solver) for solver in SOLVERS]
-    peaks = Transcription.peaks
-    monkeypatch.setattr(Transcription, "peaks", lambda *given: _halved(peaks(*given)))
+    peaks = Evaluation.peaks_of
+    monkeypatch.setattr(Evaluation, "peaks_of", lambda *given: _halved(peaks(*given)))
     sqp, ipopt = (_solved(steps, asked, solver) for solver in SOLVERS)
     assert sqp.residual == right[0].residual / 2
     assert (ipopt.energy, ipopt.peaks) == (right[1].energy, right[1].peaks)

@@ -3,14 +3,14 @@
 import casadi as ca
 import numpy as np
 import pytest
+
+import quietarm as qa
 from quietarm.ocp import CycloidGaussians, CycloidNetwork, perturb_plant
 from quietarm.ocp.energy import ABSOLUTE_POWER, CopperLoss, PositivePower
 from quietarm.ocp.limits import QUANTITIES, Limit, TorqueSpeedLine
 from quietarm.ocp.simulation.objective import integrated, resolved_energy
-from quietarm.ocp.simulation.rollout import symbolic_rollout
-from quietarm.ocp.solvers.batch import Multipliers, batch
-
-import quietarm as qa
+from quietarm.ocp.simulation.rollout import Simulation, symbolic_rollout
+from quietarm.ocp.solvers.batch import Multipliers, batch_of
 
 STEPS = 10
 LINE = Limit.of_line(TorqueSpeedLine(((1.5, 0.0), (1.2, 2.0), (0.2, 4.0))))
@@ -42,7 +42,7 @@ def case(request, plants):
     plant, profile, energy, names = request.param
     plant, profile, energy = plants[plant], PROFILES[profile], ENERGIES[energy]
     quantities = (*QUANTITIES.values(), LINE.quantity)
-    made = batch(plant, profile, STEPS, quantities, names, energy)
+    made = batch_of(Simulation(plant, profile, STEPS, quantities, names, energy))
     plant = perturb_plant(plant, dict(zip(names, ERRORS, strict=False)))
     a, width = ca.MX.sym("a", profile.size), ca.MX.sym("width")
     rollout = symbolic_rollout(

@@ -9,6 +9,7 @@ from functools import partial
 import casadi as ca
 import numpy as np
 import pytest
+
 from quietarm.ocp.solvers.funnel import SHARP, Course, End, minimise
 from quietarm.ocp.solvers.quadratic import Model
 

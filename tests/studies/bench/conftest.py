@@ -2,6 +2,7 @@
 
 import pytest
 from bench_problems import METHODS, NAME, SMALL
+
 from quietarm.metaheuristics import Job, run_jobs
 
 

@@ -10,6 +10,8 @@ import numpy as np
 import pandas as pd
 import pytest
 from bench_problems import NAME, OTHERS
+
+import quietarm as qa
 from quietarm.metaheuristics import problem_of
 from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.problems.recorded import RecordedFunction
@@ -18,8 +20,6 @@ from quietarm.ocp.cost import COST
 from quietarm.studies.bench.asked import problems_of, write_references
 from quietarm.studies.bench.page import bench_report, compared_columns, problem_table
 from quietarm.studies.bench.results import Results
-
-import quietarm as qa
 
 
 def test_measures_are_moocores_from_the_files_alone(fronts):

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 from bench_problems import NAME, OTHERS
 from pymoo.algorithms.moo.nsga2 import NSGA2
-from quietarm.metaheuristics import LostJobsError
-from quietarm.metaheuristics import Job, finished_jobs, run_jobs
-from quietarm.studies.bench.asked import jobs_of, problems_of
-from quietarm.studies.bench.results import Results
 
 import quietarm as qa
+from quietarm.metaheuristics import Job, LostJobsError, finished_jobs, run_jobs
+from quietarm.studies.bench.asked import jobs_of, problems_of
+from quietarm.studies.bench.results import Results
 
 pytestmark = pytest.mark.slow
 

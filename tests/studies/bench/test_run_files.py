@@ -7,11 +7,10 @@ import shutil
 import numpy as np
 import pytest
 from bench_problems import NAME
-from quietarm.metaheuristics import NamedProblem, problem_of
-from quietarm.metaheuristics import Job, finished_jobs, run_jobs
-from quietarm.metaheuristics.run_files import CHECKSUM, is_sealed
 
 import quietarm as qa
+from quietarm.metaheuristics import Job, NamedProblem, finished_jobs, problem_of, run_jobs
+from quietarm.metaheuristics.run_files import CHECKSUM, is_sealed
 
 JOBS = [Job(NAME, "random", seed, 200) for seed in (0, 1)]
 JOB = JOBS[0]

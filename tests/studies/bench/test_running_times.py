@@ -5,6 +5,7 @@ import gzip
 import numpy as np
 import pandas as pd
 import pytest
+
 from quietarm.metaheuristics import Job, NamedProblem, problem_of, run_jobs
 from quietarm.studies.bench.page import bench_report
 from quietarm.studies.bench.results import Results
@@ -14,8 +15,6 @@ from quietarm.studies.bench.running_times import (
     read_histories,
     running_times,
 )
-
-import quietarm as qa
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,8 @@ import pytest
 from bench_problems import NAME, OTHERS
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
+
 from quietarm.metaheuristics import PROBLEMS, problem_of
 from quietarm.studies.bench.page import bench_report, problem_table
 from quietarm.studies.bench.results import Results, Run, quartiles
@@ -26,9 +28,6 @@ from quietarm.studies.bench.statistics import (
     say_power_of,
     verdict_on,
 )
-from scipy import stats
-
-import quietarm as qa
 
 
 def test_tests_are_exact_and_no_verdict_is_given_without_power(fronts):

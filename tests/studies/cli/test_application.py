@@ -5,6 +5,7 @@ import signal
 
 import pytest
 from lines import MOVE
+
 from quietarm.metaheuristics import problem_of
 from quietarm.models import Plant, SingleLinkManipulator, load_plant_file
 from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients

@@ -7,9 +7,10 @@ import zipfile
 import numpy as np
 import pytest
 from lines import MOVE
+from scipy.io import savemat
+
 from quietarm.ocp import CycloidPolynomial, epsilon_front
 from quietarm.studies.reading.table import read_table
-from scipy.io import savemat
 
 DEEP = 100_000
 ROWS = "\n".join(f"{k},{k}" for k in range(9))

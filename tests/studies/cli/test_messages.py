@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from lines import MOVE
+
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front, evaluate_coefficients
 

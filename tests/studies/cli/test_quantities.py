@@ -5,6 +5,8 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
+import quietarm as qa
 from quietarm.ocp import PositivePower
 from quietarm.studies.cli.quantities import (
     parse_coefficients,
@@ -12,8 +14,6 @@ from quietarm.studies.cli.quantities import (
     parse_quantity,
     parse_scales,
 )
-
-import quietarm as qa
 
 WHOLE = st.integers(0, 100_000)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)

@@ -7,15 +7,15 @@ from pathlib import Path
 import pandas as pd
 import pytest
 import xarray as xr
+from saved_files import edit
+
+import quietarm as qa
 from quietarm.models import LinearAxis, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint, evaluate_coefficients
 from quietarm.studies.compare import compare_plans
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.explore.opening import open_file, open_plant
 from quietarm.studies.sweep.grid import Axis, Grid
-from saved_files import edit
-
-import quietarm as qa
 
 CRANE = "linear-axis --set omega1=0.6283 --set zeta1=0.002 --target 8 --duration 16 --quiet"
 WITHIN = "within 20 s"  # two periods of 0.6283 rad/s

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from pages import blocks
+
 from quietarm.ocp import Front, Plan
 
 ROOT = Path(__file__).parents[3]

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front
 from quietarm.studies.compare import compare_fronts

@@ -7,6 +7,7 @@ from math import pi
 
 import numpy as np
 import pytest
+
 from quietarm.models import FlexibleBeam
 from quietarm.ocp import PointToPoint, Uncertainty, evaluate_coefficients, plan_move
 from quietarm.ocp.profiles.free_motion import FreeMotion

@@ -4,6 +4,7 @@ import math
 
 import pytest
 from bokeh.document import Document
+
 from quietarm.models import LinearAxis, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,

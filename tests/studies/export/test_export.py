@@ -11,6 +11,9 @@ import numpy as np
 import pytest
 import yaml
 from c_library import compiled, joint_by, needs_compiler
+from scipy.interpolate import BPoly
+from scipy.io import loadmat
+
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidGaussians,
@@ -25,8 +28,6 @@ from quietarm.ocp import (
 )
 from quietarm.studies.export.formats import export_plan
 from quietarm.studies.export.interpolation import interpolation_note, residual_between
-from scipy.interpolate import BPoly
-from scipy.io import loadmat
 
 LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8, start=-0.2)
 PROFILES = {

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from PIL import Image
+
 from quietarm.models import ArmOnFlexibleLink, LinearAxis
 from quietarm.ocp import PointToPoint, energy_floor, evaluate_coefficients
 from quietarm.studies.export import animate

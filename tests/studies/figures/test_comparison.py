@@ -4,6 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+
 from quietarm.studies.compare import compare_fronts
 from quietarm.studies.compare.front_report import methods_table
 from quietarm.studies.figures import comparison_figure

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from quietarm.ocp import FailedPoint, Mark
 from quietarm.studies.figures import draw_fronts, front_figure
 

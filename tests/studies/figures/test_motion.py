@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+
 from quietarm.ocp import evaluate_coefficients
 from quietarm.studies.figures import QUANTITIES_DRAWN, Line, draw_quantity, motion_figure
 

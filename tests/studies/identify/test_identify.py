@@ -10,8 +10,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.signal import StateSpace, lsim
 
-from quietarm.studies.identify import Identified, predict
 import quietarm as qa
+from quietarm.studies.identify import Identified, predict
 
 # alpha1 is above alpha2 * beta1, else it has no inertia and is refused as a plant
 LINK = qa.SingleLinkManipulator(

@@ -1,6 +1,7 @@
 """What methods are called, by the names that their fronts and jobs state."""
 
 import pytest
+
 from quietarm.studies.bench.results import derivative_free
 from quietarm.studies.report.methods import is_gradient, label_of
 

@@ -6,9 +6,10 @@ import time
 from functools import partial
 
 import pytest
+from rich.console import Console
+
 from quietarm.studies.report import progress as shown
 from quietarm.studies.report.progress import count, progress, working
-from rich.console import Console
 
 
 def console(**settings):

@@ -7,8 +7,9 @@ from xml.etree import ElementTree
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
-from quietarm.studies.report import Report, show, show_facts
 from rich.console import Console
+
+from quietarm.studies.report import Report, show, show_facts
 
 MOVES = pd.DataFrame(
     {

@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import isnan, nan
 
 import pytest
+
 from quietarm.ocp import FrontPoint, ModalState
 from quietarm.studies.reproduce.claims import claims
 from quietarm.studies.reproduce.paper import (

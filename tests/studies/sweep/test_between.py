@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from c_library import compiled, joint_by, needs_compiler
+
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,

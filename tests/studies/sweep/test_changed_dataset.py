@@ -8,12 +8,12 @@ import subprocess
 import numpy as np
 import pytest
 from lines import COARSELY
+
+import quietarm as qa
 from quietarm.ocp import FileFormatError
 from quietarm.studies.sweep.definition import JUMP
 from quietarm.studies.sweep.library import MoveLibrary
 from quietarm.studies.sweep.store import Store
-
-import quietarm as qa
 
 zarr = pytest.importorskip("zarr")
 

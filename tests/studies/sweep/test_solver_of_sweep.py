@@ -1,12 +1,12 @@
 """The solver of a sweep: what its dataset states, also one of before."""
 
 import pytest
+
+import quietarm as qa
 from quietarm.ocp.saved import plain, typed
 from quietarm.studies.sweep.cells import plan_cells
 from quietarm.studies.sweep.definition import Definition, PlanSettings
 from quietarm.studies.sweep.grid import Axis, Grid
-
-import quietarm as qa
 
 GRID = Grid(
     qa.PointToPoint(qa.SingleLinkManipulator(), target=0.5, duration=0.8),

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from lines import QUIETARM
-from quietarm.models import FlexibleBeam, SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
 
 import quietarm as qa
+from quietarm.models import FlexibleBeam, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
 
 MOVES = "sweep single-link --target 10deg:40deg:10deg --duration 600ms:1.4s:10ms --terms 3 --quiet"
 FEW = "sweep single-link --target 30deg,60deg --duration 0.8,1.2 --quiet --output few.zarr"

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
-from quietarm.metaheuristics.algorithms.vepso import VEPSO, least_crowded
 from target_problems import Constrained, Targets, state_of
+
+from quietarm.metaheuristics.algorithms.vepso import VEPSO, least_crowded
 
 # -- archive --
 

@@ -4,6 +4,7 @@ import moocore
 import pytest
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
+
 from quietarm.metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
 

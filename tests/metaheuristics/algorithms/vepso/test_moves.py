@@ -6,9 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from pymoo.optimize import minimize
+from target_problems import Targets, step
+
 from quietarm.metaheuristics.algorithms.velocity import INERTIA_2002, VelocityRule, clip, reflect
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
-from target_problems import Targets, step
 
 
 def test_velocity_is_inertia_plus_both_pulls():

@@ -4,9 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
+from target_problems import Targets, state_of
+
 from quietarm.metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
-from target_problems import Targets, state_of
 
 # -- arguments --
 

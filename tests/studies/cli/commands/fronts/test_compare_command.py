@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
-import quietarm.studies.reading.saved
 from saved_files import edit
+
+import quietarm.studies.reading.saved
 
 
 @pytest.fixture

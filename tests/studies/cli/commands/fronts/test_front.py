@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from saved_files import edit
+
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -19,7 +21,6 @@ from quietarm.ocp import (
     weighted_front,
 )
 from quietarm.ocp.front.points import LEVELS
-from saved_files import edit
 
 MOVE = "arm-on-flexible-link --target 90deg --duration 0.8 --terms 3"
 TASK, PROFILE = PointToPoint(ArmOnFlexibleLink(), np.pi / 2, 0.8), CycloidPolynomial(3)

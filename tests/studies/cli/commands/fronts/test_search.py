@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from lines import MOVE, run
+
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.score import final_share_of_box
 from quietarm.models import SingleLinkManipulator

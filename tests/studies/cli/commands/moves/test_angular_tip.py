@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+
 from quietarm.models import load_plant_file
 from quietarm.ocp import Front, Plan
 from quietarm.studies.compare import compare_plans

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import lsim
+
 from quietarm.ocp import Plan
 from quietarm.studies.identify import Identified
-from scipy.signal import lsim
 
 pytestmark = pytest.mark.slow
 

@@ -9,6 +9,7 @@ import pytest
 import scipy.io
 from fixed_steps import rollout
 from lines import MOVE
+
 from quietarm.metaheuristics import problem_of
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint

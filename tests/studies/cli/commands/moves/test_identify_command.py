@@ -5,9 +5,10 @@ from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
+from scipy.io import savemat
+
 from quietarm.ocp import Plan
 from quietarm.studies.identify import Identified
-from scipy.io import savemat
 
 TIME = np.arange(0, 6, 0.005)
 OMEGA, ZETA = 2 * math.pi * 3.2, 0.01

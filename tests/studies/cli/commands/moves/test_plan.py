@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lines import MOVE, run
+
 from quietarm.ocp import CopperLoss, Floor, Plan, PositivePower, plan_move
 
 

@@ -1,0 +1,138 @@
+"""The one door to CasADi's functions: built once, one thread at a time, and no Ctrl-C is lost."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext, redirect_stderr
+from threading import RLock, get_ident
+from typing import Any, TextIO, TypeVar
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from quietarm.models.interrupts import Watch
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+_TURN = RLock()
+"""Two threads that build with CasADi, or run a solver of it, at once may end the process."""
+
+
+class Compiled:
+    """A function of CasADi, built when it is first needed.
+
+    What CasADi does here waits for other threads that do the same, and Ctrl-C during it raises
+    KeyboardInterrupt after it: CasADi loses the signal, a solve seems to have failed, or a value is
+    missing and any error follows. Arrays are read and written without passing every number through
+    a list of Python, which is a third of a simulation by CVODES.
+
+    Parameters
+    ----------
+    build : callable
+        Builds the function.
+    silent : bool
+        Whether what a call writes to standard error is dropped.
+    side_by_side : bool
+        Whether several threads may call it at once: each call then has memory of its own.
+    """
+
+    def __init__(
+        self, build: Callable[[], ca.Function], silent: bool = False, side_by_side: bool = False
+    ) -> None:
+        self._build = build
+        self._function: ca.Function | None = None
+        self._silent = silent
+        self._turn = nullcontext() if side_by_side else _TURN
+        self._idle: list[_Buffer] = []
+
+    @property
+    def function(self) -> ca.Function:
+        """The function, to build others of."""
+        if self._function is None:
+            with _TURN, self._muted(), Watch(holds=False):
+                self._function = self._function or self._build()
+        return self._function
+
+    def __call__(self, *inputs: ArrayLike) -> list[Array]:
+        """The outputs as matrices, of inputs that are matrices, columns or numbers."""
+        columns = [np.asarray(values, dtype=float).T for values in inputs]
+        return self.run(columns, _transposed)
+
+    def run(self, inputs: Sequence[ArrayLike], read: Callable[[list[Array]], T]) -> T:
+        """What is read of the outputs; these and the inputs are transposed.
+
+        The next call overwrites the outputs: read copies of them.
+        """
+        function = self.function
+        with self._turn, self._muted(), Watch(holds=False):
+            try:
+                buffer = self._idle.pop()
+            except IndexError:  # all are in use by other threads, or there is none yet
+                buffer = _Buffer(function)
+            result = read(buffer.run(inputs))
+            self._idle.append(buffer)
+        return result
+
+    def solve(self, **inputs: Any) -> tuple[dict[str, Array], dict[str, Any]]:
+        """Columns of the outputs by name, and statistics, of a function that is a solver."""
+        function = self.function
+        with _TURN, self._muted(), Watch(holds=False):
+            outputs: dict[str, ca.DM] = function(**inputs)
+            columns = {name: values.full().ravel() for name, values in outputs.items()}
+            return columns, function.stats()
+
+    def _muted(self) -> AbstractContextManager[Any]:
+        return silent_errors() if self._silent else nullcontext()
+
+    @staticmethod
+    def guard(work: Callable[[], T]) -> T:
+        """What comes of work with CasADi that is no single function, guarded in the same way."""
+        with _TURN, Watch(holds=False):
+            return work()
+
+
+class _Buffer:
+    """Memory for one call of a function at a time."""
+
+    def __init__(self, function: ca.Function) -> None:
+        self._buffer: Any  # casadi's type says nothing of memoryviews
+        self._buffer, self._run = function.buffer()
+        self._inputs = [np.zeros(function.size_in(i)[::-1]) for i in range(function.n_in())]
+        self._outputs = [np.zeros(function.size_out(i)[::-1]) for i in range(function.n_out())]
+        for i, values in enumerate(self._inputs):
+            self._buffer.set_arg(i, values.data)
+        for i, values in enumerate(self._outputs):
+            self._buffer.set_res(i, values.data)
+
+    def run(self, inputs: Sequence[ArrayLike]) -> list[Array]:
+        for memory, values in zip(self._inputs, inputs):
+            memory[...] = values
+        self._run()
+        return self._outputs
+
+
+def _transposed(outputs: list[Array]) -> list[Array]:
+    return [values.T.copy() for values in outputs]
+
+
+def silent_errors() -> AbstractContextManager[Any]:
+    """Drop what this thread writes to standard error in the block; progress in others goes on."""
+    muted: Any = _Muted(sys.stderr)
+    return redirect_stderr(muted)
+
+
+class _Muted:
+    """A stream that is deaf to the thread that made it."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._thread = get_ident()
+
+    def write(self, text: str) -> int:
+        """Write, unless this comes from the thread."""
+        return len(text) if get_ident() == self._thread else self._stream.write(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)

@@ -1,0 +1,88 @@
+"""Functions of rows, a row a candidate: compiled for blocks of several sizes, and called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from itertools import repeat
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from quietarm.models.compiled import Compiled
+from quietarm.ocp.cost import COST
+
+Array = NDArray[np.float64]
+Unpack = Callable[[list[Array], int], tuple[Array, ...]]
+"""From outputs whose columns are candidates to copies with a row for each."""
+_PADDED_CALLS = 200
+"""So many times single rows take a larger function before one of their own is built."""
+
+
+class RowFunction:
+    """A function of rows, compiled for a block of rows when one of that size is first needed.
+
+    Parameters
+    ----------
+    build : callable
+        Builds the function for so many rows.
+    sizes : tuple of int
+        Rows of a compiled call, increasing: to build one takes as long as hundreds of its calls.
+    """
+
+    def __init__(self, build: Callable[[int], ca.Function], sizes: tuple[int, ...]) -> None:
+        self._build = build
+        self._sizes = sizes
+        self._compiled: dict[int, Compiled] = {}
+        self._padded_calls = 0
+
+    def __call__(self, inputs: Sequence[Array], unpack: Unpack, threads: int = 1) -> list[Array]:
+        """The outputs, a row each, a block for each thread at a time."""
+        largest = self._sizes[-1]
+        rows = max(len(inputs[0]), 1)
+        blocks = [[values[i : i + largest] for values in inputs] for i in range(0, rows, largest)]
+        # in this thread, whose time counts
+        sizes = [self.prepare(len(block[0])) for block in blocks]
+        if threads > 1 and len(blocks) > 1:
+            with ThreadPoolExecutor(threads) as pool:
+                parts = list(pool.map(self._evaluate, blocks, sizes, repeat(unpack)))
+        else:
+            parts = list(map(self._evaluate, blocks, sizes, repeat(unpack)))
+        return [np.concatenate(part) for part in zip(*parts)]
+
+    def prepare(self, rows: int) -> int:
+        """The size of block for so many rows, built; single ones use another for a while."""
+        size = next((size for size in self._sizes if size >= rows), self._sizes[-1])
+        if size in self._compiled:
+            return size
+        larger = [built for built in self._compiled if built > size]
+        if size == 1 and larger and self._padded_calls < _PADDED_CALLS:
+            self._padded_calls += 1
+            return min(larger)
+        compiled = Compiled(lambda: self._build(size), side_by_side=True)
+        with COST.timed("builds"):
+            _ = compiled.function
+        self._compiled[size] = compiled
+        return size
+
+    def _evaluate(self, block: Sequence[Array], size: int, unpack: Unpack) -> tuple[Array, ...]:
+        rows = len(block[0])
+        columns = [np.resize(values, (size, values.shape[1])).T for values in block]
+        return self._compiled[size].run(columns, lambda outputs: unpack(outputs, rows))
+
+
+def copy_rows(outputs: list[Array], rows: int) -> tuple[Array, ...]:
+    """Copies of the first rows."""
+    return tuple(values[:, :rows].T.copy() for values in outputs)
+
+
+def widen(matrix: ca.MX, columns: int) -> list[ca.MX]:
+    """The columns of a matrix of symbols, each repeated so many times."""
+    return [ca.repmat(column, 1, columns) for column in ca.horzsplit(matrix, 1)]
+
+
+def join(columns: Sequence[Any], rows: int) -> ca.MX:
+    """A dense matrix of so many rows from its columns."""
+    return ca.densify(ca.horzcat(ca.MX(rows, 0), *columns))
