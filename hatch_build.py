@@ -16,6 +16,7 @@ class PackageLinks(BuildHookInterface):
     """Makes `quietarm/ocp` and its like before an editable wheel is written."""
 
     def initialize(self, version: str, build_data: dict) -> None:
+        """Link every package that has no link yet."""
         if version != "editable":
             return
         checkout = Path(self.root)

@@ -7,6 +7,4 @@ file; the rooms below are `objective`, `problems` and `algorithms`. It may impor
 
 import lazy_loader
 
-from quietarm.metaheuristics.search import search as search  # over the module of its name
-
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

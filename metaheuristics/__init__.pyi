@@ -17,8 +17,8 @@ from .problems.catalogue import problem_of as problem_of
 from .problems.function import MoveFunction as MoveFunction
 from .problems.pymoo_problem import MoveProblem as MoveProblem
 from .problems.recorded import RecordedFunction as RecordedFunction
+from .run_search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
+from .run_search import SearchProgress as SearchProgress
+from .run_search import search as search
 from .score import Reference as Reference
-from .search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
-from .search import SearchProgress as SearchProgress
-from .search import search as search
 from .spread import Spread as Spread

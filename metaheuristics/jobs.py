@@ -23,7 +23,7 @@ from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, sid
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError
 from quietarm.metaheuristics.run_files import check_run, sealed
-from quietarm.metaheuristics.search import MOST_EVALUATIONS, search
+from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
 from quietarm.ocp import FileFormatError, Front, QuietarmError
 from quietarm.ocp.checks import unknown, whole
 from quietarm.ocp.record import Setting

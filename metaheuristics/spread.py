@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quietarm.metaheuristics.run_search import SEARCH_RESIDUAL
 from quietarm.metaheuristics.score import final_share_of_box
-from quietarm.metaheuristics.search import SEARCH_RESIDUAL
 from quietarm.ocp import Front
 
 

@@ -9,8 +9,8 @@ from .errors import InfeasibleTaskError as InfeasibleTaskError
 from .errors import QuietarmError as QuietarmError
 from .errors import SolverFailedError as SolverFailedError
 from .errors import SolveStatus as SolveStatus
-from .floor.search import Floor as Floor
-from .floor.search import energy_floor as energy_floor
+from .floor.energy_floor import Floor as Floor
+from .floor.energy_floor import energy_floor as energy_floor
 from .front.cross_check import CrossCheck as CrossCheck
 from .front.cross_check import cross_check as cross_check
 from .front.epsilon import epsilon_front as epsilon_front

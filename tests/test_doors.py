@@ -154,7 +154,10 @@ def test_a_field_of_a_task_is_of_its_class(field, value, told):
 @pytest.mark.parametrize(
     ("make", "told"),
     [
-        (lambda: qa.ocp.ModalState(0.01, 0), r"W is 0.01; give a list of numbers, one for each mode"),
+        (
+            lambda: qa.ocp.ModalState(0.01, 0),
+            r"W is 0.01; give a list of numbers, one for each mode",
+        ),
         (lambda: qa.Uncertainty(0.1), r"errors are 0.1; give them by name, as {'frequency': 0.1}"),
         (lambda: qa.Uncertainty("frequency"), "errors are 'frequency'; give them by name"),
         (

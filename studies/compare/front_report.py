@@ -12,7 +12,7 @@ from quietarm.metaheuristics.score import BETWEEN, INDICATORS
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.studies import figures
-from quietarm.studies.compare.fronts import (
+from quietarm.studies.compare.front_comparison import (
     Comparison,
     Group,
     compare_fronts,

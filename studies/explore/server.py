@@ -21,8 +21,8 @@ from tornado.routing import Matcher, Rule
 from tornado.web import RequestHandler
 
 from quietarm.studies.explore.move import Explored
-from quietarm.studies.explore.opening import menu
 from quietarm.studies.explore.page import Page
+from quietarm.studies.explore.start_page import menu
 
 _HOSTS = ("localhost", "127.0.0.1", "[::1]")
 """What this machine is called in a browser. A name of the network that leads here belongs to a

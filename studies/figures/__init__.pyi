@@ -2,11 +2,11 @@ from .comparison import KnownPoint as KnownPoint
 from .comparison import comparison_figure as comparison_figure
 from .comparison import draw_comparison as draw_comparison
 from .comparison import draw_gaps as draw_gaps
-from .fronts import draw_fronts as draw_fronts
-from .fronts import draw_hypervolume as draw_hypervolume
-from .fronts import draw_seed_energies as draw_seed_energies
-from .fronts import front_figure as front_figure
-from .fronts import polish_figure as polish_figure
+from .front_figures import draw_fronts as draw_fronts
+from .front_figures import draw_hypervolume as draw_hypervolume
+from .front_figures import draw_seed_energies as draw_seed_energies
+from .front_figures import front_figure as front_figure
+from .front_figures import polish_figure as polish_figure
 from .identification import identification_figure as identification_figure
 from .looks import BLUE as BLUE
 from .looks import COLOURS as COLOURS

@@ -30,7 +30,7 @@ from quietarm.studies.report.words import title_of
 from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
-    from quietarm.studies.compare.fronts import Comparison, Group
+    from quietarm.studies.compare.front_comparison import Comparison, Group
 
 _ASIDE = 0.9
 """A logarithmic axis begins at this residual [m], or at this multiple of the least of all."""

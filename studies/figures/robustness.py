@@ -23,7 +23,7 @@ from quietarm.studies.figures.looks import look
 from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
-    from quietarm.studies.compare.judged import Judged
+    from quietarm.studies.compare.judged_motions import Judged
 
 
 def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None = None) -> Axes:

@@ -28,8 +28,8 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.record import versions
 from quietarm.ocp.robustness import tolerated_residual
-from quietarm.studies.compare.judged import Judged, judge
-from quietarm.studies.compare.plans import compare_plans
+from quietarm.studies.compare.judged_motions import Judged, judge
+from quietarm.studies.compare.plan_comparison import compare_plans
 from quietarm.studies.reading.profiles import OTHERS
 from quietarm.studies.reproduce.paper import (
     CONDITIONS,

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from quietarm.ocp import Plan
 from quietarm.ocp.window import EQ_11
-from quietarm.studies.compare.plans import motions_table, remarks, shown
+from quietarm.studies.compare.plan_comparison import motions_table, remarks, shown
 from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
 from quietarm.studies.figures.looks import ORANGE, PINK, WINE
 from quietarm.studies.report import Report

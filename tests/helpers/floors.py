@@ -4,7 +4,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from quietarm.ocp.floor import search
+from quietarm.ocp.floor import energy_floor
 
 INTERVALS = 24
 
@@ -12,5 +12,5 @@ INTERVALS = 24
 @contextmanager
 def coarse_floors():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(search, "FIRST_INTERVALS", INTERVALS)
+        patch.setattr(energy_floor, "FIRST_INTERVALS", INTERVALS)
         yield

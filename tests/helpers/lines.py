@@ -13,7 +13,7 @@ TWO_TERMS = "--coefficients=0.003347,-0.1697"  # the paper's Table 1
 COARSELY = [
     sys.executable,
     "-c",
-    f"from quietarm.ocp.floor import search; search.FIRST_INTERVALS = {INTERVALS}\n"
+    f"from quietarm.ocp.floor import energy_floor; energy_floor.FIRST_INTERVALS = {INTERVALS}\n"
     "from quietarm.studies.report import progress; progress.PLAIN_SECONDS = 0.1\n"
     "from quietarm.studies.cli import main; main()",
 ]

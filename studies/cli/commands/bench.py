@@ -59,15 +59,15 @@ def bench(given: Given) -> None:
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics import LostJobsError, finished_jobs, run_jobs
-    from quietarm.metaheuristics.search import SECONDS_OF_CANDIDATE
-    from quietarm.studies.bench.asked import (
+    from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
+    from quietarm.studies.bench.page import reported_runs
+    from quietarm.studies.bench.planned_jobs import (
         imports_on,
         jobs_of,
         problems_of,
         spell_method,
         write_references,
     )
-    from quietarm.studies.bench.page import reported_runs
     from quietarm.studies.bench.results import Results, imported_runs
     from quietarm.studies.bench.statistics import say_power_of
     from quietarm.studies.reading.saved import load_runs

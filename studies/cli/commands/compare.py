@@ -15,13 +15,13 @@ from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import ERROR, busy, command, option
 from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.types import INPUT, NAMES
-from quietarm.studies.compare.judged import SAMPLES
+from quietarm.studies.compare.judged_motions import SAMPLES
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import print_lines
 
 if TYPE_CHECKING:
     from quietarm.ocp import Front, Plan
-    from quietarm.studies.compare.fronts import Comparison
+    from quietarm.studies.compare.front_comparison import Comparison
 
 
 @command(
@@ -50,7 +50,7 @@ def compare(given: Given) -> None:
       quietarm compare plan.json robust.json --error frequency=8% --baselines zvd,ruckig
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.ocp import Front, Plan
-    from quietarm.studies.compare.opening import open_answers
+    from quietarm.studies.compare.load_answers import open_answers
 
     with busy("comparing"):
         answers = open_answers(given.files)
@@ -67,8 +67,8 @@ def compare(given: Given) -> None:
 
 def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
     """Plans and baselines; `measured` errors are those that the plans are made for."""
-    from quietarm.studies.compare.judged import merged_ranges
-    from quietarm.studies.compare.plans import compare_plans, plans_report
+    from quietarm.studies.compare.judged_motions import merged_ranges
+    from quietarm.studies.compare.plan_comparison import compare_plans, plans_report
     from quietarm.studies.reading.saved import without_checksum
 
     ranges = once(given.errors, "--error ")

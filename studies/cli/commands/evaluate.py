@@ -25,7 +25,7 @@ from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.reading.profiles import families
 from quietarm.studies.reading.table import TABLES
-from quietarm.studies.report.fronts import search_lines
+from quietarm.studies.report.front_rows import search_lines
 from quietarm.studies.report.moves import path_rows
 
 

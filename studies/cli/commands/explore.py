@@ -32,7 +32,7 @@ def explore(given: Given) -> None:
       quietarm explore dual-link
       quietarm explore plan.json --no-browser
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.studies.explore.opening import is_file, open_file, open_plant
+    from quietarm.studies.explore.start_page import is_file, open_file, open_plant
 
     try:
         from quietarm.studies.explore.server import serve

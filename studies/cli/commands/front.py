@@ -28,7 +28,7 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.quantities import parse_weights
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.reading.saved import load_front
-from quietarm.studies.report.fronts import failure_lines, gradient_lines, polish_lines
+from quietarm.studies.report.front_rows import failure_lines, gradient_lines, polish_lines
 
 _METHODS = {"epsilon": partial(epsilon_front, at=LEVELS), "weighted": weighted_front}
 _SEARCHES = {

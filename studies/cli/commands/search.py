@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
-from quietarm.metaheuristics.search import SECONDS_OF_CANDIDATE
+from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
@@ -33,7 +33,7 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT
 from quietarm.studies.reading.saved import load_front
-from quietarm.studies.report.fronts import search_lines
+from quietarm.studies.report.front_rows import search_lines
 from quietarm.studies.report.progress import search_display
 from quietarm.studies.report.saving import STDOUT, File
 

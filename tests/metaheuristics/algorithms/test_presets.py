@@ -21,7 +21,7 @@ def test_every_algorithm_of_pymoo_for_two_objectives_is_there():
     folder = Path(import_module("pymoo.algorithms.moo").__path__[0])
     modules = {path.stem for path in folder.glob("*.py")} - {"__init__"}
     sources = {preset.kind.partition(":")[0] for preset in PRESETS.values()}
-    mended = import_module("quietarm.metaheuristics.algorithms.mended")
+    mended = import_module("quietarm.metaheuristics.algorithms.pymoo_fixes")
     own = {name for name, _ in inspect.getmembers(mended, inspect.ismodule)}
     named = {source.rpartition(".")[2] for source in sources} | own
     assert modules - left_out <= named
@@ -48,7 +48,7 @@ def test_the_defaults_are_those_of_the_algorithm_itself(name):
         return
     module, _, kind = PRESETS[name].kind.partition(":")
     kind = getattr(import_module(module), kind)
-    if kind.__module__ == "quietarm.metaheuristics.algorithms.mended":
+    if kind.__module__ == "quietarm.metaheuristics.algorithms.pymoo_fixes":
         kind = kind.__mro__[1]
     plain = kind(building.directions(12) if PRESETS[name].by_directions else 12)
     (_, built), (_, wanted) = contents(PRESETS[name].build(12)), contents(plain)

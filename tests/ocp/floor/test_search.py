@@ -11,7 +11,7 @@ from moves import ARM
 
 import quietarm as qa
 from quietarm.ocp import SolveStatus
-from quietarm.ocp.floor.search import Level
+from quietarm.ocp.floor.energy_floor import Level
 
 pytestmark = pytest.mark.slow
 

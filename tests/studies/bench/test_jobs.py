@@ -11,7 +11,7 @@ from pymoo.algorithms.moo.nsga2 import NSGA2
 
 import quietarm as qa
 from quietarm.metaheuristics import Job, LostJobsError, finished_jobs, run_jobs
-from quietarm.studies.bench.asked import jobs_of, problems_of
+from quietarm.studies.bench.planned_jobs import jobs_of, problems_of
 from quietarm.studies.bench.results import Results
 
 pytestmark = pytest.mark.slow

@@ -14,7 +14,7 @@ from quietarm.models import LinearAxis, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint, evaluate_coefficients
 from quietarm.studies.compare import compare_plans
 from quietarm.studies.explore.move import Explored
-from quietarm.studies.explore.opening import open_file, open_plant
+from quietarm.studies.explore.start_page import open_file, open_plant
 from quietarm.studies.sweep.grid import Axis, Grid
 
 CRANE = "linear-axis --set omega1=0.6283 --set zeta1=0.002 --target 8 --duration 16 --quiet"

@@ -14,7 +14,7 @@ from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies.compare import compare_plans
 from quietarm.studies.compare.baselines import ruckig_motion, shaped
-from quietarm.studies.compare.plans import plans_report
+from quietarm.studies.compare.plan_comparison import plans_report
 
 BEAM = FlexibleBeam(omega=2 * pi * 3.2, zeta=0.01)
 MOVE = PointToPoint(BEAM, pi / 3, 0.7, torque_limit=1.5, acceleration_limit=80.0)

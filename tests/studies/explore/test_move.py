@@ -17,8 +17,8 @@ from quietarm.ocp import (
 )
 from quietarm.studies.cli import main
 from quietarm.studies.explore.move import Explored
-from quietarm.studies.explore.opening import menu, open_file, open_plant
 from quietarm.studies.explore.page import Page
+from quietarm.studies.explore.start_page import menu, open_file, open_plant
 from quietarm.studies.sweep.library import MoveLibrary
 
 LINK = SingleLinkManipulator()

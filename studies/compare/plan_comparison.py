@@ -15,7 +15,7 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies import figures
 from quietarm.studies.compare.baselines import baseline, choose_baselines
-from quietarm.studies.compare.judged import (
+from quietarm.studies.compare.judged_motions import (
     SAMPLES,
     Judged,
     judge,

@@ -256,8 +256,8 @@ def _own(
     """A copy of an algorithm that was given, and what it is set to."""
     from pymoo.core.algorithm import Algorithm as PymooAlgorithm
 
-    from quietarm.metaheuristics.algorithms.own import own_algorithm
-    from quietarm.metaheuristics.algorithms.own_settings import settings_of
+    from quietarm.metaheuristics.algorithms.algorithm_settings import settings_of
+    from quietarm.metaheuristics.algorithms.user_algorithm import own_algorithm
 
     given: Any = algorithm
     if inspect.isclass(given):
