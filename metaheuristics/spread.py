@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from quietarm.metaheuristics.run_search import SEARCH_RESIDUAL
-from quietarm.metaheuristics.score import final_share_of_box
 from quietarm.ocp import Front
 
 
@@ -42,6 +41,8 @@ class Spread:
 
 def hypervolumes(fronts: Sequence[Front]) -> Spread:
     """Quartiles of the final hypervolume, as a share of the reference box."""
+    from quietarm.metaheuristics.score import final_share_of_box  # loads moocore
+
     return Spread.of([final_share_of_box(front) for front in fronts])
 
 

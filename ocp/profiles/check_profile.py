@@ -82,7 +82,7 @@ def _refuse_difference(
     profile: JointProfile, motion: _Comparison, start: float, target: float
 ) -> None:
     """ValueError where a motion is not at rest at the ends, or its derivatives are wrong."""
-    refuse = partial(_refuse_wrong, profile.name)
+    refuse = partial(_refuse_wrong, profile)
     ends = np.array([start, target])
     what = f"its end of a move from {start:.4g} to {target:.4g}"
     remedy = "let angle, or input of a cycloid, go from 0 to 1"
@@ -100,7 +100,7 @@ def _refuse_difference(
 
 
 def _refuse_wrong(
-    name: str, quantity: str, values: Array, expected: Array, what: str, remedy: str
+    profile: JointProfile, quantity: str, values: Array, expected: Array, what: str, remedy: str
 ) -> None:
     """ValueError where the first values, those at the ends first, are not as expected."""
     allowed = _TOLERANCE * max(float(np.abs(values).max()), 1e-9)
@@ -109,7 +109,7 @@ def _refuse_wrong(
     if wrong.any():
         k = int(wrong.argmax())
         raise ValueError(
-            f"profile {name!r}: its {quantity} is {compared[k]:.4g} at "
+            f"profile {profile.name!r}: its {quantity} is {compared[k]:.4g} at "
             f"{_FRACTIONS[k]:.3g} of the duration, where {what} is {expected[k]:.4g}; "
             f"{remedy}"
         )

@@ -22,7 +22,6 @@ from rich.progress import (
 )
 
 from quietarm.metaheuristics import SearchProgress
-from quietarm.metaheuristics.score import final_share_of_box
 from quietarm.ocp import Front
 from quietarm.studies.report.words import print_lines
 from quietarm.studies.tips import tip_scale, tip_words
@@ -155,6 +154,8 @@ class SearchDisplay:
 
 
 def _found(front: Front) -> str:
+    from quietarm.metaheuristics.score import final_share_of_box  # loads moocore
+
     share = final_share_of_box(front)
     return (
         f"seed {front.record.seed} is done: hypervolume {share:.4f} in {front.record.seconds:.1f} s"

@@ -36,7 +36,7 @@ MOVE, ENERGY = blocks("moves", "python")
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
-COUNTS, CRANE = blocks("plants", "python")
+COUNTS, CRANE, GANTRY = blocks("plants", "python")
 STARTED = "README-0"
 """The block that is started as it stands; all others, and most of Python, cost no process each."""
 
@@ -145,9 +145,14 @@ def test_plain_casadi_finds_what_the_page_says(run_python):
     assert f"{plan.energy:.4f} J" in PAGES["casadi"]  # a little more, as the limits hold everywhere
 
 
+def test_a_plant_of_two_joints_takes_what_the_page_says(run_python):
+    (joules,) = re.findall(r"^It takes ([\d.]+) J\.$", PAGES["plants"], re.MULTILINE)
+    assert run_python(GANTRY) == f"{joules} J\n"
+
+
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 15
+    assert sum(len(blocks(page, "python")) for page in others) == 16
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "sh", "text"}
 

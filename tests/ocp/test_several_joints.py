@@ -104,7 +104,7 @@ def test_a_gantry_takes_the_energy_of_both_carriages(gantry):
     assert np.abs(states[:2, -1]).max() < 1e-6
 
 
-@pytest.mark.parametrize("solver", ["sqp", "ipopt"])
+@pytest.mark.parametrize("solver", [qa.Sqp(), qa.Ipopt()], ids=["sqp", "ipopt"])
 @pytest.mark.parametrize(
     "energy", [PositivePower(), qa.CopperLoss(3.0)], ids=["positive", "copper"]
 )
@@ -121,7 +121,7 @@ def test_every_energy_sums_over_the_joints(solver, energy):
 
 
 def test_both_solvers_agree(links):
-    assert qa.plan_move(LINKS, solver="ipopt").energy == pytest.approx(links.energy, rel=1e-6)
+    assert qa.plan_move(LINKS, solver=qa.Ipopt()).energy == pytest.approx(links.energy, rel=1e-6)
 
 
 def test_limits_hold_for_each_joint_by_its_name(links):
