@@ -13,21 +13,29 @@ from quietarm.models.joint_motion import Expression, JointMotion, deg, joint_uni
 from quietarm.models.linear_axis import LinearAxis
 from quietarm.models.plant import Plant, known_plants, parameter
 from quietarm.models.plant_file import PlantFile, file_of_plant, load_plant_file
+from quietarm.models.robot import Base, Beam, GeometricPath, Measured, Robot, RobotOnPath, Spring
 from quietarm.models.single_link import SingleLinkManipulator
 
 __version__ = "2.0.0.dev0"
 
 __all__ = [
     "ArmOnFlexibleLink",
+    "Base",
+    "Beam",
     "Body",
     "DualLinkManipulator",
     "Expression",
     "FlexibleBeam",
+    "GeometricPath",
     "JointMotion",
     "LinearAxis",
+    "Measured",
     "Plant",
     "PlantFile",
+    "Robot",
+    "RobotOnPath",
     "SingleLinkManipulator",
+    "Spring",
     "__version__",
     "deg",
     "file_of_plant",

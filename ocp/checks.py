@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
 import inspect
-import math
-import operator
-import re
 import reprlib
 from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
@@ -14,59 +10,47 @@ from os import PathLike
 from typing import Annotated, Any, ParamSpec, TypeVar
 
 from msgspec import Meta
+from quietarm.models.checks import (
+    finite,
+    has_no,
+    install,
+    nearest,
+    nearest_name,
+    not_negative,
+    positive,
+    spelling,
+    unknown,
+    whole,
+)
+
+__all__ = [
+    "Count",
+    "CountFromOne",
+    "NotNegative",
+    "Positive",
+    "Share",
+    "cut",
+    "finite",
+    "has_no",
+    "hashable",
+    "install",
+    "instance",
+    "known",
+    "nearest",
+    "nearest_name",
+    "not_negative",
+    "positive",
+    "printable",
+    "several",
+    "spelling",
+    "takes",
+    "unknown",
+    "whole",
+]
 
 T = TypeVar("T")
 P = ParamSpec("P")
 R = TypeVar("R")
-
-
-def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
-    """A finite number as a float."""
-    wanted = f"number in {unit}" if unit else "number"
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} is {value!r}; give a {wanted}") from None
-    if not math.isfinite(number):
-        raise ValueError(f"{name} is {value}; give a finite {wanted}")
-    if abs(number) > most:
-        raise ValueError(f"{name} is {number:g}; give at most {most:g}{why and f' ({why})'}")
-    return number
-
-
-def positive(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
-    """A positive finite number as a float."""
-    number = finite(name, value, unit, most, why)
-    if number <= 0:
-        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
-    return number
-
-
-def not_negative(name: str, value: Any, unit: str = "") -> float:
-    """A finite number of 0 or more as a float."""
-    number = finite(name, value, unit)
-    if number < 0:
-        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give 0 or more")
-    return number
-
-
-def whole(name: str, value: Any, least: int, most: int | None = None, because: str = "") -> int:
-    """A whole number as an int."""
-    try:
-        number = operator.index(value)
-    except TypeError:
-        number = least - 1
-    if number < least:
-        raise ValueError(f"{name} is {value!r}; give a whole number from {least} up")
-    if most is not None and number > most:
-        raise ValueError(f"{name} is {number}; give at most {most}{because and f': {because}'}")
-    return number
-
-
-_ALIKE = 0.55
-"""Share of letters in common from which on a name is asked for."""
-_PART = 3
-"""So many letters of a longer name are enough."""
 
 
 def instance(name: str, value: Any, *kinds: type[T]) -> T:
@@ -101,7 +85,7 @@ def _instead_of(value: Any, kind: type[Any]) -> str:
     meant = value if isinstance(value, type) and issubclass(value, kind) else None
     if isinstance(value, str):
         named = known(kind)
-        meant = named.get(_nearest(value, named))
+        meant = named.get(nearest_name(value, named))
     if meant is not None:
         return f"an object, as {_construction(meant)}"
     if isinstance(value, str | PathLike) and hasattr(kind, "load"):
@@ -165,37 +149,6 @@ def _check_kind(name: str, value: Any, kind: Kind) -> None:
         instance(name, value, kind)
 
 
-def unknown(what: str, name: str, known: Collection[str], also: str = "") -> str:
-    """The message about a name that is not known."""
-    return f"unknown {what} {name!r}{nearest(name, known)} (known: {', '.join(known)}{also})"
-
-
-def has_no(owner: str, what: str, name: str, known: Collection[str]) -> str:
-    """The message about a name that something does not have."""
-    listed = ", ".join(known) or "none"
-    return f"{owner} has no {what} {name!r}{nearest(name, known)} (it has: {listed})"
-
-
-def nearest(name: str, known: Collection[str]) -> str:
-    """A question for a message, with the known name that is most like an unknown one."""
-    near = _nearest(name, known)
-    return f"; did you mean {near!r}?" if near else ""
-
-
-def _nearest(name: str, known: Collection[str]) -> str:
-    """The known name that is most like another; an empty one where none is."""
-    same = [other for other in known if spelling(other) == spelling(name)]
-    part = [other for other in known if len(name) >= _PART and name.lower() in other.lower()]
-    near = same or part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=_ALIKE)
-    return near[0] if near else ""
-
-
-def spelling(name: str) -> str:
-    """A name without what people spell differently: NSGA-II and nsga_2 are nsga2."""
-    small = re.sub(r"[-_ ]", "", name.lower())
-    return re.sub(r"i{2,3}$", lambda match: str(len(match[0])), small)
-
-
 def cut(text: str, most: int) -> str:
     """A text of at most so many letters, without its middle where it is longer."""
     if len(text) <= most:
@@ -219,11 +172,6 @@ def known(family: type[T]) -> dict[str, type[T]]:
         name = vars(kind).get("name")
         found |= ({name: kind} if isinstance(name, str) else {}) | known(kind)
     return found
-
-
-def install(extra: str) -> str:
-    """How to install what an extra of this project holds."""
-    return f"install it: pip install 'quietarm[{extra}]', or '.[{extra}]' in a clone"
 
 
 NotNegative = Annotated[float, Meta(ge=0)]
