@@ -98,7 +98,7 @@ class BlackBox(Function):
         motion = qa.symbolic_rollout(
             problem.task.plant, problem.profile, a, problem.task.move, STEPS
         )
-        speeds = [joint.speed for joint in motion.joints]
+        speeds = [sample.path.speed for sample in motion.samples]
         nodes = [ca.vertcat(*map(ca.vec, each)) for each in (motion.torque, speeds, motion.weights)]
         self._simulate = ca.Function("simulate", [a], nodes)
 

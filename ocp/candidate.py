@@ -18,13 +18,13 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import JointMotion
 from quietarm.ocp.checks import takes
 from quietarm.ocp.interrupts import keep_interrupts
-from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, Ranged
+from quietarm.ocp.limits import JERK, QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile, check_motion, check_profile
 from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.simulation.objective import Motion
+from quietarm.ocp.simulation.objective import PEAKS, Motion
 from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
@@ -118,18 +118,29 @@ class Candidate(Ranged):
         """All values; peaks include those between the samples."""
         task, joint = self.task, self._samples.motion
         past_target = (self._largest(joint.angle[None]) - task.target) * np.sign(task.span)
-        known = [one for one in QUANTITIES.values() if one.name != "jerk" or self.path.has_jerk]
-        peaks = {one.peak: max(-low, high) for one in known for low, high in [self._range(one)]}
-        others = [
-            limit.quantity for limit in task.limits
-            if not limit.is_peak and (limit.name not in QUANTITIES or limit.quantity.peak in peaks)
-        ]  # fmt: skip
+        known = {
+            quantity.name: self._range(quantity)
+            for quantity in QUANTITIES.values()
+            if quantity.derivative != JERK or self.path.has_jerk
+        }
+        peaks = {
+            QUANTITIES[name].peak: max(-least, largest)
+            for name, (least, largest) in known.items()
+            if QUANTITIES[name].peak in PEAKS
+        }
+        ranges = {name: sides for name, sides in known.items() if f"peak_{name}" not in peaks}
+        by_direction = [
+            limit.quantity
+            for limit in task.limits
+            if not limit.is_peak and (limit.name not in QUANTITIES or limit.name in known)
+        ]
+        ranges |= {quantity.name: self._range(quantity) for quantity in by_direction}
         return Motion(
             residual=self.residual,
             energy=self.energy,
             net_work=self._run.net_work,
             overshoot=max(0.0, float(past_target.max())),
-            ranges={one.name: self._range(one) for one in others},
+            ranges=ranges,
             **peaks,
         )
 
@@ -146,9 +157,7 @@ class Candidate(Ranged):
 
     def _ranges(self, quantity: Quantity) -> NDArray[np.float64]:
         """The same of each of its values on this plant."""
-        samples = self._samples
-        values = quantity.of(samples.motion, list(samples.tips.T), samples.torque)
-        return self._largest(np.array(values))
+        return self._largest(np.array(quantity.values(self._samples.sample)))
 
     def _largest(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
         """Least and largest value of each row of samples."""

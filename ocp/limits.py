@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models import Expression, Plant
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp.checks import not_negative
+from quietarm.ocp.sample import Sample, symbolic_sample
 
-Of = Callable[[JointMotion, Sequence[Expression], Expression], Sequence[Expression]]
-"""(joint's motion, tip displacements, joint torque) -> values."""
+ValuesOf = Callable[[Sample], Sequence[Expression]]
+"""A quantity's values by the sample of a plant."""
 
 
 @dataclass(frozen=True)
@@ -25,26 +26,37 @@ class Quantity:
     Attributes
     ----------
     name, unit, label : str
-        Its name, SI unit, and what it is in words.
-    of : callable
-        (joint's motion, tip displacements, joint torque) -> its values.
+        Its name, SI unit of a rotary joint, and what it is in words.
+    values : callable
+        Its values by the sample of a plant.
     derivative : int or None
         Which time derivative of the joint's angle it is; None where it follows from the modes.
     in_scenarios : bool
         Whether its limit holds in all scenarios of an uncertain task; else for the nominal plant.
+    panel : int
+        Its place among the panels of a picture, from the joint's motion to the torque.
+    always_drawn : bool
+        Whether a picture of a motion has it where no task limits it, too.
     """
 
     name: str
     unit: str
     label: str
-    of: Of
+    values: ValuesOf
     derivative: int | None = None
     in_scenarios: bool = False
+    panel: int = 5
+    always_drawn: bool = False
 
     @property
     def limit(self) -> str:
         """Name of its limit in a task."""
         return f"{self.name}_limit"
+
+    @property
+    def option(self) -> str:
+        """Its limit on the command line."""
+        return f"--{self.name.replace('_', '-')}-limit"
 
     @property
     def peak(self) -> str:
@@ -53,22 +65,64 @@ class Quantity:
 
     def rows(self, plant: Plant) -> int:
         """How many values it has at one time."""
-        still = JointMotion(0.0, 0.0, 0.0, 0.0)
-        return len(self.of(still, plant.tip_displacements([0.0] * plant.modes), 0.0))
+        return len(self.values(symbolic_sample(plant)))
 
 
 QUANTITIES: Mapping[str, Quantity] = {
     quantity.name: quantity
     for quantity in (
-        Quantity("torque", "N m", "joint torque", lambda joint, tips, torque: [torque]),
-        Quantity("speed", "rad/s", "joint speed", lambda joint, *_: [joint[1]], 1),
-        Quantity("acceleration", "rad/s^2", "joint acceleration", lambda joint, *_: [joint[2]], 2),
-        Quantity("jerk", "rad/s^3", "joint jerk", lambda joint, *_: [joint[3]], 3),
-        Quantity("deflection", "m", "tip displacement", lambda joint, tips, _: tips, None, True),
+        Quantity(
+            name="torque",
+            unit="N m",
+            label="joint torque",
+            values=lambda sample: sample.torques,
+            panel=6,
+            always_drawn=True,
+        ),
+        Quantity(
+            name="speed",
+            unit="rad/s",
+            label="joint speed",
+            values=lambda sample: [joint.speed for joint in sample.joints],
+            derivative=1,
+            panel=1,
+            always_drawn=True,
+        ),
+        Quantity(
+            name="acceleration",
+            unit="rad/s^2",
+            label="joint acceleration",
+            values=lambda sample: [joint.acceleration for joint in sample.joints],
+            derivative=2,
+            panel=2,
+            always_drawn=True,
+        ),
+        Quantity(
+            name="jerk",
+            unit="rad/s^3",
+            label="joint jerk",
+            values=lambda sample: [joint.jerk for joint in sample.joints],
+            derivative=3,
+            panel=3,
+        ),
+        Quantity(
+            name="deflection",
+            unit="m",
+            label="tip displacement",
+            values=lambda sample: sample.tips,
+            in_scenarios=True,
+            panel=4,
+            always_drawn=True,
+        ),
     )
 }
-"""Every quantity by its name; each has fields for its limit in a task and for its peak in a
-`Motion`."""
+"""Every quantity by its name. A new one is one entry here, and the field of its limit in
+`PointToPoint`; solvers, checks, options, pictures and reports read both."""
+
+
+def unit_of(unit: str, joint: str, tip_unit: str) -> str:
+    """A unit as it is of a kind of joint, or of tip: of tips m and m/s, or rad and rad/s."""
+    return tip_unit + unit[1:] if unit.startswith("m") else joint_unit(unit, joint)
 
 
 @lru_cache
@@ -77,7 +131,7 @@ def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
     return {
         name: replace(
             quantity,
-            unit=tip_unit if quantity.unit == "m" else joint_unit(quantity.unit, joint),
+            unit=unit_of(quantity.unit, joint, tip_unit),
             label=joint_label(quantity.label, joint),
         )
         for name, quantity in QUANTITIES.items()
@@ -85,7 +139,10 @@ def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
 
 
 RESIDUAL, TORQUE_SPEED = "residual", "torque_speed"
-_RESIDUAL = Quantity(RESIDUAL, "m", "residual vibration", lambda *_: [], None, True)
+JERK = 3
+"""The derivative of the angle that no plant needs, and that is nowhere where the acceleration
+jumps."""
+_RESIDUAL = Quantity(RESIDUAL, "m", "residual vibration", lambda _: [], in_scenarios=True)
 """It has no values on the way, and follows from the state on arrival."""
 Bounds = float | tuple[float, float]
 """The largest absolute value, or the least and the largest one."""
@@ -93,7 +150,7 @@ Bounds = float | tuple[float, float]
 
 def ask_for_jerk(quantities: Iterable[Quantity]) -> bool:
     """Whether any of these quantities follows from the joint's jerk, which no plant needs."""
-    return any(quantity.name == "jerk" for quantity in quantities)
+    return any(quantity.derivative == JERK for quantity in quantities)
 
 
 @dataclass(frozen=True)
@@ -159,14 +216,12 @@ class TorqueSpeedLine:
         """The speed at which no torque is left [rad/s]."""
         return min(torque / fall for torque, fall in self._pieces if fall)
 
-    def __call__(
-        self, joint: JointMotion, tips: Sequence[Expression], torque: Expression
-    ) -> Sequence[Expression]:
-        """The torque as shares of what each piece gives, in both directions of the speed."""
-        del tips
+    def __call__(self, sample: Sample) -> Sequence[Expression]:
+        """Each joint's torque as shares of what a piece gives, in both directions of the speed."""
         signs = {True: (1, -1), False: (1,)}
         return [
-            (torque + sign * fall * joint[1]) / most
+            (torque + sign * fall * joint.speed) / most
+            for torque, joint in zip(sample.torques, sample.joints)
             for most, fall in self._pieces
             for sign in signs[fall > 0]
         ]
@@ -286,8 +341,8 @@ class Limit:
     @property
     def bounds(self) -> str:
         """The bounds in words, as 0.3 N m or -30 to 40 rad/s^2."""
-        if isinstance(self.quantity.of, TorqueSpeedLine):
-            return str(self.quantity.of)
+        if isinstance(self.quantity.values, TorqueSpeedLine):
+            return str(self.quantity.values)
         ends = f"{self.size:g}" if self.both_ways else f"{self.lower:g} to {self.upper:g}"
         return f"{ends} {self.quantity.unit}"
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import JointMotion
 from quietarm.ocp import JointProfile, PointToPoint
+from quietarm.ocp.sample import sample_plant
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 
@@ -81,13 +82,12 @@ class Rival:
             dW = [x[first + modes + i] for i in range(modes)]
             ddW = list(plant.modal_accelerations(joint, W, dW))
             rates += [*dW, *ddW]
-            torque = plant.torque(joint, W, dW, ddW)
-            tips = list(plant.tip_displacements(W))
+            sample = sample_plant(plant, joint, W, dW, ddW)
             if number == 0:
-                power = torque * joint.speed
+                power = sample.power
             for limit in task.limits:
                 if number == 0 or limit.quantity.in_scenarios:
-                    values = limit.quantity.of(joint, tips, torque)
+                    values = limit.quantity.values(sample)
                     limited += [value / limit.size for value in values]
         return ca.vertcat(*rates, power), ca.vertcat(power, *limited)
 

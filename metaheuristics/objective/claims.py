@@ -85,6 +85,8 @@ def check_plan(plan: Plan, name: str) -> None:
     peaks = ((name, quantity.unit, 0.0) for name, quantity in known.items())
     for figure, unit, least in (*FIGURES, *peaks):
         stated, gives = plan.motion.peak(figure), found.peak(figure)
+        if figure in known and not plan.motion.states(figure):
+            continue
         if stated != gives and not agrees(stated, gives, least):
             figure = f"peak {figure}" if figure in known else figure
             raise ValueError(

@@ -9,16 +9,18 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.models import Expression, Plant
-from quietarm.ocp.energy import Energy, power_of
+from quietarm.models import Expression, JointMotion, Plant
+from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import Limit, Quantity
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
+from quietarm.ocp.sample import sample_plant, total
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, Step, step
 from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.objective import smooth_power
 from quietarm.ocp.simulation.rollout import march
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.problem import ENERGY
@@ -64,6 +66,8 @@ def _interval(
 ) -> ca.Function:
     """(column, length) -> state after, collocation equations, power, smooth energy, quantities.
 
+    The power of the first joint at the nodes comes before that of the second.
+
     A column is the state before the interval (joint, W, W'), the last derivative of the joint, and
     W'' at the nodes. Quantities of the joint count where the interval begins, all else at nodes.
     """
@@ -74,19 +78,22 @@ def _interval(
     modal = ca.vertcat(x[orders:states], x[states + 1 :])
     W, dW, *ddW = map(ca.vertsplit, ca.vertsplit(modal, modes))
     one = Step(h, [], modes)
-    equations, power, rest = list[Expression](), list[Expression](), list[Expression]()
-    limited = [[] if one.derivative is None else [begun[one.derivative]] for one in quantities]
+    equations, powers, rest = list[Expression](), list[list[Expression]](), list[Expression]()
+    at_begin = sample_plant(plant, JointMotion(*begun), W, dW, ddW[0])
+    limited = [
+        list(quantity.values(at_begin)) if quantity.derivative else [] for quantity in quantities
+    ]
     for share, node in zip(GAUSS_NODES, one.nodes(W, dW, ddW)):
         joint = joint_after(begun, share * h)
         by_plant = plant.modal_accelerations(joint, node.W, node.dW)
         equations += [own - other for own, other in zip(node.ddW, by_plant)]
-        torque = plant.torque(joint, node.W, node.dW, node.ddW)
-        power.append(power_of(torque, joint.speed))
-        rest.append(energy.smooth(torque, joint.speed))
-        tips = plant.tip_displacements(node.W)
+        sample = sample_plant(plant, joint, *node)
+        powers.append(sample.powers)
+        rest.append(smooth_power(energy, sample))
         for quantity, values in zip(quantities, limited):
-            if quantity.derivative is None:
-                values += quantity.of(joint, tips, torque)
+            if not quantity.derivative:
+                values += quantity.values(sample)
+    power = [of_node for of_joint in zip(*powers) for of_node in of_joint]
     W_after, dW_after = one.end(W, dW, ddW)
     after = [*joint_after(begun, h)[:orders], *W_after, *dW_after]
     outputs = [ca.vertcat(*rows) for rows in (after, equations, power, rest, *limited)]
@@ -120,7 +127,8 @@ class FloorProgram:
             )
         self.task, self.smooth, self._limits = task, smooth, task.limits
         self._states = 2 + smooth + 2 * task.plant.modes
-        self._parts = NODES if task.energy.absolute else 0
+        joints = len(task.plant.joint_names)
+        self._parts = NODES * joints if task.energy.absolute else 0
         quantities = [limit.quantity for limit in task.limits]
         self._interval = _interval(task.plant, smooth, quantities, task.energy)
         self._solver = lru_cache(maxsize=4)(self._build)
@@ -129,7 +137,8 @@ class FloorProgram:
         self._scale = np.abs(columns).max(axis=1)
         self._scale[0] = abs(task.span)
         self._scale[self._scale == 0] = 1.0
-        energy = task.energy.absolute * np.abs(power) + np.abs(rest)
+        of_joints = np.abs(power).reshape(-1, *rest.shape).sum(axis=0)
+        energy = task.energy.absolute * of_joints + np.abs(rest)
         self._measures = np.array([energy.max() or 1.0, *(x or 1.0 for x in self._peaks(limited))])
 
     def _peaks(self, limited: Sequence[Array]) -> list[float]:
@@ -155,7 +164,7 @@ class FloorProgram:
             equations / scale[states + 1 :, :],
         ]
         if parts:
-            spent += self.task.energy.absolute * (forward + backward)
+            spent += self.task.energy.absolute * total(ca.vertsplit(forward + backward, NODES))
             equal.append(forward - backward - power / of_energy)
         positive = list[ca.MX]()
         for limit, peak, value, of in zip(self._limits, ca.vertsplit(peaks), values, measures):

@@ -148,8 +148,8 @@ def declared_bounds(task: PointToPoint) -> RigidBounds:
 
     line = by_name.get(TORQUE_SPEED)
     no_torque_beyond = math.inf
-    if line is not None and isinstance(line.quantity.of, TorqueSpeedLine):
-        no_torque_beyond = line.quantity.of.largest_speed
+    if line is not None and isinstance(line.quantity.values, TorqueSpeedLine):
+        no_torque_beyond = line.quantity.values.largest_speed
     return RigidBounds(
         min(sides("speed")[0], no_torque_beyond), *sides("acceleration"), *sides("jerk")
     )
@@ -182,8 +182,8 @@ def _torque_limits(limits: Iterable[Limit]) -> Iterable[float]:
     for limit in limits:
         if limit.name == "torque":
             yield min(-limit.lower, limit.upper)
-        if isinstance(limit.quantity.of, TorqueSpeedLine):
-            yield limit.quantity.of.points[0][0]
+        if isinstance(limit.quantity.values, TorqueSpeedLine):
+            yield limit.quantity.values.points[0][0]
 
 
 class _Needed(NamedTuple):
@@ -210,7 +210,7 @@ class _Needed(NamedTuple):
         accelerating = JointMotion(angle, 0.0, 1.0)
         turning = JointMotion(angle, 1.0, 0.0)
         bent = static_deflections(plant, angle)
-        tips = plant.tip_displacements(bent.tolist())
+        tips = plant.tips_at(accelerating, bent.tolist())
         return (
             float(plant.torque(accelerating, bent.tolist(), still, still)),
             max(abs(float(tip)) for tip in tips),

@@ -17,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.ocp.cost import COST
-from quietarm.ocp.energy import Energy, power_of
+from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time, silent_errors
 from quietarm.ocp.profiles.free_motion import Law, PiecewiseMotion
+from quietarm.ocp.sample import symbolic_sample
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.grid import Grid
@@ -106,14 +107,15 @@ def _figures(
     given, grid = ca.MX.sym("p", *shape), Grid(steps)
     errors, initial = ca.MX.sym("e", len(names)), ca.MX.sym("x", 2 * plant.modes)
     states, outputs = _along(plant, law, shape, grid.samples, names)(given, errors, initial)
-    rows = ca.vertsplit(outputs)
-    torque, speed = (
-        [samples[1 + node : -1 : NODES, :].T for node in range(NODES)]
-        for samples in (ca.reshape(row, -1, shape[1]) for row in (rows[-1], rows[1]))
-    )
+    pieces = [ca.reshape(row, -1, shape[1]) for row in ca.vertsplit(outputs)]
+    layout = symbolic_sample(plant)
+    nodes = [
+        layout.with_values(row[1 + node : -1 : NODES, :].T for row in pieces)
+        for node in range(NODES)
+    ]
     h = given[-1, :].T @ grid.columns()[1]
-    power = [power_of(*node) for node in zip(torque, speed)]
-    energy, net_work = spent(definition, torque, speed, h), integrated(power, h)
+    energy = spent(definition, nodes, h)
+    net_work = integrated([sample.power for sample in nodes], h)
     figures = [outputs, states[:, -1], ca.sum1(energy), ca.sum1(net_work)]
     dense = [ca.densify(figure) for figure in figures]  # a plant's output may be zero throughout
     return BufferedFunction(ca.Function("figures", [given, errors, initial], dense))

@@ -70,12 +70,13 @@ class FreeVibration:
         angles, modes = np.atleast_1d(np.asarray(angle, dtype=float)), plant.modes
         of_rates = np.zeros((len(angles), 2 * modes, 2 * modes))
         of_rates[:, :modes, modes:] = np.eye(modes)
-        system = modal_system(plant, JointMotion(ca.DM(angles), 0.0, 0.0))
+        at_rest = JointMotion(ca.DM(angles), 0.0, 0.0)
+        system = modal_system(plant, at_rest)
         for part, columns in ((system.K, slice(0, modes)), (system.D, slice(modes, None))):
             of_rates[:, modes:, columns] = -_stacked(part, len(angles))
         of_tips = np.zeros((len(angles), plant.tips, 2 * modes))
         units = np.eye(modes).tolist()
-        by_mode = [list(plant.tip_displacements(unit)) for unit in units]
+        by_mode = [list(plant.tips_at(at_rest, unit)) for unit in units]
         of_tips[:, :, :modes] = _stacked(by_mode, len(angles)).transpose(0, 2, 1)
         one = np.ndim(angle) == 0
         self.matrix, self.tips = (of_rates[0], of_tips[0]) if one else (of_rates, of_tips)

@@ -4,34 +4,45 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression
-from quietarm.ocp.energy import Energy, power_of
-from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, Ranged
+from quietarm.ocp.energy import Energy
+from quietarm.ocp.limits import RESIDUAL, Quantity, Ranged
+from quietarm.ocp.sample import Sample, total
 from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, TO_QUADRATIC
 from quietarm.ocp.simulation.grid import Grid
 
 _TINY = 1e-300
+_RESULTS = (RESIDUAL, "energy")
+"""Figures of a motion that are no peaks of a quantity."""
 
 
 def spent(
-    energy: Energy,
-    torque: Sequence[Expression],
-    speed: Sequence[Expression],
-    h: Expression,
-    unbroken: bool = True,
+    energy: Energy, nodes: Sequence[Sample], h: Expression, unbroken: bool = True
 ) -> Expression:
-    """F2 from torque and speed at the Gauss nodes of every step, a row a candidate."""
-    nodes = list(zip(torque, speed))
-    power, beyond = [power_of(*node) for node in nodes], list[Expression]()
+    """F2, the sum over the joints, from the Gauss nodes of every step; a row a candidate."""
+    by_joint = zip(*(sample.powers for sample in nodes))
+    resolved = [_resolved(power, h, unbroken) for power in by_joint]
+    smooth = integrated([smooth_power(energy, sample) for sample in nodes], h)
+    return energy.absolute * total(resolved) + smooth
+
+
+def smooth_power(energy: Energy, sample: Sample) -> Expression:
+    """The smooth integrand of an energy [W], the sum over the joints."""
+    pairs = zip(sample.torques, sample.joints)
+    return total([energy.smooth(torque, joint.speed) for torque, joint in pairs])
+
+
+def _resolved(power: Sequence[Expression], h: Expression, unbroken: bool) -> Expression:
+    """Integral of the absolute power of one joint."""
+    beyond = list[Expression]()
     if unbroken:  # across a break neighbours say nothing
         beyond = [ca.horzcat(*power) @ weights for weights in beyond_quadratic(h.shape[1])]
-    smooth = integrated([energy.smooth(*node) for node in nodes], h)
-    return energy.absolute * resolved_energy(power, h, *beyond) + smooth
+    return resolved_energy(power, h, *beyond)
 
 
 def integrated(at_nodes: Sequence[Expression], h: Expression) -> Expression:
@@ -119,7 +130,7 @@ class Motion(Ranged):
     net_work : float
         Integral of torque * speed over the move [J]: dissipated and stored energy.
     peak_torque, peak_speed, peak_acceleration : float
-        Largest absolute values during the move [N m, rad/s, rad/s^2].
+        Largest absolute values of any joint during the move [N m, rad/s, rad/s^2].
     peak_deflection : float
         Largest absolute tip displacement during the move [m].
     overshoot : float
@@ -127,7 +138,7 @@ class Motion(Ranged):
     peak_jerk : float or None
         Largest absolute value during the move [rad/s^3]; None where the acceleration jumps.
     ranges : mapping of str to (float, float)
-        Least and largest value of each quantity that has a limit by direction.
+        Least and largest value of each quantity that has a limit by direction, or no peak above.
     """
 
     residual: float
@@ -145,11 +156,23 @@ class Motion(Ranged):
         """As of `Ranged`; from minus to plus the peak where no more is known."""
         if quantity.name in self.ranges:
             return self.ranges[quantity.name]
-        known = quantity.name in (RESIDUAL, *QUANTITIES)
-        peak = self.peak(quantity.name) if known else math.inf
+        peak = self.peak(quantity.name)
         return -peak, peak
+
+    def states(self, name: str) -> bool:
+        """Whether the peak of a quantity is stated: an older file has none of a newer one."""
+        return name in self.ranges or f"peak_{name}" in PEAKS
 
     def peak(self, name: str) -> float:
         """The residual, or the peak of a quantity, by name: infinite where it is not known."""
-        value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
-        return math.inf if value is None else float(value)
+        if name in _RESULTS:
+            return float(getattr(self, name))
+        value = getattr(self, f"peak_{name}", None)
+        if value is not None:
+            return float(value)
+        least, largest = self.ranges.get(name, (-math.inf, math.inf))
+        return max(-least, largest)
+
+
+PEAKS = tuple(entry.name for entry in fields(Motion) if entry.name.startswith("peak_"))
+"""Attributes of a motion that are peaks; what else has a peak has a range."""

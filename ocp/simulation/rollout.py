@@ -8,13 +8,14 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
-from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models import Expression, Plant
 from quietarm.models.joint_motion import is_zero
 from quietarm.ocp.checks import takes
-from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, power_of
+from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import Quantity, ask_for_jerk
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.sample import Sample, sample_plant
 from quietarm.ocp.simulation.collocation import (
     GAUSS_WEIGHTS,
     NodeState,
@@ -36,9 +37,8 @@ class SymbolicRollout:
 
     Attributes
     ----------
-    joints, states, tips, torque : list
-        Angle [rad], speed and acceleration of the joint at each Gauss node, the modes: W [m], W',
-        W'', the tip displacements [m], and the joint torque [N m].
+    samples : list of Sample
+        The plant at each Gauss node: joints, modes, tips and torques.
     arrival : Expression
         W (m) and then W' (m/s) at arrival, shape (candidates, 2 * modes).
     h : Expression
@@ -47,20 +47,21 @@ class SymbolicRollout:
         Whether no break lies between the steps; what counts as the energy.
     """
 
-    joints: list[JointMotion]
-    states: list[NodeState]
-    tips: list[Sequence[Expression]]
-    torque: list[Expression]
+    samples: list[Sample]
     arrival: Expression
     h: Expression
     unbroken: bool
     definition: Energy
 
     @property
+    def torque(self) -> list[Expression]:
+        """Torque of the first joint at each Gauss node [N m]."""
+        return [sample.torques[0] for sample in self.samples]
+
+    @property
     def power(self) -> list[Expression]:
-        """Mechanical power of the joint at each Gauss node [W]."""
-        nodes = zip(self.torque, self.joints)
-        return [power_of(torque, joint.speed) for torque, joint in nodes]
+        """Mechanical power of all joints together at each Gauss node [W]."""
+        return [sample.power for sample in self.samples]
 
     @property
     def weights(self) -> list[Expression]:
@@ -70,13 +71,11 @@ class SymbolicRollout:
     @property
     def energy(self) -> Expression:
         """F2 [J], one row a candidate."""
-        speed = [joint.speed for joint in self.joints]
-        return spent(self.definition, self.torque, speed, self.h, self.unbroken)
+        return spent(self.definition, self.samples, self.h, self.unbroken)
 
     def values(self, quantity: Quantity) -> list[Expression]:
         """A quantity at the nodes, (candidates, steps) each: all nodes of its first value first."""
-        nodes = zip(self.joints, self.tips, self.torque)
-        by_value = zip(*(quantity.of(*node) for node in nodes))
+        by_value = zip(*map(quantity.values, self.samples))
         return [0 * self.h + x for at_nodes in by_value for x in at_nodes]
 
 
@@ -172,14 +171,10 @@ def symbolic_rollout(
     every_step = collocate(modal_system(plant, joint), h)
     W, dW, arrival = march(*every_step.transition(), h.shape, initial)
     states = every_step.nodes(W, dW, every_step.accelerations(W, dW))
-    modes = modes_at_nodes(states)
-    torque, tips = plant.torque(joint, *modes), plant.tip_displacements(modes.W)
-    fields = zip(*(at_each_node(x, h) for x in joint if x is not None))
+    everywhere = sample_plant(plant, joint, *modes_at_nodes(states))
+    by_node = zip(*(at_each_node(value, h) for value in everywhere.values))
     return SymbolicRollout(
-        joints=[JointMotion(*field) for field in fields],
-        states=states,
-        tips=list(zip(*(at_each_node(x, h) for x in tips))),
-        torque=at_each_node(torque, h),
+        samples=[everywhere.with_values(values) for values in by_node],
         arrival=arrival,
         h=h,
         unbroken=not breaks,

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes
-from quietarm.ocp.energy import power_of
+from quietarm.ocp.sample import Sample, sample_plant, symbolic_sample
 
 
 @dataclass(frozen=True)
@@ -20,62 +22,77 @@ class Trajectory:
     ----------
     time : ndarray, shape (samples,)
         Times [s]; arrival is at the task's duration.
-    joint : ndarray, shape (samples, 3)
-        Angle, speed and acceleration of the joint [rad, rad/s, rad/s^2].
-    modes : ndarray, shape (samples, modes)
-        Modal amplitudes W [m].
-    tips : ndarray, shape (samples, tips)
-        Tip displacements [m].
-    torque : ndarray, shape (samples,)
-        Joint torque [N m]; after arrival, what holds the joint against the vibration.
-    power : ndarray, shape (samples,)
-        torque * speed [W].
-    jerk : ndarray, shape (samples,)
-        Rate of change of the joint's acceleration [rad/s^3]; between jumps of the acceleration.
+    sample : Sample
+        Joints, modes, tips and torques, every value of shape (samples,); jerks between jumps of
+        the acceleration; torques after arrival hold the joints against the vibration.
     """
 
     time: NDArray[np.float64]
-    joint: NDArray[np.float64]
-    modes: NDArray[np.float64]
-    tips: NDArray[np.float64]
-    torque: NDArray[np.float64]
-    power: NDArray[np.float64]
-    jerk: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for array in vars(self).values():
-            array.setflags(write=False)
+    sample: Sample
 
     @classmethod
     def from_outputs(
         cls, plant: Plant, time: NDArray[np.float64], outputs: NDArray[np.float64]
     ) -> Trajectory:
         """Name the rows of `outputs_of`, whose columns are samples at these times [s]."""
-        rows, m = outputs.T.copy(), 4 + plant.modes
-        return cls(
-            time=time.copy(),
-            joint=rows[:, :3],
-            modes=rows[:, 4:m],
-            tips=rows[:, m:-1],
-            torque=rows[:, -1],
-            power=power_of(rows[:, -1], rows[:, 1]),
-            jerk=rows[:, 3],
-        )
+        own_time = time.copy()
+        rows = np.ascontiguousarray(outputs).copy()
+        for array in (own_time, rows):
+            array.setflags(write=False)
+        return cls(own_time, symbolic_sample(plant).with_values(rows))
 
     @property
     def motion(self) -> JointMotion:
-        """Angle, speed, acceleration and jerk of the joint, each of shape (samples,)."""
-        angle, speed, acceleration = self.joint.T
-        return JointMotion(angle, speed, acceleration, self.jerk)
+        """Angle, speed, acceleration and jerk along the path, each of shape (samples,)."""
+        return self.sample.path
+
+    @cached_property
+    def joint(self) -> NDArray[np.float64]:
+        """Angle, speed and acceleration of the first joint, shape (samples, 3)."""
+        return _columns(self.sample.joints[0][:3])
+
+    @property
+    def jerk(self) -> NDArray[np.float64]:
+        """Rate of change of the first joint's acceleration [rad/s^3]."""
+        return self.sample.joints[0].jerk
+
+    @cached_property
+    def modes(self) -> NDArray[np.float64]:
+        """Modal amplitudes W [m], shape (samples, modes)."""
+        return _columns(self.sample.W)
+
+    @cached_property
+    def tips(self) -> NDArray[np.float64]:
+        """Tip displacements [m], shape (samples, tips)."""
+        return _columns(self.sample.tips)
+
+    @property
+    def torque(self) -> NDArray[np.float64]:
+        """Torque of the first joint [N m]."""
+        return self.sample.torques[0]
+
+    @cached_property
+    def power(self) -> NDArray[np.float64]:
+        """Sum of torque * speed over the joints [W]."""
+        power = self.sample.power
+        power.setflags(write=False)
+        return power
+
+
+def _columns(values: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Values side by side, read-only."""
+    columns = np.column_stack(values)
+    columns.setflags(write=False)
+    return columns
 
 
 def outputs_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression:
-    """Rows angle, speed, acceleration, jerk, W, tips, torque of a trajectory; a column a sample.
+    """Rows of a trajectory, the values of its `Sample`; a column a sample.
 
-    The states, (2 * modes, samples), are W [m] and then W' [m/s].
+    The motion along the path has its jerk; the states, (2 * modes, samples), are W [m] and then
+    W' [m/s].
     """
-    W, dW, ddW = _modes(plant, joint, states)
-    rows = (*joint, *W, *plant.tip_displacements(W), plant.torque(joint, W, dW, ddW))
+    rows = sample_plant(plant, joint, *_modes(plant, joint, states)).values
     return ca.vertcat(*(ca.DM.zeros(1, states.shape[1]) + row for row in rows))
 
 

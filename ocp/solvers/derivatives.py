@@ -15,6 +15,7 @@ import numpy as np
 from quietarm.models import Expression, Plant
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.limits import ask_for_jerk
+from quietarm.ocp.sample import total
 from quietarm.ocp.simulation.collocation import (
     GAUSS_WEIGHTS,
     NODES,
@@ -263,20 +264,25 @@ class _Differentiated:
         return product(transpose(self.o_v), of_outputs, self.count)
 
     def hessian_factors(
-        self, energy: EnergyDerivatives, of_outputs: list[ca.MX], of_forcing: list[ca.MX]
+        self,
+        energies: Sequence[EnergyDerivatives],
+        of_outputs: list[ca.MX],
+        of_forcing: list[ca.MX],
     ) -> tuple[list[ca.MX], list[ca.MX]]:
         """Sensitivities, and what second derivatives make of them: their product is the Hessian."""
         steps, pairs = self.shape[1], list[tuple[Any, Any]]()
-        power_a = [outputs[0] for outputs in self.o_a]
         l_vv = self.node.hessian(self.point, [*of_forcing, *of_outputs])
         for v_a, table in zip(self.v_a, self.along(l_vv)):
             turned = product(table, v_a, self.count)
             pairs += [(v_a[i], turned[i]) for i in sorted({row for row, _ in table})]
-        at_nodes = ca.horzsplit(self.of_energy * energy.by_power_twice, steps)
-        bends: list[tuple[Any, Any]] = list(zip(at_nodes, power_a))
-        for weights, bend in energy.zeros:
-            terms = zip(map(self.repeat, weights), power_a)
-            bends.append((self.of_energy[:, :steps] * bend, sum(w * x for w, x in terms)))
+        bends = list[tuple[Any, Any]]()
+        for joint, energy in enumerate(energies):
+            power_a = [outputs[joint] for outputs in self.o_a]
+            at_nodes = ca.horzsplit(self.of_energy * energy.by_power_twice, steps)
+            bends += zip(at_nodes, power_a)
+            for weights, bend in energy.zeros:
+                terms = zip(map(self.repeat, weights), power_a)
+                bends.append((self.of_energy[:, :steps] * bend, sum(w * x for w, x in terms)))
         pairs += [(x, self.repeat(bend) * x) for bend, x in bends]
         return [left for left, _ in pairs], [right for _, right in pairs]
 
@@ -295,11 +301,15 @@ class _Differentiated:
     def compile(self) -> ca.Function:
         """All of it as a function."""
         (rows, steps), own = self.shape, self.node.own
-        power, *smooth = self.outputs[:own]
-        energy = differentiate_energy(
-            self.definition, power, smooth, self.h, self.length, self.width
-        )
-        energy_o = [energy.by_power, energy.by_smooth][:own]
+        powers = self.outputs[: self.node.powers]
+        smooth = self.outputs[self.node.powers : own]
+        energies = [  # the smooth part, of all joints, counts with the first
+            differentiate_energy(
+                self.definition, power, [] if joint else smooth, self.h, self.length, self.width
+            )
+            for joint, power in enumerate(powers)
+        ]
+        energy_o = [*(energy.by_power for energy in energies), energies[0].by_smooth][:own]
         of_outputs = [self.of_energy * x for x in energy_o]
         of_outputs += ca.horzsplit(self.inputs[6], NODES * steps)
         of_forcing = self.forcing_multipliers(of_outputs)
@@ -307,13 +317,13 @@ class _Differentiated:
         energy_a = sum(along[i][j] * self.o_a[j][i] for i in range(own) for j in range(NODES))
         limited_a = zip(*(outputs[own:] for outputs in self.o_a))
         found = [
-            [energy.value],
+            [total([energy.value for energy in energies])],
             [self.arrival],
             self.outputs[own:],
             [ca.sum2(x) for x in ca.horzsplit(energy_a, steps)],
             [self.arrival_a],
             [x for of_value in limited_a for x in of_value],
-            *self.hessian_factors(energy, of_outputs, of_forcing),
+            *self.hessian_factors(energies, of_outputs, of_forcing),
             self.path_hessian(of_outputs, of_forcing),
         ]
         outputs = [_join(x, rows) for x in found]

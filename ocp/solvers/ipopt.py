@@ -29,7 +29,8 @@ from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.simulation.objective import integrated
+from quietarm.ocp.sample import total
+from quietarm.ocp.simulation.objective import integrated, smooth_power
 from quietarm.ocp.simulation.rollout import Simulation, SymbolicRollout
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
@@ -146,9 +147,11 @@ def compile_program(
 
 def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
     """The energy with the root of power^2 + width^2 [W] in place of |power|."""
-    speeds = [joint.speed for joint in rollout.joints]
-    smooth = [energy.smooth(*node) for node in zip(rollout.torque, speeds)]
-    rounded = [ca.sqrt(power**2 + width**2) for power in rollout.power]
+    smooth = [smooth_power(energy, sample) for sample in rollout.samples]
+    rounded = [
+        total([ca.sqrt(power**2 + width**2) for power in sample.powers])
+        for sample in rollout.samples
+    ]
     return energy.absolute * integrated(rounded, rollout.h) + integrated(smooth, rollout.h)
 
 

@@ -15,10 +15,12 @@ from typing import Any
 import casadi as ca
 from quietarm.models import JointMotion, Plant
 from quietarm.models.joint_motion import is_zero
-from quietarm.ocp.energy import Energy, power_of
+from quietarm.ocp.energy import Energy
 from quietarm.ocp.limits import Quantity
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.sample import sample_plant
 from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.objective import smooth_power
 from quietarm.ocp.uncertainty import perturb_plant
 
 Shape = tuple[int, int]
@@ -148,8 +150,8 @@ path_of = lru_cache(maxsize=8)(Path)
 class Node:
     """A Gauss node: what forces the modes, f, and the outputs o of the point v = (y, W, W', W'').
 
-    The outputs are the power, the energy's smooth part where it has one, and the values of the
-    limited quantities: `count` in all, of which the first `own` belong to the energy.
+    The outputs are the joints' `powers`, the energy's smooth part where it has one, and the values
+    of the limited quantities: `count` in all, of which the first `own` belong to the energy.
     """
 
     def __init__(
@@ -168,12 +170,12 @@ class Node:
         joint, v = path.motion_with_jerk(y, move), [*y, *modes]
         perturbed = perturb_plant(plant, dict(zip(names, errors)))
         f = [zero + x for x in perturbed.modal_accelerations(joint, W, dW)]
-        torque, tips = perturbed.torque(joint, W, dW, ddW), perturbed.tip_displacements(W)
-        smooth = energy.smooth(torque, joint.speed)
-        own = [power_of(torque, joint.speed), *([] if is_zero(smooth) else [smooth])]
-        limited = [x for quantity in quantities for x in quantity.of(joint, tips, torque)]
+        sample = sample_plant(perturbed, joint, W, dW, ddW)
+        smooth = smooth_power(energy, sample)
+        own = [*sample.powers, *([] if is_zero(smooth) else [smooth])]
+        limited = [x for quantity in quantities for x in quantity.values(sample)]
         o, inputs = [zero + x for x in (*own, *limited)], [*v, *move, *errors]
-        self.own, self.count = len(own), len(o)
+        self.powers, self.own, self.count = len(sample.powers), len(own), len(o)
         self._first = Tables(
             inputs, {(i, 0): x for i, x in enumerate(o)}, jacobian(f, y), jacobian(o, v)
         )

@@ -101,9 +101,9 @@ TASK = (
     option("--duration", metavar="TIME", help="Travelling time; quietarm plan also takes "
            "`fastest`, the shortest within the limits."),
     *(
-        option(f"--{one.name}-limit", metavar=f"[{one.unit}]",
-               help=f"Largest {one.label} during the move; by direction as LEAST:LARGEST.")
-        for one in QUANTITIES.values()
+        option(quantity.option, metavar=f"[{quantity.unit}]",
+               help=f"Largest {quantity.label} during the move; by direction as LEAST:LARGEST.")
+        for quantity in QUANTITIES.values()
     ),
     option("--torque-speed", metavar="TORQUE@SPEED", help="Torque limit by speed, as points: "
            "1.5Nm@0,0.8Nm@190rpm; of a linear axis 100N@0,40N@500mm/s."),

@@ -11,10 +11,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
+from quietarm.models.joint_motion import ROTARY, joint_label
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.checks import instance, takes, unknown
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES, unit_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -39,10 +39,17 @@ _LABELS = {
     "power": ("power", "W"),
     **{one.name: (one.label, one.unit) for one in QUANTITIES.values()},
 }
-QUANTITIES_DRAWN = ("angle", "speed", "acceleration", "jerk", "deflection", "torque", "power")
+QUANTITIES_DRAWN = (
+    "angle",
+    *sorted(QUANTITIES, key=lambda name: QUANTITIES[name].panel),
+    "power",
+)
 """What can be drawn: the joint's angle, the quantities that a task may limit, and the power."""
-_WHERE_LIMITED = ("jerk", "power")
-"""These are no panels of a motion, but where a task limits them."""
+_ALWAYS_DRAWN = (
+    "angle",
+    *(name for name, quantity in QUANTITIES.items() if quantity.always_drawn),
+)
+"""These are panels of every motion; others are where a task limits them."""
 PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
@@ -127,7 +134,7 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
     """A quantity of a motion at the times of its trajectory, a curve each, in the shown unit."""
     at = motion.trajectory
     if quantity in QUANTITIES:
-        columns = QUANTITIES[quantity].of(at.motion, list(at.tips.T), at.torque)
+        columns = QUANTITIES[quantity].values(at.sample)
     else:
         columns = [at.joint[:, 0] if quantity == "angle" else at.power]
     scale = scale_of(quantity, motion.task.plant.tip_unit)
@@ -137,7 +144,7 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
 def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
     """A quantity with the unit that is shown: tip displacement [mm]."""
     label, unit = _LABELS[quantity]
-    unit = tip_scale(tip_unit)[0] if unit == "m" else raised(joint_unit(unit, joint))
+    unit = tip_scale(tip_unit)[0] if unit == "m" else raised(unit_of(unit, joint, tip_unit))
     return f"{joint_label(label, joint)} [{unit}]"
 
 
@@ -174,9 +181,7 @@ def motion_figure(
     lines = lines_of(motions)
     if quantities is None:
         limited = {limit.name for line in lines for limit in line.plan.task.limits}
-        quantities = [
-            name for name in QUANTITIES_DRAWN if name in limited or name not in _WHERE_LIMITED
-        ]
+        quantities = [name for name in QUANTITIES_DRAWN if name in limited or name in _ALWAYS_DRAWN]
     count = len(quantities)
     columns = min(count, 2) if count <= 4 else 3
     rows = -(-count // columns)

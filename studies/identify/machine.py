@@ -212,7 +212,7 @@ def in_torque_alone(plant: Plant, name: str) -> bool:
     W, dW = ([ca.SX.sym("W") for _ in range(plant.modes)] for _ in range(2))
     changed = with_values(plant, {name: symbol})
     ddW = changed.modal_accelerations(joint, W, dW)
-    moves = ca.SX(ca.vertcat(*ddW, *changed.tip_displacements(W)))
+    moves = ca.SX(ca.vertcat(*ddW, *changed.tips_at(joint, W)))
     torque = ca.SX(changed.torque(joint, W, dW, ddW))
     return not ca.depends_on(moves, symbol) and ca.depends_on(torque, symbol)
 

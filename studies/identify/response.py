@@ -128,8 +128,8 @@ class Response:
     def _signals(self, plant: Plant, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> ca.SX:
         """What is recorded, a row each, of modal amplitudes and their rates."""
         made = {
-            "tip": iter(plant.tip_displacements(W)),
-            "acceleration": iter(plant.tip_displacements(ddW)),
+            "tip": iter(plant.tips_at(joint, W)),
+            "acceleration": iter(plant.tips_at(joint, ddW)),
             "torque": iter([plant.torque(joint, W, dW, ddW)]),
         }
         return ca.vertcat(*(next(made[kind]) for kind in self.kinds))

@@ -22,13 +22,11 @@ def _compiled(plant, profile, steps, breaks, energy):
         plant, profile, ca.vertsplit(a), move, steps, jerk=True, breaks=breaks,
         initial=ca.vertsplit(initial), energy=energy,
     )  # fmt: skip
-    nodes = list(zip(found.joints, found.states, found.torque, strict=True))
     quantities = [
-        ca.vertcat(*(value for joint, state, torque in nodes
-                     for value in one.of(joint, plant.tip_displacements(state.W), torque)))
-        for one in QUANTITIES.values()
-    ]  # fmt: skip
-    angles = ca.vertcat(*(joint.angle for joint in found.joints))
+        ca.vertcat(*(value for sample in found.samples for value in quantity.values(sample)))
+        for quantity in QUANTITIES.values()
+    ]
+    angles = ca.vertcat(*(sample.path.angle for sample in found.samples))
     net_work = integrated(found.power, found.h)
     outputs = [*quantities, angles, found.arrival, found.energy, net_work]
     return ca.Function("rollout", [a, row], outputs)

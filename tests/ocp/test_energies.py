@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from fixed_steps import rollout
 from numpy.polynomial import Polynomial
+from quietarm.models import JointMotion
 from quietarm.ocp.checks import known
+from quietarm.ocp.sample import Sample
 from quietarm.ocp.simulation.collocation import GAUSS_NODES
 from quietarm.ocp.simulation.objective import spent
 from scipy.integrate import quad
@@ -130,11 +132,18 @@ def test_energies_are_values():
             wrong()
 
 
+def _driven(torque, speed):
+    """A sample of one joint of which energies read torque and speed."""
+    joint = JointMotion(0.0, speed, 0.0)
+    nothing = {"W": [], "dW": [], "ddW": [], "tips": [], "tip_speeds": []}
+    return Sample(path=joint, joints=[joint], torques=[torque], **nothing)
+
+
 def test_a_smooth_step_is_integrated_exactly_up_to_degree_five():
     # Torque and speed of degree 2 in time: torque^2 has degree 4.
     torque, speed = Polynomial([0.3, -1.0, 2.0]), Polynomial([1.0, 0.5])
-    nodes = [[of(x) for x in GAUSS_NODES] for of in (torque, speed)]
-    found = spent(qa.CopperLoss(0.5), *[[ca.DM(x) for x in of] for of in nodes], ca.DM(1.0))
+    nodes = [_driven(ca.DM(torque(x)), ca.DM(speed(x))) for x in GAUSS_NODES]
+    found = spent(qa.CopperLoss(0.5), nodes, ca.DM(1.0))
     assert float(found) == pytest.approx((torque**2).integ()(1.0) / 0.25, rel=1e-12)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
 from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.sample import sample_plant
 from scipy.integrate import solve_ivp
 
 MOVES = {
@@ -30,8 +31,8 @@ def follow(plan):
     joint = plan.profile.motion(coefficients, t / task.duration, *move, jerk=True)
     ddW = task.plant.modal_accelerations(joint, W, dW)
     rates = ca.Function("rates", [t, x], [ca.vertcat(*dW, *ddW)])
-    torque, tips = task.plant.torque(joint, W, dW, ddW), task.plant.tip_displacements(W)
-    rows = {name: ca.vertcat(*q.of(joint, tips, torque)) for name, q in QUANTITIES.items()}
+    sample = sample_plant(task.plant, joint, W, dW, ddW)
+    rows = {name: ca.vertcat(*q.values(sample)) for name, q in QUANTITIES.items()}
     values = ca.Function("values", [t, x], list(rows.values()))
     run = solve_ivp(
         lambda at, state: rates(at, state).full()[:, 0], (0.0, task.duration),

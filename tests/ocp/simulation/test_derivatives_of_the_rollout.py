@@ -45,8 +45,8 @@ def derivatives(plant, profile, energy):
         jerk=True, breaks=shape.breaks(move[2]), energy=ENERGIES[energy],
     )  # fmt: skip
     values = [found.energy, found.arrival.T]
-    for joint, torque in zip(found.joints, found.torque, strict=True):
-        values += [ca.vec(joint.speed), ca.vec(joint.jerk), ca.vec(torque)]
+    for node in found.samples:
+        values += map(ca.vec, (node.path.speed, node.path.jerk, *node.torques))
     values = ca.vertcat(*values)
     hessian, gradient = ca.hessian(found.energy, a)
     return ca.Function("derivatives", [a], [values, ca.jacobian(values, a), gradient, hessian])

@@ -47,18 +47,17 @@ def case(request, plants):
     rollout = symbolic_rollout(
         plant, profile, a, MOVE, STEPS, jerk=True, initial=_ringing(plant.modes)
     )
-    nodes = list(zip(rollout.joints, rollout.states, rollout.torque, strict=True))
     smooth = integrated(
-        [energy.smooth(torque, joint.speed) for joint, _, torque in nodes], rollout.h
+        [energy.smooth(node.torques[0], node.path.speed) for node in rollout.samples], rollout.h
     )
     rounded = integrated([ca.sqrt(p * p + width**2) for p in rollout.power], rollout.h)
     # the fast solver's steps do not ask their neighbours
     sharp = resolved_energy(rollout.power, rollout.h)
     values = ca.veccat(*(
-        ca.MX.zeros(1, STEPS) + quantity.of(joint, plant.tip_displacements(state.W), torque)[i]
+        ca.MX.zeros(1, STEPS) + quantity.values(node)[i]
         for quantity in quantities
-        for i in range(quantity.rows(plant))
-        for joint, state, torque in nodes
+        for i in range(quantity.rows(plants[request.param[0]]))
+        for node in rollout.samples
     ))  # fmt: skip
     symbols = {
         "a": a,

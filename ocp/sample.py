@@ -1,0 +1,107 @@
+"""A plant at one time: what limits, energies, figures and exports read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import casadi as ca
+from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.joint_motion import Modes
+from quietarm.ocp.energy import power_of
+
+
+class Sample(NamedTuple):
+    """Motion and torques of a plant at one time, or at many in arrays of one shape.
+
+    Attributes
+    ----------
+    path : JointMotion
+        The motion along the path; of a plant of one joint the joint's own.
+    joints : sequence of JointMotion
+        The motion of every joint [rad, rad/s, rad/s^2, rad/s^3].
+    W, dW, ddW : sequence
+        Modal amplitudes [m], their rates [m/s] and accelerations [m/s^2].
+    tips, tip_speeds : sequence
+        Displacements of the tips [m], and their rates [m/s].
+    torques : sequence
+        Torque of every joint [N m].
+    """
+
+    path: JointMotion
+    joints: Sequence[JointMotion]
+    W: Modes
+    dW: Modes
+    ddW: Modes
+    tips: Sequence[Expression]
+    tip_speeds: Sequence[Expression]
+    torques: Sequence[Expression]
+
+    @property
+    def powers(self) -> list[Expression]:
+        """Mechanical power of every joint [W]."""
+        return [power_of(torque, joint.speed) for torque, joint in zip(self.torques, self.joints)]
+
+    @property
+    def power(self) -> Expression:
+        """Mechanical power of all joints together [W]."""
+        return total(self.powers)
+
+    @property
+    def values(self) -> list[Expression]:
+        """Every value, in the order of the attributes; a jerk that is None is left out."""
+        motions = [value for joint in (self.path, *self.joints) for value in joint]
+        others = [*self.W, *self.dW, *self.ddW, *self.tips, *self.tip_speeds, *self.torques]
+        return [value for value in motions if value is not None] + others
+
+    def with_values(self, values: Iterable[Expression]) -> Sample:
+        """The same of other `values`."""
+        following = iter(values)
+
+        def motion(joint: JointMotion) -> JointMotion:
+            return JointMotion(*(None if value is None else next(following) for value in joint))
+
+        def entries(values: Sequence[Expression]) -> list[Expression]:
+            return [next(following) for _ in values]
+
+        return Sample(
+            path=motion(self.path),
+            joints=[motion(joint) for joint in self.joints],
+            W=entries(self.W),
+            dW=entries(self.dW),
+            ddW=entries(self.ddW),
+            tips=entries(self.tips),
+            tip_speeds=entries(self.tip_speeds),
+            torques=entries(self.torques),
+        )
+
+
+def sample_plant(plant: Plant, path: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Sample:
+    """The sample of a plant by its equations; arguments as of `Plant.torque`."""
+    return Sample(
+        path=path,
+        joints=plant.joints(path),
+        W=W,
+        dW=dW,
+        ddW=ddW,
+        tips=plant.tips_at(path, W),
+        tip_speeds=plant.tip_speeds(path, W, dW),
+        torques=plant.torques(path, W, dW, ddW),
+    )
+
+
+@lru_cache(maxsize=256)
+def symbolic_sample(plant: Plant) -> Sample:
+    """A sample of symbols, which tells how many values of each kind the plant has."""
+    path = JointMotion(*(ca.SX.sym(name) for name in JointMotion._fields))
+    modes = [ca.vertsplit(ca.SX.sym(name, plant.modes)) for name in ("W", "dW", "ddW")]
+    return sample_plant(plant, path, *modes)
+
+
+def total(values: Sequence[Expression]) -> Expression:
+    """Their sum, which of one is itself: nothing is added that has to be computed."""
+    first, *others = values
+    for value in others:
+        first = first + value
+    return first
