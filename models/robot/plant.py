@@ -166,7 +166,7 @@ class RobotOnPath(Plant):
             if beyond.max() > _OVER:
                 at = int(beyond.argmax())
                 raise ValueError(
-                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path; its "
+                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path, its "
                     f"range is {least:g} to {most:g}, give a path within it"
                 )
 
