@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,8 @@ class Quantity:
         Its values by the sample of a plant.
     derivative : int or None
         Which time derivative of the joint's angle it is; None where it follows from the modes.
+    of_joints : bool
+        Whether it has a value for each joint, so that a task may limit joints by name.
     in_scenarios : bool
         Whether its limit holds in all scenarios of an uncertain task; else for the nominal plant.
     panel : int
@@ -44,6 +46,7 @@ class Quantity:
     label: str
     values: ValuesOf
     derivative: int | None = None
+    of_joints: bool = False
     in_scenarios: bool = False
     panel: int = 5
     always_drawn: bool = False
@@ -76,6 +79,7 @@ QUANTITIES: Mapping[str, Quantity] = {
             unit="N m",
             label="joint torque",
             values=lambda sample: sample.torques,
+            of_joints=True,
             panel=6,
             always_drawn=True,
         ),
@@ -85,6 +89,7 @@ QUANTITIES: Mapping[str, Quantity] = {
             label="joint speed",
             values=lambda sample: [joint.speed for joint in sample.joints],
             derivative=1,
+            of_joints=True,
             panel=1,
             always_drawn=True,
         ),
@@ -94,6 +99,7 @@ QUANTITIES: Mapping[str, Quantity] = {
             label="joint acceleration",
             values=lambda sample: [joint.acceleration for joint in sample.joints],
             derivative=2,
+            of_joints=True,
             panel=2,
             always_drawn=True,
         ),
@@ -103,6 +109,7 @@ QUANTITIES: Mapping[str, Quantity] = {
             label="joint jerk",
             values=lambda sample: [joint.jerk for joint in sample.joints],
             derivative=3,
+            of_joints=True,
             panel=3,
         ),
         Quantity(
@@ -144,8 +151,75 @@ JERK = 3
 jumps."""
 _RESIDUAL = Quantity(RESIDUAL, "m", "residual vibration", lambda _: [], in_scenarios=True)
 """It has no values on the way, and follows from the state on arrival."""
-Bounds = float | tuple[float, float]
+Sides = float | tuple[float, float]
 """The largest absolute value, or the least and the largest one."""
+Bounds = Sides | Mapping[str, Sides]
+"""The same for all joints, or of some joints by name."""
+
+
+class ByJoint(Mapping[str, Any]):
+    """What is given of some joints by name, a value that does not change."""
+
+    def __init__(self, entries: Mapping[str, Any]) -> None:
+        self._entries = dict(entries)
+
+    def __getitem__(self, name: str) -> Any:
+        return self._entries[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._entries.items()))
+
+    def __repr__(self) -> str:
+        return repr(self._entries)
+
+
+class JointBounds(NamedTuple):
+    """The bounds of a joint: its name, its place among the joints, least and largest value."""
+
+    name: str
+    place: int
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Values of a quantity of the joints, each between -1 at its least and 1 at its largest."""
+
+    values: ValuesOf
+    bounds: tuple[JointBounds, ...]
+    unit: str
+
+    def __call__(self, sample: Sample) -> Sequence[Expression]:
+        """The shares, of the joints that have bounds."""
+        values = self.values(sample)
+        shares = list[Expression]()
+        for bound in self.bounds:
+            middle = (bound.upper + bound.lower) / 2
+            half = (bound.upper - bound.lower) / 2
+            shares.append((values[bound.place] - middle) / half)
+        return shares
+
+    def __str__(self) -> str:
+        words = (
+            f"{bound.name} {_ends(bound.lower, bound.upper)} {self.unit}" for bound in self.bounds
+        )
+        return ", ".join(words)
+
+
+def sides_of(bounds: Sides) -> tuple[float, float]:
+    """The least and the largest value."""
+    return bounds if isinstance(bounds, tuple) else (-bounds, bounds)
+
+
+def _ends(lower: float, upper: float) -> str:
+    return f"{upper:g}" if lower == -upper else f"{lower:g} to {upper:g}"
 
 
 def ask_for_jerk(quantities: Iterable[Quantity]) -> bool:
@@ -262,10 +336,16 @@ class Limit:
     upper: float
 
     @classmethod
-    def within(cls, quantity: Quantity, bounds: Bounds) -> Limit:
-        """Of a task's entry: the largest absolute value, or the least and the largest one."""
-        lower, upper = bounds if isinstance(bounds, tuple) else (-bounds, bounds)
-        return cls(quantity, lower, upper)
+    def within(cls, quantity: Quantity, bounds: Bounds, joints: Sequence[str] = ()) -> Limit:
+        """Of a task's entry and its plant's joints, whose own bounds become shares of these."""
+        if not isinstance(bounds, Mapping):
+            return cls(quantity, *sides_of(bounds))
+        by_joint = tuple(
+            JointBounds(name, list(joints).index(name), *sides_of(sides))
+            for name, sides in bounds.items()
+        )
+        shares = Shares(quantity.values, by_joint, quantity.unit)
+        return cls(replace(quantity, unit="", values=shares), -1.0, 1.0)
 
     @classmethod
     def of_residual(cls, largest: float, tip_unit: str = "m") -> Limit:
@@ -290,7 +370,8 @@ class Limit:
     @property
     def is_peak(self) -> bool:
         """Whether it is of the largest absolute value of a quantity in the diagnostics."""
-        return self.both_ways and self.name in (RESIDUAL, *QUANTITIES)
+        of_one = not isinstance(self.quantity.values, Shares)
+        return of_one and self.both_ways and self.name in (RESIDUAL, *QUANTITIES)
 
     @property
     def size(self) -> float:
@@ -341,10 +422,9 @@ class Limit:
     @property
     def bounds(self) -> str:
         """The bounds in words, as 0.3 N m or -30 to 40 rad/s^2."""
-        if isinstance(self.quantity.values, TorqueSpeedLine):
+        if isinstance(self.quantity.values, TorqueSpeedLine | Shares):
             return str(self.quantity.values)
-        ends = f"{self.size:g}" if self.both_ways else f"{self.lower:g} to {self.upper:g}"
-        return f"{ends} {self.quantity.unit}"
+        return f"{_ends(self.lower, self.upper)} {self.quantity.unit}"
 
     def __str__(self) -> str:
         return f"{self.name} {self.bounds}"

@@ -15,10 +15,19 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import joint_unit
 from quietarm.models.validation import check_along, check_contract
-from quietarm.ocp.checks import finite, instance, positive, several, takes
+from quietarm.ocp.checks import finite, has_no, instance, positive, several, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
-from quietarm.ocp.limits import QUANTITIES, Bounds, Limit, Quantity, TorqueSpeedLine, quantities_of
+from quietarm.ocp.limits import (
+    QUANTITIES,
+    Bounds,
+    ByJoint,
+    Limit,
+    Quantity,
+    Sides,
+    TorqueSpeedLine,
+    quantities_of,
+)
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
 from quietarm.ocp.window import EQ_11, DefaultWindow, default_window
 
@@ -88,7 +97,8 @@ class PointToPoint:
     torque_limit, speed_limit, acceleration_limit, deflection_limit, jerk_limit : optional
         Largest absolute joint torque [N m], speed [rad/s], acceleration [rad/s^2], tip displacement
         [m] and rate of change of the joint's acceleration [rad/s^3] on the way; or of each the
-        least value and the largest one, as (-30, 40).
+        least value and the largest one, as (-30, 40). Those of joints may be by name, each as
+        above: ``{"joint_1": 16.0, "joint_2": (-30, 40)}``; joints without a name have no limit.
     torque_speed : sequence of (float, float), optional
         Largest torque [N m] of the drive at speeds [rad/s], as [(1.5, 0), (0.8, 20)]; of a linear
         joint forces [N] at speeds [m/s]. See `TorqueSpeedLine`.
@@ -157,7 +167,7 @@ class PointToPoint:
             object.__setattr__(self, name, number)
         for quantity in quantities_of(self.plant.joint, self.plant.tip_unit).values():
             if getattr(self, quantity.limit) is not None:
-                bounds = _check_bounds(quantity, getattr(self, quantity.limit))
+                bounds = _check_bounds(quantity, getattr(self, quantity.limit), self.plant)
                 object.__setattr__(self, quantity.limit, bounds)
         if self.torque_speed is not None:
             line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
@@ -267,7 +277,11 @@ class PointToPoint:
         """The limits that are set."""
         quantities = quantities_of(self.plant.joint, self.plant.tip_unit).values()
         given = [(one, getattr(self, one.limit)) for one in quantities]
-        limits = [Limit.within(one, bounds) for one, bounds in given if bounds is not None]
+        limits = [
+            Limit.within(one, bounds, self.plant.joint_names)
+            for one, bounds in given
+            if bounds is not None
+        ]
         if self.torque_speed is not None:
             line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
             limits.append(Limit.of_line(line))
@@ -283,9 +297,30 @@ def _is_default(window: object) -> bool:
     return window is None or isinstance(window, DefaultWindow)
 
 
-def _check_bounds(quantity: Quantity, given: Any) -> Bounds:
+def _check_bounds(quantity: Quantity, given: Any, plant: Plant) -> Bounds:
+    """A positive number, or a negative and a positive one; or such of joints by name."""
+    name = quantity.limit.replace("_", " ")
+    if not isinstance(given, Mapping):
+        return _check_sides(name, quantity.unit, given)
+    if not quantity.of_joints:
+        raise ValueError(
+            f"{name} is {given!r}; give one for all, as {quantity.label}s have no joint"
+        )
+    if not given:
+        raise ValueError(f"{name} is {given!r}; give a limit of one joint or more, by name")
+    for joint in given:
+        if joint not in plant.joint_names:
+            raise ValueError(has_no(plant.name, "joint", joint, plant.joint_names))
+    return ByJoint(
+        {
+            joint: _check_sides(f"{name} of {joint}", quantity.unit, bounds)
+            for joint, bounds in given.items()
+        }
+    )
+
+
+def _check_sides(name: str, unit: str, given: Any) -> Sides:
     """A positive number, or a negative and a positive one."""
-    name, unit = quantity.limit.replace("_", " "), quantity.unit
     if isinstance(given, str) or not isinstance(given, Iterable):
         return positive(name, given, unit)
     bounds: list[Any] = list(given)

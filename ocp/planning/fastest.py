@@ -15,10 +15,15 @@ from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.limits import QUANTITIES
-from quietarm.ocp.planning.least_time import LeastTime, least_time, rigid_duration
+from quietarm.ocp.planning.least_time import LeastTime, least_time
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_move import limit_of, plan_move, plan_within
-from quietarm.ocp.planning.rigid_motion import assumed_bounds, largest_deflection, rigid_motion
+from quietarm.ocp.planning.rigid_motion import (
+    assumed_bounds,
+    largest_deflection,
+    rigid_duration,
+    rigid_motion,
+)
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.record import SolveSettings

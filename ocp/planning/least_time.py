@@ -18,7 +18,7 @@ from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.planning.rigid_motion import (
     RigidMotion,
     assumed_bounds,
-    declared_bounds,
+    rigid_duration,
     rigid_motion,
 )
 from quietarm.ocp.profiles.joint_spline import JointSpline
@@ -104,17 +104,6 @@ def fitting_spline(
             return profile, excess.coefficients
         knots = _knots_along(profile, excess.coefficients)
     return None
-
-
-def rigid_duration(task: PointToPoint) -> float:
-    """The least time of a rigid joint within the limits of speed, acceleration and jerk [s].
-
-    0 where there is none; no motion within them is shorter.
-    """
-    try:
-        return rigid_motion(abs(task.span), declared_bounds(task)).duration
-    except ValueError:
-        return 0.0
 
 
 def _shaped_rigid_motion(task: PointToPoint) -> RigidMotion:

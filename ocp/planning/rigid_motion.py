@@ -13,12 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 from quietarm.models import JointMotion, Plant
-from quietarm.ocp.limits import TORQUE_SPEED, Limit, TorqueSpeedLine
+from quietarm.ocp.limits import TORQUE_SPEED, Limit, Shares, TorqueSpeedLine
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import PointToPoint
 
 _ANGLES = 9
 """Of the joint, at which a plant is asked what an acceleration takes."""
+_LEAST_SLOPE = 1e-9
+"""Of a joint that stands still while the path goes on, so that nothing is divided by 0."""
 _HALVINGS = 200
 """Of the largest speed; each settles another bit."""
 
@@ -133,35 +135,94 @@ class _Ramp(NamedTuple):
         return cls((0.0, rise, rise + hold, rise + hold + fall), distance)
 
 
+def rigid_duration(task: PointToPoint) -> float:
+    """The least time of rigid joints within the limits of speed, acceleration and jerk [s].
+
+    That of the joint which takes longest by itself, from its first angle to its last; 0 where
+    nothing limits one. No motion within the limits is shorter.
+    """
+    least = 0.0
+    for distance, bounds in zip(_distances(task), _bounds_of_joints(task)):
+        try:
+            least = max(least, rigid_motion(distance, bounds).duration)
+        except ValueError:  # nothing limits this joint
+            continue
+    return least
+
+
 def declared_bounds(task: PointToPoint) -> RigidBounds:
-    """The task's own limits of speed, acceleration and jerk in its direction."""
+    """The task's own limits of speed, acceleration and jerk in its direction, along the path."""
+    of_joints = _bounds_of_joints(task)
+    if len(of_joints) == 1:
+        return of_joints[0]
+    scaled = np.array(of_joints) / _slopes(task)[:, None]
+    return RigidBounds(*scaled.min(axis=0).tolist())
+
+
+def _bounds_of_joints(task: PointToPoint) -> list[RigidBounds]:
+    """The same of every joint."""
     by_name = {limit.name: limit for limit in task.limits}
-
-    def sides(name: str) -> tuple[float, float]:
-        """The bound in the direction of the move, and against it."""
-        limit = by_name.get(name)
-        if limit is None:
-            return math.inf, math.inf
-        if task.span > 0:
-            return limit.upper, -limit.lower
-        return -limit.lower, limit.upper
-
     line = by_name.get(TORQUE_SPEED)
     no_torque_beyond = math.inf
     if line is not None and isinstance(line.quantity.values, TorqueSpeedLine):
         no_torque_beyond = line.quantity.values.largest_speed
-    return RigidBounds(
-        min(sides("speed")[0], no_torque_beyond), *sides("acceleration"), *sides("jerk")
+
+    def bounds(joint: int, forward: bool) -> RigidBounds:
+        def sides(name: str) -> tuple[float, float]:
+            """The bound in the direction of the move, and against it."""
+            lower, upper = _sides(by_name.get(name), joint)
+            return (upper, -lower) if forward else (-lower, upper)
+
+        return RigidBounds(
+            min(sides("speed")[0], no_torque_beyond), *sides("acceleration"), *sides("jerk")
+        )
+
+    return [bounds(joint, way > 0) for joint, way in enumerate(_ways(task))]
+
+
+def _sides(limit: Limit | None, joint: int) -> tuple[float, float]:
+    """Least and largest value that a limit leaves a joint."""
+    if limit is None:
+        return -math.inf, math.inf
+    shares = limit.quantity.values
+    if not isinstance(shares, Shares):
+        return limit.lower, limit.upper
+    own = (bound for bound in shares.bounds if bound.place == joint)
+    return next(((bound.lower, bound.upper) for bound in own), (-math.inf, math.inf))
+
+
+def _ways(task: PointToPoint) -> list[float]:
+    """From the first angle of every joint to its last."""
+    begin, end = (
+        task.plant.joints(JointMotion(place, 0.0, 0.0)) for place in (task.start, task.target)
     )
+    return [float(last.angle) - float(first.angle) for first, last in zip(begin, end)]
+
+
+def _distances(task: PointToPoint) -> list[float]:
+    return [abs(way) for way in _ways(task)]
+
+
+def _slopes(task: PointToPoint) -> np.ndarray:
+    """How far every joint goes for each unit of the path, at most along the way."""
+    places = np.linspace(task.start, task.target, _ANGLES).tolist()
+    slopes = [
+        [abs(float(joint.speed)) for joint in task.plant.joints(JointMotion(place, 1.0, 0.0))]
+        for place in places
+    ]
+    return np.maximum(np.max(slopes, axis=0), _LEAST_SLOPE)
 
 
 def assumed_bounds(task: PointToPoint) -> RigidBounds:
     """The same, and what limits of torque and deflection come to where nothing swings."""
     declared = declared_bounds(task)
     needed = _Needed.along(task)
-    torques = list(_torque_limits(task.limits))
-    accelerations = [torque / needed.torque for torque in torques]
-    speeds = [torque / needed.friction for torque in torques if needed.friction > 0]
+    accelerations, speeds = list[float](), list[float]()
+    for joint, torques in enumerate(_torque_limits(task.limits, len(needed.torques))):
+        if needed.torques[joint] > 0:
+            accelerations += (torque / needed.torques[joint] for torque in torques)
+        if needed.frictions[joint] > 0:
+            speeds += (torque / needed.frictions[joint] for torque in torques)
     deflection = next((one.size for one in task.limits if one.name == "deflection"), math.inf)
     if needed.deflection > 0:
         accelerations.append(deflection / needed.deflection)
@@ -178,43 +239,56 @@ def largest_deflection(task: PointToPoint) -> float:
     return _Needed.along(task).deflection
 
 
-def _torque_limits(limits: Iterable[Limit]) -> Iterable[float]:
+def _torque_limits(limits: Iterable[Limit], joints: int) -> list[list[float]]:
+    """What limits the torque of every joint."""
+    found = [list[float]() for _ in range(joints)]
     for limit in limits:
-        if limit.name == "torque":
-            yield min(-limit.lower, limit.upper)
-        if isinstance(limit.quantity.values, TorqueSpeedLine):
-            yield limit.quantity.values.points[0][0]
+        for joint in range(joints):
+            if limit.name == "torque":
+                lower, upper = _sides(limit, joint)
+                found[joint].append(min(-lower, upper))
+            if isinstance(limit.quantity.values, TorqueSpeedLine):
+                found[joint].append(limit.quantity.values.points[0][0])
+    return found
 
 
 class _Needed(NamedTuple):
-    """What a unit acceleration takes where nothing swings: torque and static deflection.
+    """What a unit acceleration takes where nothing swings: torque by joint, static deflection.
 
-    And the torque by friction of a unit speed.
+    And the torque by friction of a unit speed, by joint; without what holds the joints at rest.
     """
 
-    torque: float
+    torques: list[float]
     deflection: float
-    friction: float
+    frictions: list[float]
 
     @classmethod
     def along(cls, task: PointToPoint) -> _Needed:
         """The largest of each along the way."""
-        angles = np.linspace(task.start, task.target, _ANGLES).tolist()
-        needed = np.abs([cls._at(task.plant, angle) for angle in angles])
-        torque, deflection, friction = needed.max(axis=0).tolist()
-        return cls(torque, deflection, friction)
+        places = np.linspace(task.start, task.target, _ANGLES).tolist()
+        torques, deflections, frictions = zip(*(cls._at(task.plant, place) for place in places))
+        return cls(
+            np.max(torques, axis=0).tolist(),
+            max(deflections),
+            np.max(frictions, axis=0).tolist(),
+        )
 
     @staticmethod
-    def _at(plant: Plant, angle: float) -> tuple[float, float, float]:
+    def _at(plant: Plant, place: float) -> tuple[list[float], float, list[float]]:
         still = [0.0] * plant.modes
-        accelerating = JointMotion(angle, 0.0, 1.0)
-        turning = JointMotion(angle, 1.0, 0.0)
-        bent = static_deflections(plant, angle)
-        tips = plant.tips_at(accelerating, bent.tolist())
+        accelerating = JointMotion(place, 0.0, 1.0)
+        bent = static_deflections(plant, place).tolist()
+        tips = plant.tips_at(accelerating, bent)
+        holding = plant.torques(JointMotion(place, 0.0, 0.0), still, still, still)
+
+        def torques(path: JointMotion, W: list[float]) -> list[float]:
+            moving = plant.torques(path, W, still, still)
+            return [abs(float(torque) - float(held)) for torque, held in zip(moving, holding)]
+
         return (
-            float(plant.torque(accelerating, bent.tolist(), still, still)),
+            torques(accelerating, bent),
             max(abs(float(tip)) for tip in tips),
-            float(plant.torque(turning, still, still, still)),
+            torques(JointMotion(place, 1.0, 0.0), still),
         )
 
 

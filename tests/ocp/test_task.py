@@ -50,7 +50,7 @@ def test_limits_of_one_direction_and_of_the_speed():
     words = "torque 0.3 N m", "acceleration -30 to 40 rad/s^2", "torque_speed 1.5Nm@0,0.8Nm@20"
     assert tuple(map(str, task.limits)) == words
     # 1.5 N m less 0.035 N m s of the speed: half of it at 10 rad/s is 0.575 N m, in any direction
-    line = task.limits[-1].quantity.of
+    line = task.limits[-1].quantity.values
     for torque, speed in ((0.575, 10.0), (-0.575, 10.0), (0.575, -10.0)):
         assert max(map(abs, line(JointMotion(0.0, speed, 0.0), [], torque))) == pytest.approx(
             (0.575 + 0.35) / 1.5, rel=1e-12
