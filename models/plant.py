@@ -152,6 +152,11 @@ class Plant(ABC):
         return self.tip_displacements(dW)
 
     @property
+    def label(self) -> str:
+        """What reports call it, by default its name."""
+        return self.name
+
+    @property
     def joint_names(self) -> tuple[str, ...]:
         """Names of the joints, in the order of `joints`, by which limits and columns name them."""
         count = len(self.joints(JointMotion(ca.SX.sym("angle"), 0.0, 0.0)))

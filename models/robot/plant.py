@@ -61,6 +61,18 @@ class RobotOnPath(Plant):
         return self.robot.modes
 
     @property
+    def label(self) -> str:
+        """The robot's name, and what bends."""
+        robot = self.robot
+        bends = [
+            *(["base"] if robot.base is not None else []),
+            *(["gears"] if robot.elastic_joints else []),
+            *(["springs"] if robot.springs else []),
+            *([f"beam at {robot.beam.at}"] if robot.beam is not None else []),
+        ]
+        return f"{robot.description.name} ({len(robot.joints)} joints; {', '.join(bends)})"
+
+    @property
     def joint_names(self) -> tuple[str, ...]:
         """Of the driven joints."""
         return self.robot.joints
@@ -166,8 +178,8 @@ class RobotOnPath(Plant):
             if beyond.max() > _OVER:
                 at = int(beyond.argmax())
                 raise ValueError(
-                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path, its "
-                    f"range is {least:g} to {most:g}, give a path within it"
+                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path; "
+                    f"its range is {least:g} to {most:g}, give a path within it"
                 )
 
 

@@ -176,10 +176,16 @@ class Plan(MotionAnswer):
         if self.task.plant.joint != ROTARY:
             way, force = "position_m", "force_N"
         unit = way.rpartition("_")[2]
-        header = ["time_s", way, f"speed_{unit}_s", f"acceleration_{unit}_s2", *tip_names]
-        header += [force, "power_W"]
+        joints = self.task.plant.joint_names
+        prefixes = [""] if len(joints) == 1 else [f"{name}_" for name in joints]
+        moving = [way, f"speed_{unit}_s", f"acceleration_{unit}_s2"]
+        of_joints = [f"{prefix}{name}" for prefix in prefixes for name in moving]
+        forces = [f"{prefix}{force}" for prefix in prefixes]
+        header = ["time_s", *of_joints, *tip_names, *forces, "power_W"]
+        sample = sampled.sample
+        motions = [value for joint in sample.joints for value in joint[:3]]
         table = np.column_stack(
-            [sampled.time, sampled.joint, sampled.tips, sampled.torque, sampled.power]
+            [sampled.time, *motions, *sample.tips, *sample.torques, sampled.power]
         )
         text = io.StringIO()
         np.savetxt(text, table, delimiter=",", header=",".join(header), comments="", fmt="%.10g")

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 from click.core import ParameterSource
-from quietarm.models import Plant
+from quietarm.models import Plant, Robot
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
@@ -21,6 +21,7 @@ from quietarm.studies.cli.plants import (
     warn_of_payload,
 )
 from quietarm.studies.cli.quantities import RESIDUAL_LIMIT, parse_of_plant
+from quietarm.studies.cli.robots import read_robot_task
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.report.words import print_lines
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
@@ -117,6 +118,9 @@ class Given:
     def read_grid(self, **known: float) -> Grid:
         """The task, and axes over what has several values."""
         kind = choose_kind(self.plant, self.plant_file)
+        if isinstance(kind, Robot):
+            return self._read_robot(kind, **known)
+        self.refuse(["path"], "is for a robot, whose file is PLANT, as ur5.yaml")
         parameters = read_parameters(kind, self.parameters)
         plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
         uncertainty = build_uncertainty(kind, self.errors, parameters)
@@ -139,6 +143,16 @@ class Given:
         task = PointToPoint(plant, **furthest, **given, uncertainty=uncertainty)
         warn_of_payload(kind, plant, parameters)
         return Grid(task, tuple(axes))
+
+    def _read_robot(self, robot: Robot, **known: float) -> Grid:
+        """The task of a robot along its path, without axes."""
+        text = self._context.params["duration"]
+        if text is None and "duration" not in known:
+            raise click.UsageError("Missing option '--duration'. Give it as --duration 0.8")
+        duration = known.get("duration")
+        if duration is None:
+            (duration,) = parse_of_plant("duration", text, "rotary", "m")
+        return Grid(read_robot_task(self, robot, duration), ())
 
 
 def single_values(given: Mapping[str, Sequence[float]]) -> dict[str, float]:

@@ -22,7 +22,7 @@ from quietarm.studies.cli.quantities import (
     parse_state,
     parse_workers,
 )
-from quietarm.studies.cli.types import SETTING, TIME, Named, Parsed
+from quietarm.studies.cli.types import INPUT, SETTING, TIME, Named, Parsed
 from quietarm.studies.reading.profiles import FAMILIES, POLYNOMIAL
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
@@ -93,11 +93,19 @@ SET = option("--set", "parameters", type=SETTING, multiple=True, metavar="NAME=V
 ERROR = option("--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
                help="Range of the error of frequency, damping or a parameter, as frequency=8%; the "
                "residual is then that of the worst case. `measured`: as identified.")  # fmt: skip
+PATH = (
+    option("--start", default="0", metavar="ANGLE", help="Joint angle at the start; of a robot one "
+           "of each joint: --start=0,-80deg,97deg."),
+    option("--target", metavar="ANGLE", help="Joint angle at the end, or 300mm of a linear axis; "
+           "of a robot one of each joint."),
+    option("--path", type=INPUT, help="Of a robot: waypoints that its joints pass, as csv with a "
+           "column a joint, or a JointTrajectory in YAML, whose times are dropped."),
+)  # fmt: skip
+"""Where a joint goes, or the joints of a robot."""
 TASK = (
     click.Argument(["plant"], type=Parsed("plant", parse_plant), required=False, metavar="[PLANT]"),
     SET,
-    option("--start", default="0", metavar="ANGLE", help="Joint angle at the start."),
-    option("--target", metavar="ANGLE", help="Joint angle at the end, or 300mm of a linear axis."),
+    *PATH,
     option("--duration", metavar="TIME", help="Travelling time; quietarm plan also takes "
            "`fastest`, the shortest within the limits."),
     *(

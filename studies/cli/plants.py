@@ -7,7 +7,7 @@ from dataclasses import MISSING, fields, replace
 from functools import partial
 from math import tau
 
-from quietarm.models import FlexibleBeam, Plant, known_plants
+from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import MEASURED, once, parse_parameter
@@ -16,24 +16,30 @@ from quietarm.studies.report.words import print_lines
 from quietarm.studies.sweep.grid import axis_values
 from rich.console import Console
 
-Kind = type[Plant] | Identified
-"""What PLANT names: a class of plants, or an identified machine."""
+Kind = type[Plant] | Identified | Robot
+"""What PLANT names: a class of plants, an identified machine, or a robot."""
+OF_ROBOTS = (".yaml", ".yml")
+"""Endings of the files of robots."""
 
 
 def parse_plant(name: str) -> Kind:
-    """A class of plants by its name, or an identified machine by its file."""
+    """A class of plants by its name, or an identified machine or a robot by its file."""
     if name.endswith(".json"):
         return Identified.load(name)
-    plants = known_plants()
+    if name.endswith(OF_ROBOTS):
+        return Robot.load(name)
+    plants = {known: plant for known, plant in known_plants().items() if plant is not RobotOnPath}
     if name not in plants:
-        also = "; your own by its --plant-file, an identified one by its .json"
+        also = (
+            "; your own by its --plant-file, an identified one by its .json, a robot by its .yaml"
+        )
         raise ValueError(unknown("plant", name, sorted(plants), also))
     return plants[name]
 
 
 def choose_kind(named: Kind | None, own: Mapping[str, type[Plant]] | None) -> Kind:
     """What PLANT names, or else the only plant of a plant file."""
-    if isinstance(named, Identified) or (named and own is None):
+    if isinstance(named, Identified | Robot) or (named and own is None):
         return named
     if not own:
         raise ValueError(

@@ -85,6 +85,10 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     if name == RESIDUAL_LIMIT:
         return parse_usual(tip_unit, "a length" if tip_unit == "m" else "an angle", text)
     quantities = quantities_of(joint, tip_unit)
+    if "=" in text and quantities[name.removesuffix("_limit")].of_joints:
+        pairs = (parse_pair(one, "a limit", "elbow_joint=16") for one in text.split(","))
+        by_joint = once(pairs, "the limit of ")
+        return {of: parse_of_plant(name, value, joint, tip_unit) for of, value in by_joint.items()}
     limited, sides = quantities[name.removesuffix("_limit")], text.split(":")
     what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
     values = [parse_usual(limited.unit, what, side) for side in sides]

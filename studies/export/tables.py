@@ -15,6 +15,7 @@ from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.planning.plan import ticks_of_move
+from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.studies.report.templates import templates
 
 Array = NDArray[np.float64]
@@ -73,18 +74,28 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     """
     times = times_of(plan, rate)
     motion, tips = plan.sampled(times), _tips(plan, times)
-    values: dict[str, Array] = {
-        "time": motion.time, "angle": motion.joint[:, 0], "speed": motion.joint[:, 1],
-        "acceleration": motion.joint[:, 2], "jerk": motion.jerk, "torque": motion.torque,
-        "power": motion.power,
-    }  # fmt: skip
     names = {} if plan.task.plant.joint == ROTARY else _LINEAR_NAMES
     found: dict[str, Array] = {}
     for name, (unit, factor) in columns_of(columns, plan.task.plant).items():
         ending = unit.replace("/", "_").replace("^", "")
-        of_name = tips if name == "tip" else {(names.get(name, name), ""): values[name]}
+        of_name = tips if name == "tip" else _columns(names.get(name, name), name, motion, plan)
         found |= {f"{one}_{ending}{after}": factor * v for (one, after), v in of_name.items()}
     return found
+
+
+def _columns(
+    heading: str, name: str, motion: Trajectory, plan: Plan
+) -> dict[tuple[str, str], Array]:
+    """A column by what stands before and after its unit; of several joints one for each."""
+    if name in ("time", "power"):
+        return {(heading, ""): getattr(motion, name)}
+    of_joints = motion.sample.torques
+    if name != "torque":
+        of_joints = [getattr(joint, name) for joint in motion.sample.joints]
+    joints = plan.task.plant.joint_names
+    if len(joints) == 1:
+        return {(heading, ""): of_joints[0]}
+    return {(f"{joint} {heading}", ""): column for joint, column in zip(joints, of_joints)}
 
 
 def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:
@@ -126,15 +137,21 @@ def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
 
 
 def ros_text(plan: Plan, rate: float, joint: str) -> str:
-    """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, for one joint."""
+    """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML.
+
+    A plant of one joint is called by this name; several have names of their own.
+    """
+    names = plan.task.plant.joint_names
     motion = plan.sampled(times_of(plan, rate))
+    moving = np.array([joint[:3] for joint in motion.sample.joints])
     points = [
-        (divmod(round(time * 1e9), 1_000_000_000), map(_decimal, moving))
-        for time, moving in zip(motion.time, motion.joint)
+        (divmod(round(time * 1e9), 1_000_000_000), [map(_decimal, row) for row in rows])
+        for time, rows in zip(motion.time, np.moveaxis(moving, (2, 1), (0, 1)))
     ]
-    name = joint.replace("'", "''")  # as YAML reads it back
+    named = (name.replace("'", "''") for name in (names if len(names) > 1 else [joint]))
+    joints = [f"'{name}'" for name in named]  # as YAML reads them back
     texts = templates(keep_trailing_newline=True)
-    return texts.get_template("export/templates/move.yaml").render(joint=f"'{name}'", points=points)
+    return texts.get_template("export/templates/move.yaml").render(joints=joints, points=points)
 
 
 def _decimal(value: float) -> str:

@@ -112,9 +112,10 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     for line in lines:
         drawn += curves(line.plan, quantity)
         others = [style for style in (":", "-.", "--") if style != line.style]
+        names = curve_names(line.plan, quantity)
         for i, values in enumerate(curves(line.plan, quantity)):
             style = others[(i - 1) % len(others)] if i else line.style
-            label = f"{line.label}, tip {i + 1}" if i else line.label
+            label = f"{line.label}, {names[i]}" if i else line.label
             ax.plot(line.plan.trajectory.time, values, color=line.colour, linestyle=style,
                     linewidth=1.6, label=label)  # fmt: skip
     for duration in {line.plan.task.duration for line in lines}:
@@ -136,9 +137,17 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
     if quantity in QUANTITIES:
         columns = QUANTITIES[quantity].values(at.sample)
     else:
-        columns = [at.joint[:, 0] if quantity == "angle" else at.power]
+        angles = [joint.angle for joint in at.sample.joints]
+        columns = angles if quantity == "angle" else [at.power]
     scale = scale_of(quantity, motion.task.plant.tip_unit)
     return [scale * np.asarray(column) for column in columns]
+
+
+def curve_names(motion: Plan | Floor, quantity: str) -> Sequence[str]:
+    """What tells the curves of a quantity apart: joints by name, tips by number."""
+    plant = motion.task.plant
+    of_tips = quantity in QUANTITIES and not QUANTITIES[quantity].of_joints
+    return [f"tip {i + 1}" for i in range(plant.tips)] if of_tips else plant.joint_names
 
 
 def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:

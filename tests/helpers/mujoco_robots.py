@@ -29,7 +29,14 @@ class FlexibleRobot:
         self.root = ElementTree.parse(self.file).getroot()
         for element in list(self.root.iter()):
             for child in list(element):
-                if child.tag in ("visual", "collision", "transmission", "gazebo", "material", "mimic"):
+                if child.tag in (
+                    "visual",
+                    "collision",
+                    "transmission",
+                    "gazebo",
+                    "material",
+                    "mimic",
+                ):
                     element.remove(child)
 
     def add_link(self, name, mass, centre, moments):
@@ -52,7 +59,9 @@ class FlexibleRobot:
             self.stiffness[name] = stiffness
             self.damping[name] = damping
 
-    def add_bar(self, at, length, width, height, youngs_modulus, density, tip_mass, damping, pieces=6):
+    def add_bar(
+        self, at, length, width, height, youngs_modulus, density, tip_mass, damping, pieces=6
+    ):
         """Rigid pieces with hinges in the middle of each of equal parts, clamped to a link."""
         part = length / pieces
         line_mass = density * width * height
@@ -63,7 +72,7 @@ class FlexibleRobot:
             moments = np.array(squares) * mass / 12
             centre = (mass * of_length / 2 + tip * of_length) / (mass + tip)
             apart = mass * (of_length / 2 - centre) ** 2 + tip * (of_length - centre) ** 2
-            self.add_link(name, mass + tip, (0, 0, centre), moments + [apart, apart, 0.0])
+            self.add_link(name, mass + tip, (0, 0, centre), moments + np.array([apart, apart, 0.0]))
 
         across = {"1 0 0": height * width**3 / 12, "0 1 0": width * height**3 / 12}
         stiffness = {axis: youngs_modulus * second / part for axis, second in across.items()}
@@ -76,8 +85,17 @@ class FlexibleRobot:
             self.add_link(f"hinge_{number}", HINGE["mass"], (0, 0, 0), HINGE["moments"])
             piece(f"bar_{number}", part / 2 if last else part, tip_mass if last else 0.0)
             names = (f"bend_y_{number}", f"bend_x_{number}")
-            self.add_joint(names[0], f"bar_{number - 1}", f"hinge_{number}", (0, 0, begin), "1 0 0", stiffness["1 0 0"])
-            self.add_joint(names[1], f"hinge_{number}", f"bar_{number}", (0, 0, 0), "0 1 0", stiffness["0 1 0"])
+            self.add_joint(
+                names[0],
+                f"bar_{number - 1}",
+                f"hinge_{number}",
+                (0, 0, begin),
+                "1 0 0",
+                stiffness["1 0 0"],
+            )
+            self.add_joint(
+                names[1], f"hinge_{number}", f"bar_{number}", (0, 0, 0), "0 1 0", stiffness["0 1 0"]
+            )
             hinges += names
         self.tip = (f"bar_{pieces}", part / 2)
         return hinges
@@ -119,7 +137,9 @@ class Truth:
         self.damping = np.array([robot.damping[name] for name in names])
         of_bar = np.isin(names, list(hinges))
         if damping_ratio:
-            self.damping[of_bar] = self._damping_time(damping_ratio, of_bar) * self.stiffness[of_bar]
+            self.damping[of_bar] = (
+                self._damping_time(damping_ratio, of_bar) * self.stiffness[of_bar]
+            )
         self.stiffness = softened * self.stiffness
         self.body = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, robot.tip[0])
         self.along = np.array([0.0, 0.0, robot.tip[1]])
@@ -236,7 +256,11 @@ def motion_of(plan):
 
     task = plan.task
     time = ca.SX.sym("t")
-    s = plan.profile.angle(plan.coefficients, time / task.duration, *task.move) if hasattr(plan.profile, "angle") else plan.profile.derivatives(list(plan.coefficients), time / task.duration, *task.move)[0]
+    s = (
+        plan.profile.angle(plan.coefficients, time / task.duration, *task.move)
+        if hasattr(plan.profile, "angle")
+        else plan.profile.derivatives(list(plan.coefficients), time / task.duration, *task.move)[0]
+    )
     ds = ca.jacobian(s, time)
     along = ca.Function("along", [time], [ca.vertcat(s, ds, ca.jacobian(ds, time))])
     path = task.plant.path

@@ -7,7 +7,14 @@ from contextlib import suppress
 from quietarm.ocp import Plan, SolverFailedError, energy_floor, fastest_move, plan_move
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
-from quietarm.studies.cli.files import PICTURE, answer_files, ending_of, finish, output_option
+from quietarm.studies.cli.files import (
+    PICTURE,
+    TRAJECTORY,
+    answer_files,
+    ending_of,
+    finish,
+    output_option,
+)
 from quietarm.studies.cli.given import Given, single_values
 from quietarm.studies.cli.options import (
     BOUND,
@@ -47,7 +54,10 @@ _OF_SOLVERS = ("starts", "seed")
     option("--from", "dataset", type=INPUT, help="Take the move from this dataset of quietarm "
            "sweep, between its cells, without solving."),
     SENSITIVITIES,
-    output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"}),
+    output_option({
+        ".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture",
+        TRAJECTORY: "a JointTrajectory of ROS 2 at 1 kHz",
+    }),
 )  # fmt: skip
 def plan(given: Given) -> None:
     """Find the move of least energy whose residual vibration is within a limit.
