@@ -24,6 +24,7 @@ from quietarm.studies.cli.options import (
     SOLVER,
     STARTS,
     TASK,
+    WAYPOINTS,
     busy,
     command,
     option,
@@ -44,7 +45,7 @@ _OF_SOLVERS = ("starts", "seed")
 
 
 @command(
-    *TASK,
+    *TASK, WAYPOINTS,
     *profile_options(
         *SHAPERS, *FREE,
         words="; a plain cycloid through an input shaper for the plant's frequencies at the "

@@ -21,6 +21,7 @@ from quietarm.studies.cli.options import (
     RESIDUAL_LIMIT,
     SCHEDULER,
     TASK,
+    WAYPOINTS,
     WORKERS,
     command,
     counting,
@@ -36,7 +37,7 @@ _MANY = 1_000_000
 
 
 @command(
-    *TASK, *profile_options(), BOUND, RESIDUAL_LIMIT,
+    *TASK, WAYPOINTS, *profile_options(), BOUND, RESIDUAL_LIMIT,
     option("--limit-margin", "margin", type=SHARE, default="0%", help="Share of each limit that "
            "plans leave unused, so that moves between the cells keep it."),
     option("--front", type=click.IntRange(2, 1000), metavar="POINTS",
