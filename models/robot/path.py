@@ -302,7 +302,7 @@ def _rows(values: ArrayLike) -> Array:
         rows = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
         rows = np.zeros(0)
-    if rows.ndim != 2 or len(rows) < 2 or not rows.shape[1] or not np.all(np.isfinite(rows)):
+    if rows.ndim != 2 or len(rows) < 2 or not rows.size or not np.all(np.isfinite(rows)):
         raise ValueError(
             "the waypoints are no table; give two rows or more, with a number for each joint"
         )

@@ -110,10 +110,11 @@ def _pieces(
     """Ends and coefficients of a piece, or of its halves where it is not fitted."""
     begin, end = piece
     nodes = _nodes(begin, end, NODES)
-    terms = chebyshev.chebfit(np.cos(_angles(NODES)), function(nodes), NODES - 1)
+    fitted = chebyshev.chebfit(np.cos(_angles(NODES)), function(nodes), NODES - 1)
+    terms = np.asarray(fitted, float)
     between = _nodes(begin, end, NODES + 1)
-    fitted = chebyshev.chebval(np.cos(_angles(NODES + 1)), terms).T
-    missed = np.abs(fitted - function(between))
+    values = chebyshev.chebval(np.cos(_angles(NODES + 1)), terms).T
+    missed = np.abs(values - function(between))
     if np.all(missed <= largest / 2):
         return [(begin, end, terms)]
     if halvings == 0:
@@ -136,10 +137,11 @@ def _cut(coefficients: Array, largest: Array) -> Array:
 
 def interpolate(function: Callable[[Array], Array], knots: Array, terms: int) -> Array:
     """Coefficients through a function of so many terms, shape (pieces, terms, functions)."""
-    return np.array([
+    fitted = [
         chebyshev.chebfit(np.cos(_angles(terms)), function(_nodes(begin, end, terms)), terms - 1)
         for begin, end in pairwise(knots)
-    ])  # fmt: skip
+    ]
+    return np.asarray(fitted, float)
 
 
 def _angles(count: int) -> Array:

@@ -19,8 +19,8 @@ import numpy as np
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics import Dynamics
 from quietarm.models.robot.frames import Frame
+from quietarm.models.robot.modes import modes_at, sag_at
 from quietarm.models.robot.path import GeometricPath
-from quietarm.models.robot.robot import modes_at, sag_at
 
 OF_MODES = ("a", "b", "e", "K", "A", "B", "D", "C")
 """Coefficients of the modes' equations."""
@@ -102,7 +102,9 @@ class Reduction:
         forces["K"] = forces["K"] + stiffness
         forces["D"] = np.broadcast_to(damping, masses.shape)
         forces["e"] = ((sag_rate * mechanism.damping) @ shapes)[..., None]
-        of_modes = {name: np.linalg.solve(masses, forces[name]) for name in OF_MODES}
+        of_modes = dict[str, Array]()
+        for name in OF_MODES:
+            of_modes[name] = np.asarray(np.linalg.solve(masses, forces[name]), float)
         for name in ("a", "b", "e"):
             of_modes[name] = of_modes[name][..., 0]
         of_torques = {name: raw[name][:, :driven] for name in OF_TORQUES}

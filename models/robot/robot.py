@@ -1,63 +1,35 @@
-"""A robot: its URDF, which joints are driven, and what of it bends."""
+"""A robot: its URDF, which joints are driven, what of it bends; and its plant on a path."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from quietarm.models.checks import finite, has_no, not_negative, positive, whole
-from quietarm.models.joint_motion import Array
+from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
+from quietarm.models.plant import Plant, content
 from quietarm.models.robot.beam import Beam
-from quietarm.models.robot.dynamics import Dynamics, SoftSpringError
+from quietarm.models.robot.dynamics import Dynamics
 from quietarm.models.robot.files import read_text
+from quietarm.models.robot.flexibility import Base, Measured, Spring
 from quietarm.models.robot.mechanism import BEAM_END, Mechanism, build_mechanism
-from quietarm.models.robot.spectra import spectrum
+from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
+from quietarm.models.robot.path import GeometricPath
+from quietarm.models.robot.robot_file import read_robot
+from quietarm.models.robot.tables import Tables, reach, tables_of
 from quietarm.models.robot.urdf import Urdf, dynamics_of, read_urdf
-
-if TYPE_CHECKING:
-    from quietarm.models.robot.path import GeometricPath
-    from quietarm.models.robot.plant import RobotOnPath
 
 STANDARD_GRAVITY = 9.80665
 """[m/s^2], of the SI."""
 MOST_MODES = 12
-_MOST_STIFFER = 25.0
-"""So many times stiffer, or softer, may a measured frequency make the springs."""
-
-
-@dataclass(frozen=True)
-class Spring:
-    """Stiffness [N m/rad] and damping [N m s/rad] of a passive joint, or N/m and N s/m."""
-
-    stiffness: float
-    damping: float = 0.0
-
-
-@dataclass(frozen=True)
-class Base:
-    """A pedestal that rocks about x and y of the root link, at a height below it [m].
-
-    Stiffness [N m/rad] and damping [N m s/rad] about either axis.
-    """
-
-    stiffness: tuple[float, float]
-    damping: tuple[float, float] = (0.0, 0.0)
-    height: float = 0.0
-
-
-@dataclass(frozen=True)
-class Measured:
-    """A frequency of the first mode [rad/s], and where it was measured: positions of the joints."""
-
-    frequency: float
-    at: tuple[float, ...]
+_OVER = 1e-9
+"""By which a path may pass the range of a joint [rad or m]."""
 
 
 Limits = Mapping[str, Mapping[str, float]]
@@ -159,8 +131,6 @@ class Robot:
         ValueError
             When an entry is unknown, or its value cannot be used.
         """
-        from quietarm.models.robot.robot_file import read_robot
-
         return cls(**read_robot(path))
 
     def along(self, path: GeometricPath) -> RobotOnPath:
@@ -171,8 +141,6 @@ class Robot:
         ValueError
             When the path has other joints, leaves their ranges, or a spring cannot carry its load.
         """
-        from quietarm.models.robot.plant import RobotOnPath
-
         return RobotOnPath(robot=self, path=path)
 
     @cached_property
@@ -194,7 +162,7 @@ class Robot:
     def dynamics(self) -> Dynamics:
         """The equations, with the springs as they were measured."""
         dynamics = Dynamics(self.unscaled)
-        return dynamics if self.measured is None else _as_measured(dynamics, self.measured)
+        return dynamics if self.measured is None else as_measured(dynamics, self.measured)
 
     @cached_property
     def digest(self) -> str:
@@ -358,67 +326,176 @@ class Robot:
                 )
 
 
-def _as_measured(dynamics: Dynamics, measured: Measured) -> Dynamics:
-    """With springs by which the first mode has its measured frequency."""
-    from scipy.optimize import brentq  # takes a quarter of a second to load
+@dataclass(frozen=True)
+class RobotOnPath(Plant):
+    """A robot that follows a path; made by `Robot.along`.
 
-    q = np.array(measured.at)
+    The joint's angle is the place s on the path, from 0 to 1. W are deviations of the modes from
+    the equilibrium under gravity, which moves with the path.
 
-    def excess(logarithm: float) -> float:
-        values, _ = modes_at(dynamics.stiffened(math.exp(logarithm)), q)
-        return math.log(values[0] / measured.frequency)
+    Raises
+    ------
+    ValueError
+        When the path has other joints than the robot, leaves the range of one, or a spring cannot
+        carry its load on it.
+    """
 
-    stated, _ = modes_at(dynamics, q)
-    guess = 2 * math.log(measured.frequency / stated[0])
-    if abs(guess) > math.log(_MOST_STIFFER):
-        raise ValueError(
-            f"measured frequency is {measured.frequency / math.tau:.4g} Hz, and the robot's is "
-            f"{stated[0] / math.tau:.4g} Hz; check its springs, masses and where it was measured"
-        )
-    ends = (guess - _NEAR, guess + _NEAR)
-    return dynamics.stiffened(math.exp(float(brentq(excess, *ends, xtol=1e-13))))
+    name: ClassVar[str] = "robot"
+    path_range: ClassVar[tuple[float, float] | None] = reach()
+
+    robot: Robot = content("what moves")  # noqa: RUF009
+    path: GeometricPath = content("where its joints go")  # noqa: RUF009
+
+    def __post_init__(self) -> None:
+        path = self.path
+        names = self.robot.joints
+        if path.joints and set(path.joints) != set(names):
+            raise ValueError(
+                f"the path is of the joints {', '.join(path.joints)}, and the robot drives "
+                f"{', '.join(names)}; give positions of these"
+            )
+        if path.count != len(names):
+            raise ValueError(
+                f"the path is of {path.count} joints, and the robot drives {len(names)}, "
+                f"{', '.join(names)}; give positions of these, in this order"
+            )
+        if path.joints and path.joints != names:
+            object.__setattr__(self, "path", path.of_joints(names))
+        self._check_ranges()
+        _ = self.tables
+
+    @property
+    def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """How many modal amplitudes it has."""
+        return self.robot.modes
+
+    @property
+    def label(self) -> str:
+        """The robot's name, and what bends."""
+        robot = self.robot
+        bends = [
+            *(["base"] if robot.base is not None else []),
+            *(["gears"] if robot.elastic_joints else []),
+            *(["springs"] if robot.springs else []),
+            *([f"beam at {robot.beam.at}"] if robot.beam is not None else []),
+        ]
+        return f"{robot.description.name} ({len(robot.joints)} joints; {', '.join(bends)})"
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Of the driven joints."""
+        return self.robot.joints
+
+    @property
+    def tables(self) -> Tables:
+        """The coefficients of its equations."""
+        return tables_of(self.robot, self.path)
+
+    def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
+        """W'' by the motion on the path [m/s^2]."""
+        of = self._coefficients(joint, self.tables.modes)
+        square = joint.speed * joint.speed
+        accelerations = list[Expression]()
+        for i in range(self.modes):
+            forces = [
+                (of["a"][i], joint.acceleration),
+                (of["b"][i], square),
+                (of["e"][i], joint.speed),
+            ]
+            for j in range(self.modes):
+                stiffness = _sum([
+                    (of["K"][i, j], 1.0),
+                    (of["A"][i, j], joint.acceleration),
+                    (of["B"][i, j], square),
+                ])  # fmt: skip
+                damping = _sum([(of["D"][i, j], 1.0), (of["C"][i, j], joint.speed)])
+                forces += [(stiffness, W[j]), (damping, dW[j])]
+            accelerations.append(-_sum(forces))
+        return accelerations
+
+    def joints(self, path: JointMotion) -> Sequence[JointMotion]:
+        """Motion of every driven joint [rad or m]."""
+        positions = np.moveaxis(np.array(self.tables.path), 0, -1)
+        by_joint = self.tables.at(path.angle).values(positions)
+        square = path.speed * path.speed
+        nothing = 0 * path.angle
+        motions = list[JointMotion]()
+        for at, slope, bend, third in by_joint:
+            speed = _sum([(slope, path.speed)])
+            acceleration = _sum([(slope, path.acceleration), (bend, square)])
+            jerk = None
+            if path.jerk is not None:
+                jerk = nothing + _sum([
+                    (slope, path.jerk),
+                    (bend, 3 * path.speed * path.acceleration),
+                    (third, square * path.speed),
+                ])  # fmt: skip
+            motion = JointMotion(at + nothing, speed + nothing, acceleration + nothing, jerk)
+            motions.append(motion)
+        return motions
+
+    def torques(self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Sequence[Expression]:
+        """Torque of every driven joint [N m, or N of a sliding one]."""
+        of = self._coefficients(path, self.tables.torques)
+        square = path.speed * path.speed
+        nothing = 0 * path.angle
+        torques = list[Expression]()
+        for i in range(len(self.joint_names)):
+            terms = [
+                (of["g"][i], 1.0),
+                (of["a"][i], path.acceleration),
+                (of["b"][i], square),
+                (of["e"][i], path.speed),
+            ]
+            for j in range(self.modes):
+                stiffness = _sum([
+                    (of["K"][i, j], 1.0),
+                    (of["A"][i, j], path.acceleration),
+                    (of["B"][i, j], square),
+                ])  # fmt: skip
+                damping = _sum([(of["C"][i, j], path.speed)])
+                terms += [(stiffness, W[j]), (damping, dW[j]), (of["N"][i, j], ddW[j])]
+            torques.append(_sum(terms) + nothing)
+        return torques
+
+    def tips_at(self, path: JointMotion, W: Modes) -> Sequence[Expression]:
+        """Displacements of the tip from its place at rest, in its own frame [m]."""
+        rows = self.tables.at(path.angle).values(self.tables.tips)
+        return [_sum(list(zip(row, W))) + 0 * path.angle for row in rows]
+
+    def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
+        """Their rates [m/s]."""
+        place = self.tables.at(path.angle)
+        rows = place.values(self.tables.tips)
+        slopes = place.values(self.tables.tip_rates)
+        return [
+            _sum(list(zip(slope, W))) * path.speed + _sum(list(zip(row, dW)))
+            for row, slope in zip(rows, slopes)
+        ]
+
+    def _coefficients(self, path: JointMotion, tables: Mapping[str, Array]) -> dict[str, Array]:
+        """All of a group at the place on the path, by one product."""
+        place = self.tables.at(path.angle)
+        return {name: place.values(table) for name, table in tables.items()}
+
+    def _check_ranges(self) -> None:
+        """Refuse a path beyond a joint's range."""
+        places = np.linspace(0.0, 1.0, 1001)
+        positions = self.path(places)
+        for name, (least, most), column in zip(self.joint_names, self.robot.ranges(), positions.T):
+            beyond = np.maximum(column - most, least - column)
+            if beyond.max() > _OVER:
+                at = int(beyond.argmax())
+                raise ValueError(
+                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path; "
+                    f"its range is {least:g} to {most:g}, give a path within it"
+                )
 
 
-_NEAR = 0.5
-"""Logarithm of the stiffness, within which gravity changes what a frequency asks for."""
-
-
-def sag_at(dynamics: Dynamics, q: Array, begin: Array | None = None) -> Array:
-    """Angles of the springs at rest; ValueError where one is too soft."""
-    try:
-        return dynamics.sag(q, begin)
-    except SoftSpringError as error:
-        raise ValueError(
-            f"spring {error} is too soft to carry its load with the joints at "
-            f"{', '.join(f'{x:.4g}' for x in q)}; give a stiffer one, or less mass"
-        ) from None
-
-
-def modes_at(dynamics: Dynamics, q: Array, p: Array | None = None) -> tuple[Array, Array]:
-    """Frequencies [rad/s] and shapes of the modes about the sag, driven joints held."""
-    p = sag_at(dynamics, q) if p is None else p
-    _, stiffness = dynamics.stiffness_at(q, p)
-    masses = dynamics.masses(np.concatenate([q, p])).full()[dynamics.driven :, dynamics.driven :]
-    squares, shapes = spectrum((stiffness + stiffness.T) / 2, masses)
-    if squares[0] <= 0:
-        weakest = dynamics.mechanism.spring_names[int(np.abs(shapes[:, 0]).argmax())]
-        raise ValueError(
-            f"spring {weakest} is too soft to carry its load with the joints at "
-            f"{', '.join(f'{x:.4g}' for x in q)}; give a stiffer one, or less mass"
-        )
-    return np.sqrt(squares), shapes
-
-
-def tip_offset(dynamics: Dynamics, tip: Any, q: Array, p: Array) -> Array:
-    """Where the tip is, seen in its frame on the robot that does not bend [m]."""
-    import casadi as ca
-
-    x = ca.SX.sym("x", dynamics.size)
-    rotation, origin = dynamics.place(tip, x)
-    place = ca.Function("place", [x], [rotation, origin])
-    straight, before = (entry.full() for entry in place(np.concatenate([q, 0 * p])))
-    _, bent = (entry.full() for entry in place(np.concatenate([q, p])))
-    return (straight.T @ (bent - before)).ravel()
+def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:
+    """Of products of two, without those that are nothing."""
+    terms = [left * right for left, right in products if not (is_zero(left) or is_zero(right))]
+    return sum(terms[1:], terms[0]) if terms else 0.0
 
 
 def _vector(name: str, value: Any) -> tuple[float, float, float]:

@@ -11,7 +11,7 @@ from typing import Any
 from quietarm.models.checks import has_no
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.files import read_text, read_yaml
-from quietarm.models.robot.robot import Base, Measured, Spring
+from quietarm.models.robot.flexibility import Base, Measured, Spring
 from quietarm.models.robot.urdf import read_urdf
 from quietarm.models.units import parse_quantity
 

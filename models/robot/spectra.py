@@ -13,5 +13,5 @@ def spectrum(stiffness: Array, masses: Array) -> tuple[Array, Array]:
     """
     root = np.linalg.cholesky(masses)
     inverse = np.linalg.inv(root)
-    squares, turned = np.linalg.eigh(inverse @ stiffness @ inverse.T)
-    return squares, inverse.T @ turned
+    found = np.linalg.eigh(inverse @ stiffness @ inverse.T)
+    return np.asarray(found.eigenvalues, float), np.asarray(inverse.T @ found.eigenvectors, float)

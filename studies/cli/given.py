@@ -147,12 +147,12 @@ class Given:
 
     def _read_robot(self, robot: Robot, **known: float) -> Grid:
         """The task of a robot along its path, without axes."""
-        text = self._context.params["duration"]
-        if text is None and "duration" not in known:
-            raise click.UsageError("Missing option '--duration'. Give it as --duration 0.8")
+        text: str | None = self._context.params["duration"]
         duration = known.get("duration")
+        if duration is None and text is None:
+            raise click.UsageError("Missing option '--duration'. Give it as --duration 0.8")
         if duration is None:
-            (duration,) = parse_of_plant("duration", text, "rotary", "m")
+            (duration,) = parse_of_plant("duration", str(text), "rotary", "m")
         return Grid(read_robot_task(self, robot, duration), ())
 
 

@@ -20,6 +20,10 @@ Kind = type[Plant] | Identified | Robot
 """What PLANT names: a class of plants, an identified machine, or a robot."""
 OF_ROBOTS = (".yaml", ".yml")
 """Endings of the files of robots."""
+_NO_PLANT = (
+    "a robot is a plant on a path alone; give it to quietarm plan, evaluate, front or search, with "
+    "--start and --target or --path"
+)
 
 
 def parse_plant(name: str) -> Kind:
@@ -57,6 +61,8 @@ def read_parameters(
     kind: Kind | Plant, pairs: Iterable[tuple[str, str]]
 ) -> dict[str, tuple[float, ...]]:
     """The values that parameters are set to, several for an axis of a sweep."""
+    if isinstance(kind, Robot):
+        raise ValueError(_NO_PLANT)
     plant = kind.plant if isinstance(kind, Identified) else kind
     texts, known = once(pairs, "--set "), {entry.name: entry.metadata for entry in fields(plant)}
     for name in texts:
@@ -72,6 +78,8 @@ def read_parameters(
 
 def build_plant(kind: Kind, values: Mapping[str, float]) -> Plant:
     """The plant with these values; of an identified machine it keeps the others."""
+    if isinstance(kind, Robot):
+        raise ValueError(_NO_PLANT)
     if isinstance(kind, Identified):
         return replace(kind.plant, **values)
     needed = (one.name for one in fields(kind) if one.default is one.default_factory is MISSING)

@@ -7,7 +7,7 @@ from math import tau
 import numpy as np
 from quietarm.models import GeometricPath, Robot
 from quietarm.models.joint_motion import joint_unit
-from quietarm.models.robot.robot import modes_at, sag_at
+from quietarm.models.robot.modes import modes_at, sag_at
 from quietarm.models.robot.urdf import PRISMATIC
 from quietarm.ocp.limits import QUANTITIES
 
