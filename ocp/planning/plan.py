@@ -176,16 +176,15 @@ class Plan(MotionAnswer):
         if self.task.plant.joint != ROTARY:
             way, force = "position_m", "force_N"
         unit = way.rpartition("_")[2]
-        joints = self.task.plant.joint_names
-        prefixes = [""] if len(joints) == 1 else [f"{name}_" for name in joints]
-        moving = [way, f"speed_{unit}_s", f"acceleration_{unit}_s2"]
-        of_joints = [f"{prefix}{name}" for prefix in prefixes for name in moving]
-        forces = [f"{prefix}{force}" for prefix in prefixes]
-        header = ["time_s", *of_joints, *tip_names, *forces, "power_W"]
+        of_joint = [way, f"speed_{unit}_s", f"acceleration_{unit}_s2"]
+        names = self.task.plant.joint_names
+        joints = [""] if len(names) == 1 else [f"{name}_" for name in names]
+        header = ["time_s", *(f"{joint}{column}" for joint in joints for column in of_joint)]
+        header += [*tip_names, *(f"{joint}{force}" for joint in joints), "power_W"]
         sample = sampled.sample
-        motions = [value for joint in sample.joints for value in joint[:3]]
+        moving = [value for joint in sample.joints for value in joint[:3]]
         table = np.column_stack(
-            [sampled.time, *motions, *sample.tips, *sample.torques, sampled.power]
+            [sampled.time, *moving, sampled.tips, *sample.torques, sampled.power]
         )
         text = io.StringIO()
         np.savetxt(text, table, delimiter=",", header=",".join(header), comments="", fmt="%.10g")

@@ -15,7 +15,6 @@ from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.planning.plan import ticks_of_move
-from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.studies.report.templates import templates
 
 Array = NDArray[np.float64]
@@ -69,33 +68,37 @@ def columns_of(text: str, plant: Plant) -> dict[str, tuple[str, float]]:
 def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     """Columns, as `columns_of` reads them, by their headings, as `angle_deg`, at a rate [Hz].
 
-    The last row is the first tick at or after arrival. Each tip has a column of its own, and of a
-    robust plan in each scenario, which its heading names.
+    The last row is the first tick at or after arrival. Each of several joints has columns of its
+    own, `elbow_angle_deg`; each tip has one, and of a robust plan in each scenario, which its
+    heading names.
     """
     times = times_of(plan, rate)
     motion, tips = plan.sampled(times), _tips(plan, times)
-    names = {} if plan.task.plant.joint == ROTARY else _LINEAR_NAMES
+    plant, sample = plan.task.plant, motion.sample
+    values: dict[str, list[Array]] = {
+        "time": [motion.time],
+        "angle": [joint.angle for joint in sample.joints],
+        "speed": [joint.speed for joint in sample.joints],
+        "acceleration": [joint.acceleration for joint in sample.joints],
+        "jerk": [joint.jerk for joint in sample.joints],
+        "torque": list(sample.torques),
+        "power": [motion.power],
+    }
+    names = {} if plant.joint == ROTARY else _LINEAR_NAMES
+
+    def by_heading(name: str) -> dict[tuple[str, str], Array]:
+        """A column, or one for each joint, by what stands before and after the unit."""
+        word, columns = names.get(name, name), values[name]
+        if len(columns) == 1:
+            return {(word, ""): columns[0]}
+        return {(f"{joint}_{word}", ""): v for joint, v in zip(plant.joint_names, columns)}
+
     found: dict[str, Array] = {}
     for name, (unit, factor) in columns_of(columns, plan.task.plant).items():
         ending = unit.replace("/", "_").replace("^", "")
-        of_name = tips if name == "tip" else _columns(names.get(name, name), name, motion, plan)
+        of_name = tips if name == "tip" else by_heading(name)
         found |= {f"{one}_{ending}{after}": factor * v for (one, after), v in of_name.items()}
     return found
-
-
-def _columns(
-    heading: str, name: str, motion: Trajectory, plan: Plan
-) -> dict[tuple[str, str], Array]:
-    """A column by what stands before and after its unit; of several joints one for each."""
-    if name in ("time", "power"):
-        return {(heading, ""): getattr(motion, name)}
-    of_joints = motion.sample.torques
-    if name != "torque":
-        of_joints = [getattr(joint, name) for joint in motion.sample.joints]
-    joints = plan.task.plant.joint_names
-    if len(joints) == 1:
-        return {(heading, ""): of_joints[0]}
-    return {(f"{joint} {heading}", ""): column for joint, column in zip(joints, of_joints)}
 
 
 def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:
@@ -137,21 +140,24 @@ def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
 
 
 def ros_text(plan: Plan, rate: float, joint: str) -> str:
-    """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML.
+    """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, of all joints.
 
-    A plant of one joint is called by this name; several have names of their own.
+    A single joint has the name that is given, several those of the plant.
     """
-    names = plan.task.plant.joint_names
     motion = plan.sampled(times_of(plan, rate))
-    moving = np.array([joint[:3] for joint in motion.sample.joints])
-    points = [
-        (divmod(round(time * 1e9), 1_000_000_000), [map(_decimal, row) for row in rows])
-        for time, rows in zip(motion.time, np.moveaxis(moving, (2, 1), (0, 1)))
+    orders = [
+        np.column_stack([joint[order] for joint in motion.sample.joints]).tolist()
+        for order in range(3)
     ]
-    named = (name.replace("'", "''") for name in (names if len(names) > 1 else [joint]))
-    joints = [f"'{name}'" for name in named]  # as YAML reads them back
+    points = [
+        (divmod(round(time * 1e9), 1_000_000_000), [map(_decimal, row) for row in moving])
+        for time, *moving in zip(motion.time, *orders)
+    ]
+    own = plan.task.plant.joint_names
+    names = (joint,) if len(own) == 1 else own
+    quoted = ["'" + name.replace("'", "''") + "'" for name in names]  # as YAML reads it back
     texts = templates(keep_trailing_newline=True)
-    return texts.get_template("export/templates/move.yaml").render(joints=joints, points=points)
+    return texts.get_template("export/templates/move.yaml").render(joints=quoted, points=points)
 
 
 def _decimal(value: float) -> str:

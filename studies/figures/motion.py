@@ -11,10 +11,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY, joint_label
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.checks import instance, takes, unknown
-from quietarm.ocp.limits import QUANTITIES, unit_of
+from quietarm.ocp.limits import QUANTITIES, Shares, unit_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -112,10 +113,9 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     for line in lines:
         drawn += curves(line.plan, quantity)
         others = [style for style in (":", "-.", "--") if style != line.style]
-        names = curve_names(line.plan, quantity)
         for i, values in enumerate(curves(line.plan, quantity)):
             style = others[(i - 1) % len(others)] if i else line.style
-            label = f"{line.label}, {names[i]}" if i else line.label
+            label = line.label + _which(plant, quantity, i)
             ax.plot(line.plan.trajectory.time, values, color=line.colour, linestyle=style,
                     linewidth=1.6, label=label)  # fmt: skip
     for duration in {line.plan.task.duration for line in lines}:
@@ -143,11 +143,13 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
     return [scale * np.asarray(column) for column in columns]
 
 
-def curve_names(motion: Plan | Floor, quantity: str) -> Sequence[str]:
-    """What tells the curves of a quantity apart: joints by name, tips by number."""
-    plant = motion.task.plant
-    of_tips = quantity in QUANTITIES and not QUANTITIES[quantity].of_joints
-    return [f"tip {i + 1}" for i in range(plant.tips)] if of_tips else plant.joint_names
+def _which(plant: Plant, quantity: str, curve: int) -> str:
+    """Which joint or tip a curve is of, where there are several."""
+    joints = plant.joint_names
+    of_joints = quantity in QUANTITIES and QUANTITIES[quantity].of_joints
+    if len(joints) > 1 and (of_joints or quantity == "angle"):
+        return f", {joints[curve]}"
+    return f", tip {curve + 1}" if curve else ""
 
 
 def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
@@ -250,7 +252,13 @@ def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list
     """The limits of a quantity that its values come near, in the unit that is shown."""
     limits = [line.plan.task.limit_of(quantity) for line in lines]
     scale = scale_of(quantity, lines[0].plan.task.plant.tip_unit)
-    bounds = {bound for one in limits if one is not None for bound in (one.lower, one.upper)}
+    bounds = set[float]()
+    for limit in limits:
+        if limit is not None and isinstance(limit.quantity.values, Shares):
+            by_joint = limit.quantity.values.bounds
+            bounds |= {level for bound in by_joint for level in (bound.lower, bound.upper)}
+        elif limit is not None:
+            bounds |= {limit.lower, limit.upper}
     return [
         level for level in sorted(scale * bound for bound in bounds)
         if (values * np.sign(level)).max() >= _IN_SIGHT * abs(level)

@@ -219,7 +219,7 @@ def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]
 
 def _peak_name(name: str, task: PointToPoint) -> str:
     force = name == "torque" and task.plant.joint != ROTARY
-    return f"peak {'force' if force else name}"
+    return f"peak {'force' if force else name.replace('_', ' ')}"
 
 
 def _way(size: float, task: PointToPoint) -> str:

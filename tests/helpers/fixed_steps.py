@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.simulation.objective import integrated
+from quietarm.ocp.simulation.objective import PEAKS, integrated
 
 import quietarm as qa
 
@@ -44,7 +44,12 @@ def _of_scenario(task, plant, profile, coefficients, steps):
         energy=energy.item(),
         net_work=net_work.item(),
         overshoot=max(0.0, past_target.max()),
-        **{one.peak: float(np.abs(values).max()) for one, values in peaks},
+        ranges={
+            quantity.name: (float(values.min()), float(values.max()))
+            for quantity, values in zip(QUANTITIES.values(), quantities, strict=True)
+            if quantity.peak not in PEAKS
+        },
+        **{one.peak: float(np.abs(values).max()) for one, values in peaks if one.peak in PEAKS},
     )
     return motion, arrival.ravel()
 
