@@ -15,4 +15,11 @@ from .plant import parameter as parameter
 from .plant_file import PlantFile as PlantFile
 from .plant_file import file_of_plant as file_of_plant
 from .plant_file import load_plant_file as load_plant_file
+from .robot import Base as Base
+from .robot import Beam as Beam
+from .robot import GeometricPath as GeometricPath
+from .robot import Measured as Measured
+from .robot import Robot as Robot
+from .robot import RobotOnPath as RobotOnPath
+from .robot import Spring as Spring
 from .single_link import SingleLinkManipulator as SingleLinkManipulator

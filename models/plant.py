@@ -38,6 +38,11 @@ def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
     return field(default=default, metadata={"unit": unit, "source": source, "meaning": meaning})
 
 
+def content(meaning: str) -> Any:
+    """Declare a part of a plant that is no number, as a robot: a value that is saved with it."""
+    return field(metadata={"content": True, "meaning": meaning})
+
+
 class Plant(ABC):
     """Joints with flexible modes: subclass it as a frozen dataclass, in one file.
 
@@ -148,6 +153,11 @@ class Plant(ABC):
         return self.tip_displacements(dW)
 
     @property
+    def label(self) -> str:
+        """What reports call it, by default its name."""
+        return self.name
+
+    @property
     def joint_names(self) -> tuple[str, ...]:
         """Names of the joints, in the order of `joints`, by which limits and columns name them."""
         count = len(self.joints(JointMotion(ca.SX.sym("angle"), 0.0, 0.0)))
@@ -165,13 +175,19 @@ class Plant(ABC):
     @final
     def parameters(self) -> dict[str, float]:
         """The plant's parameters by name, in SI units."""
-        return {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        return {entry.name: getattr(self, entry.name) for entry in self.parameter_fields()}
 
     @classmethod
     @final
     def units(cls) -> dict[str, str]:
         """The parameters' units by name, "-" where there is none."""
-        return {entry.name: entry.metadata.get("unit", "-") for entry in fields(cls)}
+        return {entry.name: entry.metadata.get("unit", "-") for entry in cls.parameter_fields()}
+
+    @classmethod
+    @final
+    def parameter_fields(cls) -> tuple[Field[Any], ...]:
+        """The fields that are parameters: all but `content`."""
+        return tuple(entry for entry in fields(cls) if "content" not in entry.metadata)
 
     @property
     def measured(self) -> dict[str, float]:

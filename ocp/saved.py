@@ -11,7 +11,7 @@ from contextlib import suppress
 from enum import Enum
 from html import escape
 from pathlib import Path
-from typing import Any, ClassVar, Self, TypeVar
+from typing import Any, ClassVar, Self, TypeVar, get_type_hints
 
 import msgspec
 import numpy as np
@@ -166,9 +166,21 @@ def _known_here(kind: Any, entry: Any) -> Any:
             f"the file that defines it first{by_file}"
         )
     try:
-        return classes[name](**table)
+        return classes[name](**_with_content(classes[name], table))
     except TypeError as error:  # an entry too many or too few
         raise ValueError(f"its {what} {name!r}: {error}") from None
+
+
+def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
+    """The entries of a table, those that are no numbers as values of their classes."""
+    entries = [entry for entry in dataclasses.fields(kind) if "content" in entry.metadata]
+    classes = get_type_hints(kind) if entries else {}
+    content = {
+        entry.name: typed(table[entry.name], classes[entry.name])
+        for entry in entries
+        if entry.name in table
+    }
+    return {**table, **content}
 
 
 def _check_file(name: str, path: str, sha256: str) -> None:

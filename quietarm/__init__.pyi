@@ -4,10 +4,13 @@ from . import ocp as ocp
 from . import studies as studies
 from .metaheuristics import search as search
 from .models import ArmOnFlexibleLink as ArmOnFlexibleLink
+from .models import Beam as Beam
 from .models import DualLinkManipulator as DualLinkManipulator
 from .models import FlexibleBeam as FlexibleBeam
+from .models import GeometricPath as GeometricPath
 from .models import LinearAxis as LinearAxis
 from .models import Plant as Plant
+from .models import Robot as Robot
 from .models import SingleLinkManipulator as SingleLinkManipulator
 from .models import deg as deg
 from .models import parameter as parameter

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ import click
 from rich.console import Console
 
 from quietarm.models.interrupts import note_interrupts
-from quietarm.ocp import QuietarmError
+from quietarm.ocp import Plan, QuietarmError
 from quietarm.ocp.files import check_writable, unwritable
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
@@ -26,7 +27,8 @@ if TYPE_CHECKING:
     from quietarm.studies.report import Report
 
 PICTURE, FOLDER, DATASET = SUFFIXES[0], "", ".zarr"
-_SAME = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv"}
+TRAJECTORY = ".yaml"
+_SAME = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv", ".yml": ".yaml"}
 """Endings that mean the same as another."""
 _NAMES = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
 
@@ -81,7 +83,15 @@ def answer_files(
     """An answer as JSON, as a table where it has one, and as a picture, as the endings say."""
     saves = {".json": "save", ".csv": "save_csv"}
     ways = {ending: getattr(answer, save, None) for ending, save in saves.items()}
+    ways[TRAJECTORY] = partial(_save_trajectory, answer)
     return [(path, ways.get(ending_of(path)) or drawing(draw)) for path in output]
+
+
+def _save_trajectory(plan: Plan, path: Path) -> None:
+    """As a controller of ROS 2 reads it."""
+    from quietarm.studies.export.formats import export_plan
+
+    export_plan(plan, path)
 
 
 def finish(

@@ -10,7 +10,7 @@ import click
 from click.core import ParameterSource
 from rich.console import Console
 
-from quietarm.models import Plant
+from quietarm.models import Plant, Robot
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import JointProfile, PointToPoint, Solver
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
@@ -24,6 +24,7 @@ from quietarm.studies.cli.plants import (
     warn_of_payload,
 )
 from quietarm.studies.cli.quantities import RESIDUAL_LIMIT, parse_of_plant
+from quietarm.studies.cli.robots import read_robot_task
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.report.words import print_lines
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
@@ -137,6 +138,10 @@ class Given:
     def read_grid(self, **known: float) -> Grid:
         """The task, and axes over what has several values."""
         kind = choose_kind(self.plant, self.plant_file)
+        if isinstance(kind, Robot):
+            return self._read_robot(kind, **known)
+        if self._context.command.name != "evaluate":  # which has recorded paths
+            self.refuse(["path"], "is for a robot, whose file is PLANT, as ur5.yaml")
         parameters = read_parameters(kind, self.parameters)
         plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
         uncertainty = build_uncertainty(kind, self.errors, parameters)
@@ -159,6 +164,16 @@ class Given:
         task = PointToPoint(plant, **furthest, **given, uncertainty=uncertainty)
         warn_of_payload(kind, plant, parameters)
         return Grid(task, tuple(axes))
+
+    def _read_robot(self, robot: Robot, **known: float) -> Grid:
+        """The task of a robot along its path, without axes."""
+        text: str | None = self._context.params["duration"]
+        duration = known.get("duration")
+        if duration is None and text is None:
+            raise click.UsageError("Missing option '--duration'. Give it as --duration 0.8")
+        if duration is None:
+            (duration,) = parse_of_plant("duration", str(text), "rotary", "m")
+        return Grid(read_robot_task(self, robot, duration), ())
 
 
 def single_values(given: Mapping[str, Sequence[float]]) -> dict[str, float]:

@@ -26,7 +26,7 @@ from quietarm.studies.cli.quantities import (
     parse_state,
     parse_workers,
 )
-from quietarm.studies.cli.types import SETTING, TIME, Named, Parsed
+from quietarm.studies.cli.types import INPUT, SETTING, TIME, Named, Parsed
 from quietarm.studies.reading.profiles import POLYNOMIAL, families
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
@@ -110,11 +110,20 @@ SET = option("--set", "parameters", type=SETTING, multiple=True, metavar="NAME=V
 ERROR = option("--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
                help="Range of the error of frequency, damping or a parameter, as frequency=8%; the "
                "residual is then that of the worst case. `measured`: as identified.")  # fmt: skip
+WAYPOINTS = option("--path", type=INPUT,
+                   help="Of a robot: waypoints that its joints pass, as csv with a column a joint, "
+                   "or a JointTrajectory in YAML, whose times are dropped.")  # fmt: skip
+ENDS = (
+    option("--start", default="0", metavar="ANGLE", help="Joint angle at the start; of a robot one "
+           "of each joint: --start=0,-80deg,97deg."),
+    option("--target", metavar="ANGLE", help="Joint angle at the end, or 300mm of a linear axis; "
+           "of a robot one of each joint."),
+)  # fmt: skip
+"""From where to where a joint moves, or the joints of a robot."""
 TASK = (
     click.Argument(["plant"], type=Parsed("plant", parse_plant), required=False, metavar="[PLANT]"),
     SET,
-    option("--start", default="0", metavar="ANGLE", help="Joint angle at the start."),
-    option("--target", metavar="ANGLE", help="Joint angle at the end, or 300mm of a linear axis."),
+    *ENDS,
     option("--duration", metavar="TIME", help="Travelling time; quietarm plan also takes "
            "`fastest`, the shortest within the limits."),
     *(
@@ -136,7 +145,7 @@ TASK = (
            "constant [N m/W^0.5] as copper:0.12, or a sum as 0.5*absolute+copper:0.12."),
     ERROR,
 )  # fmt: skip
-"""What describes a task: a command with these has `Given.read_task`."""
+"""What describes a task: a command with these, and a --path, has `Given.read_task`."""
 BOUND = option("--bound", type=float, help="Largest size of a coefficient. [default: none; a "
                "search of polynomials needs one]")  # fmt: skip
 RESIDUAL_LIMIT = option("--residual-limit", metavar="LENGTH", help="Largest tip displacement after "

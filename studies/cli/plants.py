@@ -9,7 +9,7 @@ from math import tau
 
 from rich.console import Console
 
-from quietarm.models import FlexibleBeam, Plant, known_plants
+from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import MEASURED, once, parse_parameter
@@ -17,24 +17,34 @@ from quietarm.studies.identify import Identified
 from quietarm.studies.report.words import print_lines
 from quietarm.studies.sweep.grid import axis_values
 
-Kind = type[Plant] | Identified
-"""What PLANT names: a class of plants, or an identified machine."""
+Kind = type[Plant] | Identified | Robot
+"""What PLANT names: a class of plants, an identified machine, or a robot."""
+OF_ROBOTS = (".yaml", ".yml")
+"""Endings of the files of robots."""
+_NO_PLANT = (
+    "a robot is a plant on a path alone; give it to quietarm plan, evaluate, front or search, with "
+    "--start and --target or --path"
+)
 
 
 def parse_plant(name: str) -> Kind:
-    """A class of plants by its name, or an identified machine by its file."""
+    """A class of plants by its name, or an identified machine or a robot by its file."""
     if name.endswith(".json"):
         return Identified.load(name)
-    plants = known_plants()
+    if name.endswith(OF_ROBOTS):
+        return Robot.load(name)
+    plants = {known: plant for known, plant in known_plants().items() if plant is not RobotOnPath}
     if name not in plants:
-        also = "; your own by its --plant-file, an identified one by its .json"
+        also = (
+            "; your own by its --plant-file, an identified one by its .json, a robot by its .yaml"
+        )
         raise ValueError(unknown("plant", name, sorted(plants), also))
     return plants[name]
 
 
 def choose_kind(named: Kind | None, own: Mapping[str, type[Plant]] | None) -> Kind:
     """What PLANT names, or else the only plant of a plant file."""
-    if isinstance(named, Identified) or (named and own is None):
+    if isinstance(named, Identified | Robot) or (named and own is None):
         return named
     if not own:
         raise ValueError(
@@ -52,6 +62,8 @@ def read_parameters(
     kind: Kind | Plant, pairs: Iterable[tuple[str, str]]
 ) -> dict[str, tuple[float, ...]]:
     """The values that parameters are set to, several for an axis of a sweep."""
+    if isinstance(kind, Robot):
+        raise ValueError(_NO_PLANT)
     plant = kind.plant if isinstance(kind, Identified) else kind
     texts, known = once(pairs, "--set "), {entry.name: entry.metadata for entry in fields(plant)}
     for name in texts:
@@ -67,6 +79,8 @@ def read_parameters(
 
 def build_plant(kind: Kind, values: Mapping[str, float]) -> Plant:
     """The plant with these values; of an identified machine it keeps the others."""
+    if isinstance(kind, Robot):
+        raise ValueError(_NO_PLANT)
     if isinstance(kind, Identified):
         return replace(kind.plant, **values)
     needed = (one.name for one in fields(kind) if one.default is one.default_factory is MISSING)

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
+from quietarm.models.units import is_number, parse_quantity
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
@@ -26,59 +27,10 @@ from quietarm.studies.sweep.grid import OF_MOVES, axis_values
 
 S = TypeVar("S")
 T = TypeVar("T")
-_NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
-_PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
-_WITH_UNIT = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%°/]*)")
-_COMMA = re.compile(r"[+-]?\d+,\d+[^\d,]*")
 _PLUS = re.compile(r"(?<!\d[eE])\+")
-_LENGTHS = {"m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}
-_ANGLES = {"rad": 1.0, **dict.fromkeys(("deg", "°", "degrees"), 180 / math.pi)}
-_SPEEDS = {
-    **_ANGLES, "rad/s": 1.0, "deg/s": 180 / math.pi, "rpm": 30 / math.pi,
-    "Hz": 0.5 / math.pi, "hz": 0.5 / math.pi, "kHz": 5e-4 / math.pi,
-}  # fmt: skip
-UNITS: Mapping[str, tuple[str, Mapping[str, float]]] = {
-    "rad": ("radians (0.5), 30deg, pi/6 or -pi/2", _ANGLES),
-    "rad/s": ("rad/s (2), 60deg/s or 3.2Hz", _SPEEDS),
-    "rad/s^2": ("rad/s^2 (2) or 60deg/s^2", _ANGLES),
-    "rad/s^3": ("rad/s^3 (2) or 60deg/s^3", _ANGLES),
-    "m": ("metres (0.001) or 1mm", _LENGTHS),
-    "m/s": ("m/s (0.5) or 500mm/s", {"m/s": 1.0, "mps": 1.0, "mm/s": 1e3}),
-    "m/s^2": ("m/s^2 (2) or 2000mm/s^2", _LENGTHS),
-    "m/s^3": ("m/s^3 (50)", _LENGTHS),
-    "s": ("seconds (0.8) or 800ms", {"s": 1.0, "ms": 1e3}),
-    "N": ("newtons (20) or 20N", {"N": 1.0, "mN": 1e3, "kN": 1e-3}),
-    "N m": ("newton metres (1.5) or 200mNm", {"Nm": 1.0, "mNm": 1e3}),
-    "kg": ("kilograms (0.1) or 100g", {"kg": 1.0, "g": 1e3}),
-    "-": ("a number (0.1) or 10%", {"%": 100.0}),
-}
-"""By the SI unit of a quantity: examples, and how many of each unit it is typed in make one.
-
-Dividing by 1000 is exact where multiplying by 0.001 is not.
-"""
 RESIDUAL_LIMIT = "residual_limit"
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""
-
-
-def parse_quantity(text: str, unit: str, what: str) -> float:
-    """Read a number in an SI unit, or with another unit of its kind: 0.6, 600mm, 3.2Hz, pi/6."""
-    examples, others = UNITS.get(unit, (f"a number in {unit}, without the unit", {}))
-    plain = text.strip()
-    if "^" in unit:
-        plain = plain.removesuffix(unit.removeprefix("rad").removeprefix("m"))
-    if unit.startswith("rad") and (match := _PI.fullmatch(plain)):
-        sign, factor, divisor = match.groups()
-        if float(divisor or 1) != 0:
-            return float(f"{sign}1") * float(factor or 1) * math.pi / float(divisor or 1)
-    match = _WITH_UNIT.fullmatch(plain)
-    if match and match[2] in others:
-        return float(match[1]) / others[match[2]]
-    if is_number(plain):
-        return float(plain)  # nan and inf, for the task to refuse in its own words
-    if _COMMA.fullmatch(plain):
-        examples = f"{plain.replace(',', '.')}, with a point"
-    raise ValueError(f"{text!r} is not {what}; give {examples}")
 
 
 _RARE = {
@@ -133,6 +85,10 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     if name == RESIDUAL_LIMIT:
         return parse_usual(tip_unit, "a length" if tip_unit == "m" else "an angle", text)
     quantities = quantities_of(joint, tip_unit)
+    if "=" in text and quantities[name.removesuffix("_limit")].of_joints:
+        pairs = (parse_pair(one, "a limit", "elbow_joint=16") for one in text.split(","))
+        by_joint = once(pairs, "the limit of ")
+        return {of: parse_of_plant(name, value, joint, tip_unit) for of, value in by_joint.items()}
     limited, sides = quantities[name.removesuffix("_limit")], text.split(":")
     what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
     values = [parse_usual(limited.unit, what, side) for side in sides]
@@ -141,15 +97,6 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     if len({is_number(side) for side in sides}) > 1:
         raise ValueError(f"{text!r} has a unit on one side alone; give it on both, or on none")
     return tuple(values) if len(values) == 2 else values[0]
-
-
-def is_number(text: str) -> bool:
-    """Whether a text is a number alone, without a unit."""
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def _two(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from math import degrees, isfinite
 from typing import TYPE_CHECKING
 
@@ -82,11 +81,11 @@ def plant_words(plant: Plant) -> str:
     """A plant's name, with the parameters that differ from those of its class, of its own."""
     changed: list[str] = []
     units = plant.units()
-    for entry in fields(plant):
+    for entry in plant.parameter_fields():
         value, unit = plant.parameters[entry.name], units[entry.name]
         if value != entry.default:
             changed.append(f"{entry.name} = {value:.5g}{'' if unit == '-' else f' {unit}'}")
-    return f"{plant.name} with {', '.join(changed)}" if changed else plant.name
+    return f"{plant.label} with {', '.join(changed)}" if changed else plant.label
 
 
 def error_words(task: PointToPoint) -> str:
@@ -103,9 +102,16 @@ def move_of(task: PointToPoint) -> str:
     """The move of a task: "0 to 30 deg in 0.8 s"; its energy where that is not the paper's."""
     ringing = ", ringing at the start" if task.initial else ""
     wanted = ", to a state other than rest" if task.final else ""
-    factor, unit = (1e3, "mm") if task.plant.joint == LINEAR else (degrees(1.0), "deg")
-    ends = f"{factor * task.start:.6g} to {factor * task.target:.6g} {unit}"
+    ends = ends_words(task)
     return ", ".join([f"{ends} in {task.duration:g} s{ringing}{wanted}", *energy_words(task)])
+
+
+def ends_words(task: PointToPoint) -> str:
+    """From where to where: "0 to 30 deg", of several joints the places on their path."""
+    if len(task.plant.joint_names) > 1:
+        return f"{task.start:.6g} to {task.target:.6g} of the path"
+    factor, unit = (1e3, "mm") if task.plant.joint == LINEAR else (degrees(1.0), "deg")
+    return f"{factor * task.start:.6g} to {factor * task.target:.6g} {unit}"
 
 
 def state_words(state: ModalState, tip_unit: str) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from quietarm.models import Robot
 from quietarm.ocp import PointToPoint, evaluate_coefficients
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
@@ -39,7 +40,7 @@ def _coefficients(text: str) -> list[float] | Path:
            help="Those of the profile, as --coefficients=-0.0019,-0.14; or a file with a row a "
            "motion (.csv, .txt, .npy, .npz, .mat), which gives a front."),
     option("--path", type=INPUT, help="A CSV file with columns such as time_s and angle_deg, in "
-           "place of start, target and duration."),
+           "place of start, target and duration; of a robot its waypoints."),
     BOUND,
     option("--evaluations", type=int, help="Candidates that it took to find a file's rows."),
     SENSITIVITIES,
@@ -61,7 +62,7 @@ def evaluate(given: Given) -> None:
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients results.csv \\
           --output front.json --output front.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    if given.path is not None:
+    if given.path is not None and not isinstance(given.plant, Robot):
         return _evaluate_path(given)
     task = given.read_task()
     if isinstance(given.coefficients, Path):

@@ -17,6 +17,7 @@ from quietarm.studies.cli.options import (
     SOLVER,
     STARTS,
     TASK,
+    WAYPOINTS,
     YES,
     busy,
     command,
@@ -39,7 +40,7 @@ _CHECKED = 7
 
 
 @command(
-    *TASK,
+    *TASK, WAYPOINTS,
     method_option(_METHODS, _SEARCHES, "epsilon",
                   "Least energy at one residual limit after another (epsilon), or the least "
                   "weighted sum for one pair of weights after another."),

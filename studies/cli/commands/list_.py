@@ -5,24 +5,29 @@ from __future__ import annotations
 import click
 
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS
-from quietarm.models import known_plants
+from quietarm.models import Robot, known_plants
 from quietarm.ocp import Front
 from quietarm.studies.cli.files import FOLDER, finish, output_option
 from quietarm.studies.cli.given import Given
-from quietarm.studies.cli.options import command
+from quietarm.studies.cli.options import ENDS, WAYPOINTS, command
+from quietarm.studies.cli.plants import OF_ROBOTS
+from quietarm.studies.cli.robots import path_of
 from quietarm.studies.report.catalogue import KINDS, catalogue_rows
+from quietarm.studies.report.robots import robot_rows, usual_path
 from quietarm.studies.report.words import counted
 
 
 @command(
-    click.Argument(["names"], nargs=-1, metavar="[plants|problems|methods|NAME]..."),
+    click.Argument(["names"], nargs=-1, metavar="[plants|problems|methods|NAME|ROBOT.yaml]..."),
+    *ENDS, WAYPOINTS,
     output_option({FOLDER: "the reference fronts of the problems"}),
-)
+)  # fmt: skip
 def list_(given: Given) -> None:
     """List plants, problems and methods; or one of them by its name.
 
     A plant comes with the value, unit, meaning and source of its parameters, a problem with its
-    move and box, a method with its settings.
+    move and box, a method with its settings; a robot, by its file, with its masses, joints, springs
+    and limits, and with modes and sag along a path.
 
     \b
     Examples:
@@ -31,10 +36,17 @@ def list_(given: Given) -> None:
       quietarm list plants --plant-file crane.py
       quietarm list single-link-30deg-0.8s --output fronts
       quietarm list nsga2
+      quietarm list ur5_bar.yaml --start=0,-80deg,97deg,-107deg,-90deg,0 \\
+          --target=80deg,-57deg,69deg,-75deg,-69deg,34deg
     """  # noqa: D301  # \b is click's: do not rewrap
     names, shown = given.names or KINDS, list[str | list[tuple[str, str]]]()
     plants = known_plants() if given.plant_file is None else given.plant_file
     for name in names:
+        if name.endswith(OF_ROBOTS):
+            robot = Robot.load(name)
+            path = path_of(given, robot) or usual_path(robot)
+            shown += [f"{robot.description.name}:", robot_rows(robot, path)]
+            continue
         title, rows = catalogue_rows(name, plants)
         shown += [f"{title}:", [(f"  {one}", words) for one, words in rows]]
     problems = PROBLEMS if "problems" in names else [name for name in names if name in PROBLEMS]

@@ -8,7 +8,14 @@ from typing import Any
 from quietarm.ocp import Plan, SolverFailedError, energy_floor, fastest_move, plan_move
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
-from quietarm.studies.cli.files import PICTURE, answer_files, ending_of, finish, output_option
+from quietarm.studies.cli.files import (
+    PICTURE,
+    TRAJECTORY,
+    answer_files,
+    ending_of,
+    finish,
+    output_option,
+)
 from quietarm.studies.cli.given import Given, single_values
 from quietarm.studies.cli.options import (
     BOUND,
@@ -18,6 +25,7 @@ from quietarm.studies.cli.options import (
     SOLVER,
     STARTS,
     TASK,
+    WAYPOINTS,
     YES,
     busy,
     command,
@@ -39,7 +47,7 @@ _OF_SOLVES = ("starts", "seed", *(one.name or "" for one in SOLVER))
 
 
 @command(
-    *TASK,
+    *TASK, WAYPOINTS,
     *profile_options(
         *SHAPERS, *FREE,
         words="; a plain cycloid through an input shaper for the plant's frequencies at the "
@@ -49,7 +57,10 @@ _OF_SOLVES = ("starts", "seed", *(one.name or "" for one in SOLVER))
     option("--from", "dataset", type=INPUT, help="Take the move from this dataset of quietarm "
            "sweep, between its cells, without solving."),
     SENSITIVITIES, YES,
-    output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"}),
+    output_option({
+        ".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture",
+        TRAJECTORY: "a JointTrajectory of ROS 2 at 1 kHz",
+    }),
 )  # fmt: skip
 def plan(given: Given) -> None:
     """Find the move of least energy whose residual vibration is within a limit.

@@ -22,6 +22,7 @@ from quietarm.studies.cli.options import (
     METHOD_SETTING,
     SEED,
     TASK,
+    WAYPOINTS,
     WORKERS,
     YES,
     command,
@@ -48,7 +49,7 @@ _BY_GRADIENT = {
 
 
 @command(
-    *TASK,
+    *TASK, WAYPOINTS,
     method_option(PRESETS, _BY_GRADIENT, "nsga2",
                   "The metaheuristic; quietarm list methods has them."),
     *profile_options(), BOUND,

@@ -23,6 +23,7 @@ from quietarm.studies.cli.options import (
     SCHEDULER,
     SOLVER,
     TASK,
+    WAYPOINTS,
     WORKERS,
     command,
     counting,
@@ -38,7 +39,7 @@ _MANY = 1_000_000
 
 
 @command(
-    *TASK, *profile_options(), BOUND, RESIDUAL_LIMIT, *SOLVER,
+    *TASK, WAYPOINTS, *profile_options(), BOUND, RESIDUAL_LIMIT, *SOLVER,
     option("--limit-margin", "margin", type=SHARE, default="0%", help="Share of each limit that "
            "plans leave unused, so that moves between the cells keep it."),
     option("--front", type=click.IntRange(2, 1000), metavar="POINTS",

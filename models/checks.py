@@ -1,0 +1,108 @@
+"""Check the numbers and names that a user gives; a refusal names value and remedy."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import operator
+import re
+from collections.abc import Collection
+from typing import Any
+
+_ALIKE = 0.55
+"""Share of letters in common from which on a name is asked for."""
+_PART = 3
+"""So many letters of a longer name are enough."""
+
+
+def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
+    """A finite number as a float; text and truth values are none."""
+    wanted = f"number in {unit}" if unit else "number"
+    try:
+        number = float(_no_text(_no_truth_value(value)))
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is {value!r}; give a {wanted}") from None
+    if not math.isfinite(number):
+        raise ValueError(f"{name} is {value}; give a finite {wanted}")
+    if abs(number) > most:
+        raise ValueError(f"{name} is {number:g}; give at most {most:g}{why and f' ({why})'}")
+    return number
+
+
+def _no_truth_value(value: Any) -> Any:
+    """The value; TypeError for True and False, which count as 1 and 0 in Python."""
+    if isinstance(value, bool) or str(getattr(value, "dtype", "")) == "bool":
+        raise TypeError(f"{value!r} is no number")
+    return value
+
+
+def _no_text(value: Any) -> Any:
+    """The value; TypeError for text, of which Python makes a number as well."""
+    if isinstance(value, str | bytes):
+        raise TypeError(f"{value!r} is no number")
+    return value
+
+
+def positive(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
+    """A positive finite number as a float."""
+    number = finite(name, value, unit, most, why)
+    if number <= 0:
+        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
+    return number
+
+
+def not_negative(name: str, value: Any, unit: str = "") -> float:
+    """A finite number of 0 or more as a float."""
+    number = finite(name, value, unit)
+    if number < 0:
+        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give 0 or more")
+    return number
+
+
+def whole(name: str, value: Any, least: int, most: int | None = None, because: str = "") -> int:
+    """A whole number as an int."""
+    try:
+        number = operator.index(_no_truth_value(value))
+    except TypeError:
+        number = least - 1
+    if number < least:
+        raise ValueError(f"{name} is {value!r}; give a whole number from {least} up")
+    if most is not None and number > most:
+        raise ValueError(f"{name} is {number}; give at most {most}{because and f': {because}'}")
+    return number
+
+
+def unknown(what: str, name: str, known: Collection[str], also: str = "") -> str:
+    """The message about a name that is not known."""
+    return f"unknown {what} {name!r}{nearest(name, known)} (known: {', '.join(known)}{also})"
+
+
+def has_no(owner: str, what: str, name: str, known: Collection[str]) -> str:
+    """The message about a name that something does not have."""
+    listed = ", ".join(known) or "none"
+    return f"{owner} has no {what} {name!r}{nearest(name, known)} (it has: {listed})"
+
+
+def nearest(name: str, known: Collection[str]) -> str:
+    """A question for a message, with the known name that is most like an unknown one."""
+    near = nearest_name(name, known)
+    return f"; did you mean {near!r}?" if near else ""
+
+
+def nearest_name(name: str, known: Collection[str]) -> str:
+    """The known name that is most like another; an empty one where none is."""
+    same = [other for other in known if spelling(other) == spelling(name)]
+    part = [other for other in known if len(name) >= _PART and name.lower() in other.lower()]
+    near = same or part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=_ALIKE)
+    return near[0] if near else ""
+
+
+def spelling(name: str) -> str:
+    """A name without what people spell differently: NSGA-II and nsga_2 are nsga2."""
+    small = re.sub(r"[-_ ]", "", name.lower())
+    return re.sub(r"i{2,3}$", lambda match: str(len(match[0])), small)
+
+
+def install(extra: str) -> str:
+    """How to install what an extra of this project holds."""
+    return f"install it: pip install 'quietarm[{extra}]', or '.[{extra}]' in a clone"

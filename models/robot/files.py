@@ -1,0 +1,45 @@
+"""Small files of text that a robot is read from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from quietarm.models.checks import install
+
+MOST_BYTES = 20_000_000
+"""Of a file: URDFs have a few hundred thousand."""
+
+
+def read_text(path: str | Path, what: str) -> str:
+    """The text of an ordinary file in UTF-8; ValueError where it cannot be read."""
+    place = Path(path)
+    try:
+        if place.exists() and not place.is_file():
+            raise ValueError(f"{what} {path} is no ordinary file; give the name of one")
+        with open(place, "rb") as file:
+            content = file.read(MOST_BYTES + 1)
+        if len(content) > MOST_BYTES:
+            raise ValueError(f"{what} {path} has over {MOST_BYTES} bytes; is it another file?")
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ValueError(f"{what} {path} is no text in UTF-8; save it so") from None
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ValueError(f"{what} {path} cannot be read: {reason}; give another file") from None
+
+
+def read_yaml(path: str | Path, what: str) -> object:
+    """What a file in YAML holds; nothing in it is run."""
+    text = read_text(path, what)
+    try:
+        import yaml
+    except ImportError:
+        raise ValueError(f"{what} {path} is YAML, which needs PyYAML; {install('robot')}") from None
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise ValueError(
+            f"{what} {path} is no valid YAML: {' '.join(str(error).split())}; mend it"
+        ) from None
+    except RecursionError:
+        raise ValueError(f"{what} {path} is nested too deeply; write it flat") from None

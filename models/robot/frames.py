@@ -1,0 +1,47 @@
+"""Where bodies stand, in numbers: rotations and places in another body's frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from quietarm.models.joint_motion import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A frame that stands in another: its rotation, shape (3, 3), and its origin [m]."""
+
+    rotation: Array = field(default_factory=lambda: np.eye(3))
+    origin: Array = field(default_factory=lambda: np.zeros(3))
+
+    def point(self, point: Array) -> Array:
+        """A point of this frame, in the other."""
+        return self.rotation @ point + self.origin
+
+    def __matmul__(self, inner: Frame) -> Frame:
+        """Where a frame of this one stands in the other."""
+        return Frame(self.rotation @ inner.rotation, self.point(inner.origin))
+
+
+def rotation_of(roll: float, pitch: float, yaw: float) -> Array:
+    """About x, then y, then z of the fixed frame, as a URDF's rpy [rad]."""
+    about_z = rotation_about(np.array([0.0, 0.0, 1.0]), yaw)
+    about_y = rotation_about(np.array([0.0, 1.0, 0.0]), pitch)
+    about_x = rotation_about(np.array([1.0, 0.0, 0.0]), roll)
+    return about_z @ about_y @ about_x
+
+
+def rotation_about(axis: Array, angle: float) -> Array:
+    """By an angle [rad] about a unit vector: Rodrigues' formula."""
+    skew = skew_of(axis)
+    return np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
+
+
+def skew_of(vector: Array) -> Array:
+    """The matrix by which a vector is multiplied crosswise from the left."""
+    x = vector[0]
+    y = vector[1]
+    z = vector[2]
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -1,0 +1,377 @@
+"""The path that the joints of a robot follow: positions by a share s of it, from 0 to 1."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from quietarm.models.joint_motion import Array
+from quietarm.models.robot.files import read_text, read_yaml
+from quietarm.models.robot.piecewise import NoFitError, Piecewise, fit, interpolate
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
+
+BEYOND = 0.1
+"""So much of a path is added at its ends, where a motion overshoots."""
+_EXACT = 1e-12
+"""Largest error of a path that a function gives [rad or m]."""
+_LEAST_WAY = 1e-6
+"""Of a path, and between two waypoints [rad or m]."""
+_DEGREES = (3, 5)
+_MOST_WAYPOINTS = 200
+_BACK = -0.95
+"""Cosine between two parts of a way, below which it turns back."""
+
+
+@dataclass(frozen=True)
+class GeometricPath:
+    """Positions of the joints along a path, polynomials of s between knots.
+
+    `line`, `through`, `of` and `load` make one.
+
+    Parameters
+    ----------
+    knots : sequence of float
+        From 0 to 1.
+    coefficients : sequence
+        By piece, joint and Chebyshev polynomial of the share of the piece, from -1 to 1 [rad or m].
+    joints : sequence of str, optional
+        Names of the joints; the robot's, in its order, by default.
+
+    Raises
+    ------
+    ValueError
+        When it is no path: not from 0 to 1, of length 0, or with a corner.
+    """
+
+    example: ClassVar[str] = "a path, as GeometricPath.line(q0, q1)"
+
+    knots: tuple[float, ...]
+    coefficients: tuple[tuple[tuple[float, ...], ...], ...]
+    joints: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "knots", tuple(map(float, self.knots)))
+        rows = tuple(
+            tuple(tuple(map(float, terms)) for terms in joints) for joints in self.coefficients
+        )
+        object.__setattr__(self, "coefficients", rows)
+        object.__setattr__(self, "joints", tuple(self.joints))
+        rising = bool(np.all(np.diff(self.knots) > 0))
+        if len(self.knots) < 2 or (self.knots[0], self.knots[-1]) != (0.0, 1.0) or not rising:
+            raise ValueError(
+                f"knots of the path are {list(self.knots)}; give some that rise from 0 to 1"
+            )
+        shapes = {(len(joints), len(terms)) for joints in rows for terms in joints}
+        if len(rows) != len(self.knots) - 1 or len(shapes) != 1:
+            raise ValueError("coefficients of the path do not fit its knots; make it anew")
+        if not np.all(np.isfinite(self.inner.coefficients)):
+            raise ValueError("coefficients of the path are not finite; make it anew")
+        if self.joints and len(self.joints) != self.count:
+            raise ValueError(
+                f"the path has {self.count} joints and {len(self.joints)} names; give one of each"
+            )
+        self._check_way()
+        self._check_corners()
+
+    @classmethod
+    def line(cls, start: ArrayLike, end: ArrayLike, joints: Sequence[str] = ()) -> GeometricPath:
+        """Straight in joint space, from positions to positions [rad or m]."""
+        ends = np.array([_row("start of the path", start), _row("end of the path", end)])
+        middle = (ends[0] + ends[1]) / 2
+        half = (ends[1] - ends[0]) / 2
+        return cls((0.0, 1.0), (tuple(zip(middle, half)),), tuple(joints))
+
+    @classmethod
+    def through(
+        cls,
+        waypoints: ArrayLike,
+        *,
+        at: Sequence[float] | None = None,
+        degree: int = 5,
+        joints: Sequence[str] = (),
+    ) -> GeometricPath:
+        """A natural spline through waypoints, shape (waypoints, joints) [rad or m].
+
+        Parameters
+        ----------
+        at : sequence of float, optional
+            Where on the path they are, from 0 to 1; by default by the way between them.
+        degree : int
+            5, with four continuous derivatives, or 3, with two: then the jerk jumps at waypoints.
+        """
+        points = _rows(waypoints)
+        if degree not in _DEGREES:
+            raise ValueError(
+                f"degree of the path is {degree}; give 5 or 3: a robot can follow a path with "
+                "corners only if it stops there, so plan a move to each"
+            )
+        ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        if at is None:
+            for number, way in enumerate(ways, start=1):
+                if way < _LEAST_WAY:
+                    raise ValueError(
+                        f"waypoints {number} and {number + 1} are the same within {_LEAST_WAY:g}; "
+                        "leave one of them out"
+                    )
+            _check_turns(points)
+            places = np.append(0.0, np.cumsum(ways)) / ways.sum()
+            places[-1] = 1.0
+        else:
+            places = _row("at", at)
+            if (
+                len(places) != len(points)
+                or np.any(np.diff(places) <= 0)
+                or (places[0], places[-1]) != (0, 1)
+            ):
+                raise ValueError(
+                    f"at is {places.tolist()}; give a share of the path for each waypoint, rising "
+                    "from 0 to 1"
+                )
+        if len(points) == 2:
+            return cls.line(*points, joints=joints)
+        return cls._of_spline(_natural(places, points, degree), places, tuple(joints))
+
+    @classmethod
+    def of(
+        cls, function: Callable[[float], ArrayLike], joints: Sequence[str] = ()
+    ) -> GeometricPath:
+        """By a function of s from 0 to 1 that gives the joints' positions [rad or m].
+
+        It is approximated within 1e-12.
+        """
+
+        def values(places: Array) -> Array:
+            return np.array([_row(f"path at s = {s:.4g}", function(float(s))) for s in places])
+
+        try:
+            found = fit(values, np.array([0.0, 1.0]), lambda _: np.array([_EXACT]))
+        except NoFitError as error:
+            raise ValueError(
+                f"the path has a corner or a jump near s = {error.place:.4g}; give a smooth "
+                "function, or waypoints for a spline"
+            ) from None
+        return cls(*_plain(found), tuple(joints))
+
+    @classmethod
+    def load(cls, path: str | Path, *, degree: int = 5) -> GeometricPath:
+        """Through the points of a file: csv, or a trajectory_msgs/JointTrajectory as YAML.
+
+        A csv has the joints' names above its columns, or no names; times are dropped.
+        """
+        if Path(path).suffix.lower() in (".yaml", ".yml", ".json"):
+            names, points = _trajectory_of(path)
+        else:
+            names, points = _table_of(path)
+        try:
+            return cls.through(points, degree=degree, joints=names)
+        except ValueError as error:
+            raise ValueError(f"path {path}: {error}") from None
+
+    @classmethod
+    def _of_spline(cls, spline: BSpline, knots: Array, joints: tuple[str, ...]) -> GeometricPath:
+        found = Piecewise(knots, interpolate(spline, knots, spline.k + 1))
+        return cls(*_plain(found), joints)
+
+    @property
+    def count(self) -> int:
+        """How many joints."""
+        return len(self.coefficients[0])
+
+    @cached_property
+    def inner(self) -> Piecewise:
+        """The path from 0 to 1."""
+        rows = np.array(self.coefficients)
+        return Piecewise(np.array(self.knots), rows.swapaxes(1, 2))
+
+    @cached_property
+    def extended(self) -> Piecewise:
+        """The path and a part beyond either end, with the curvature of the end."""
+        inner = self.inner
+        terms = inner.coefficients.shape[1]
+        if len(self.knots) == 2 and terms <= 3:  # goes on as it is
+            knots = np.array([-BEYOND, 1 + BEYOND])
+            return inner.on(knots)
+        terms = max(3, terms)
+        parts = list[Array]()
+        for begin, end, place in ((-BEYOND, 0.0, 0.0), (1.0, 1 + BEYOND, 1.0)):
+            value, slope, bend = (inner([place], order)[0] for order in range(3))
+            nodes = begin + (end - begin) * (np.cos(np.pi * (np.arange(3) + 0.5) / 3) + 1) / 2
+            way = (nodes - place)[:, None]
+            rows = value + way * slope + way**2 / 2 * bend
+            part = np.zeros((terms, self.count))
+            part[:3] = np.polynomial.chebyshev.chebfit(
+                np.cos(np.pi * (np.arange(3) + 0.5) / 3), rows, 2
+            )
+            parts.append(part)
+        filled = np.zeros((len(inner.coefficients), terms, self.count))
+        filled[:, : inner.coefficients.shape[1]] = inner.coefficients
+        knots = np.array([-BEYOND, *self.knots, 1 + BEYOND])
+        return Piecewise(knots, np.array([parts[0], *filled, parts[1]]))
+
+    def of_joints(self, names: Sequence[str]) -> GeometricPath:
+        """The same, its joints in the order of these names."""
+        order = [self.joints.index(name) for name in names]
+        rows = tuple(tuple(joints[i] for i in order) for joints in self.coefficients)
+        return GeometricPath(self.knots, rows, tuple(names))
+
+    def __call__(self, s: ArrayLike, order: int = 0) -> Array:
+        """Positions, or derivatives by s, shape (places, joints), or (joints,) of one place."""
+        values = self.extended(np.atleast_1d(np.asarray(s, dtype=float)), order)
+        return values[0] if np.ndim(s) == 0 else values
+
+    def _check_way(self) -> None:
+        places = np.linspace(0.0, 1.0, 201)
+        way = float(np.abs(np.diff(self.inner(places), axis=0)).sum())
+        if way < _LEAST_WAY:
+            raise ValueError(f"the path has a length of {way:.3g}; give one that moves a joint")
+
+    def _check_corners(self) -> None:
+        """Positions, slopes and curvatures are continuous at the knots."""
+        inner = self.inner
+        for number, knot in enumerate(self.knots[1:-1]):
+            before = Piecewise(
+                inner.knots[number : number + 2], inner.coefficients[number : number + 1]
+            )
+            after = Piecewise(
+                inner.knots[number + 1 : number + 3], inner.coefficients[number + 1 : number + 2]
+            )
+            for order, what in enumerate(("jump", "corner", "jump of its curvature")):
+                scale = max(1.0, float(np.abs(inner(np.linspace(0, 1, 101), order)).max()))
+                if np.abs(before([knot], order) - after([knot], order)).max() > _CONTINUOUS * scale:
+                    raise ValueError(
+                        f"the path has a {what} at s = {knot:.4g}; give waypoints, for a spline, "
+                        "or plan a move to each corner"
+                    )
+
+
+_CONTINUOUS = 1e-6
+"""Share of the largest value by which a path and its derivatives may jump."""
+
+
+def _plain(found: Piecewise) -> tuple[Any, Any]:
+    rows = found.coefficients.swapaxes(1, 2).tolist()
+    return tuple(found.knots.tolist()), tuple(tuple(map(tuple, joints)) for joints in rows)
+
+
+def _natural(places: Array, points: Array, degree: int) -> BSpline:
+    """The spline whose higher derivatives are 0 at the ends: of all it bends least."""
+    from scipy.interpolate import make_interp_spline  # takes a quarter of a second to load
+
+    count = len(points)
+    if degree == 5 and count == 3:  # a parabola has none
+        degree = 2
+        return make_interp_spline(places, points, k=degree)
+    orders = range((degree + 1) // 2, degree)
+    ends = [(order, np.zeros(points.shape[1])) for order in orders]
+    return make_interp_spline(places, points, k=degree, bc_type=(ends, ends))
+
+
+def _check_turns(points: Array) -> None:
+    """Refuse a way that turns back where it came from."""
+    steps = np.diff(points, axis=0)
+    steps = steps / np.linalg.norm(steps, axis=1)[:, None]
+    for number, cosine in enumerate((steps[1:] * steps[:-1]).sum(axis=1), start=2):
+        if cosine < _BACK:
+            raise ValueError(
+                f"the path turns back at waypoint {number}, a corner; plan a move to it and "
+                "another from there, or round the corner by a waypoint beside it"
+            )
+
+
+def _row(name: str, values: ArrayLike) -> Array:
+    try:
+        row = np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        row = np.zeros((0, 0))
+    if row.ndim != 1 or not len(row) or not np.all(np.isfinite(row)):
+        raise ValueError(f"{name} is {values!r}; give a finite number for each joint")
+    return row
+
+
+def _rows(values: ArrayLike) -> Array:
+    try:
+        rows = np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        rows = np.zeros(0)
+    if rows.ndim != 2 or len(rows) < 2 or not rows.size or not np.all(np.isfinite(rows)):
+        raise ValueError(
+            "the waypoints are no table; give two rows or more, with a number for each joint"
+        )
+    if len(rows) > _MOST_WAYPOINTS:
+        raise ValueError(
+            f"the path has {len(rows)} waypoints; give at most {_MOST_WAYPOINTS}, those that matter"
+        )
+    return rows
+
+
+def _trajectory_of(path: str | Path) -> tuple[tuple[str, ...], Array]:
+    """Names and positions of a JointTrajectory."""
+    document = read_yaml(path, "path")
+    while isinstance(document, Mapping) and "points" not in document:
+        inner = [value for value in document.values() if isinstance(value, Mapping)]
+        if len(inner) != 1:
+            break
+        document = inner[0]
+    if (
+        not isinstance(document, Mapping)
+        or "points" not in document
+        or "joint_names" not in document
+    ):
+        raise ValueError(
+            f"path {path} is no JointTrajectory; give one with joint_names and points, or a csv"
+        )
+    points = document["points"]
+    try:
+        rows = [point["positions"] for point in points]
+        return tuple(map(str, document["joint_names"])), np.array(rows, dtype=float)
+    except (TypeError, KeyError, ValueError):
+        raise ValueError(
+            f"path {path} has a point without positions of all joints; write it again"
+        ) from None
+
+
+def _table_of(path: str | Path) -> tuple[tuple[str, ...], Array]:
+    """Names, where they are above the columns, and positions of a csv."""
+    text = read_text(path, "path")
+    lines = [
+        line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        raise ValueError(f"path {path} is empty; give a row for each waypoint")
+    mark = next((mark for mark in ";\t," if mark in lines[0]), None)
+    rows = (
+        [line.split() for line in lines]
+        if mark is None
+        else list(csv.reader(io.StringIO("\n".join(lines)), delimiter=mark))
+    )
+    names = tuple[str, ...]()
+    try:
+        [float(cell) for cell in rows[0]]
+    except ValueError:
+        names = tuple(cell.strip() for cell in rows[0])
+        rows = rows[1:]
+    if len({len(row) for row in rows}) != 1:
+        raise ValueError(
+            f"path {path} has rows of different lengths, or none; give a number for each joint in "
+            "each"
+        )
+    try:
+        table = np.array([[float(cell) for cell in row] for row in rows])
+    except ValueError as error:
+        raise ValueError(
+            f"path {path} has a row that is no row of numbers ({error}); give a number for each "
+            "joint"
+        ) from None
+    times = [name.lower().split()[0].split("_")[0].split("(")[0] in ("t", "time") for name in names]
+    kept = [number for number, is_time in enumerate(times) if not is_time] if names else slice(None)
+    return tuple(name for name, is_time in zip(names, times) if not is_time), table[:, kept]

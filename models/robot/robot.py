@@ -1,0 +1,526 @@
+"""A robot: its URDF, which joints are driven, what of it bends; and its plant on a path."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from quietarm.models.checks import finite, has_no, not_negative, positive, whole
+from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
+from quietarm.models.plant import Plant, content
+from quietarm.models.robot.beam import Beam
+from quietarm.models.robot.dynamics import Dynamics
+from quietarm.models.robot.files import read_text
+from quietarm.models.robot.flexibility import Base, Measured, Spring
+from quietarm.models.robot.mechanism import BEAM_END, Mechanism, build_mechanism
+from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
+from quietarm.models.robot.path import GeometricPath
+from quietarm.models.robot.robot_file import read_robot
+from quietarm.models.robot.tables import Tables, reach, tables_of
+from quietarm.models.robot.urdf import Urdf, dynamics_of, read_urdf
+
+STANDARD_GRAVITY = 9.80665
+"""[m/s^2], of the SI."""
+MOST_MODES = 12
+_OVER = 1e-9
+"""By which a path may pass the range of a joint [rad or m]."""
+
+
+Limits = Mapping[str, Mapping[str, float]]
+"""By quantity, as speed, and joint; SI units."""
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot from its URDF, with the flexibilities that it does not have.
+
+    Parameters
+    ----------
+    urdf : str or Path
+        A file, or its text.
+    joints : sequence of str, optional
+        The driven joints, in the order of paths; by default all that move and have no spring.
+    held : mapping of str to float, optional
+        Positions [rad or m] of joints that are not driven; 0 of those that are not named.
+    beam : Beam, optional
+        A beam at a link.
+    elastic_joints : mapping of str to Spring, optional
+        Gears between the motor and the link of driven joints.
+    springs : mapping of str to Spring, optional
+        Of passive joints of the URDF.
+    base : Base, optional
+        A pedestal that rocks.
+    tip : str, optional
+        The link that must come to rest; the end of the beam by default, or else the last link.
+        Its displacements are measured in its own frame, against the robot at rest there.
+    gravity : sequence of float
+        [m/s^2], as seen from the root link.
+    rotor_inertia, friction : mapping of str to float, optional
+        Of driven joints [kg m^2, N m s/rad], at the joint's side of its gear.
+    modes : int
+        How many modes are followed.
+    limits : mapping, optional
+        Limits by quantity and joint, as {"speed": {"elbow_joint": 3.0}}.
+    measured : Measured, optional
+        A measured frequency, to which all springs are scaled.
+
+    Raises
+    ------
+    ValueError
+        When the URDF cannot be followed, a name is not in it, or a value is out of range.
+    """
+
+    example: ClassVar[str] = "a robot, as Robot.load('robot.yaml')"
+
+    urdf: str
+    joints: tuple[str, ...] = ()
+    held: Mapping[str, float] = field(default_factory=dict)
+    beam: Beam | None = None
+    elastic_joints: Mapping[str, Spring] = field(default_factory=dict)
+    springs: Mapping[str, Spring] = field(default_factory=dict)
+    base: Base | None = None
+    tip: str | None = None
+    gravity: tuple[float, float, float] = (0.0, 0.0, -STANDARD_GRAVITY)
+    rotor_inertia: Mapping[str, float] = field(default_factory=dict)
+    friction: Mapping[str, float] = field(default_factory=dict)
+    modes: int = 2
+    limits: Limits = field(default_factory=dict)
+    measured: Measured | None = None
+
+    def __post_init__(self) -> None:
+        text = str(self.urdf)
+        if not text.lstrip("\ufeff \n\t").startswith("<"):
+            text = read_text(text, "URDF")
+        self._set("urdf", dynamics_of(text))
+        self._set("springs", self._springs("springs", self.springs))
+        self._set("elastic_joints", self._springs("elastic_joints", self.elastic_joints))
+        self._set("held", self._numbers("held", self.held, finite))
+        self._set("joints", self._driven())
+        self._check_names()
+        self._set("rotor_inertia", self._numbers("rotor_inertia", self.rotor_inertia, not_negative))
+        self._set("friction", self._numbers("friction", self.friction, not_negative))
+        self._set("gravity", _vector("gravity", self.gravity))
+        self._set("modes", whole("modes", self.modes, 1, MOST_MODES))
+        self._set("tip", self._tip())
+        self._check_base()
+        self._check_measured()
+        self._check_inertias()
+        _ = self.dynamics
+        sprung = len(self.unscaled.sprung)
+        if not sprung:
+            raise ValueError(
+                "the robot has nothing that bends; give a beam, elastic_joints, springs or a base"
+            )
+        if self.modes > sprung:
+            raise ValueError(
+                f"modes is {self.modes}; the robot has {sprung} springs, give at most that"
+            )
+
+    @classmethod
+    def load(cls, path: str | Path) -> Robot:
+        """Read a robot's file, in YAML; docs/robots.md has its entries.
+
+        Raises
+        ------
+        ValueError
+            When an entry is unknown, or its value cannot be used.
+        """
+        return cls(**read_robot(path))
+
+    def along(self, path: GeometricPath) -> RobotOnPath:
+        """The robot on a path, a plant of whose `target` 1.0 is the end of the path.
+
+        Raises
+        ------
+        ValueError
+            When the path has other joints, leaves their ranges, or a spring cannot carry its load.
+        """
+        return RobotOnPath(robot=self, path=path)
+
+    @cached_property
+    def description(self) -> Urdf:
+        """What the URDF says."""
+        return read_urdf(self.urdf)
+
+    @cached_property
+    def unscaled(self) -> Mechanism:
+        """The bodies, with the springs as they were given."""
+        return build_mechanism(self)
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The bodies, with the springs as they were measured."""
+        return self.dynamics.mechanism
+
+    @cached_property
+    def dynamics(self) -> Dynamics:
+        """The equations, with the springs as they were measured."""
+        dynamics = Dynamics(self.unscaled)
+        return dynamics if self.measured is None else as_measured(dynamics, self.measured)
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of all that it is made of."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Robot) and self.digest == other.digest
+
+    def __reduce__(self) -> tuple[Any, ...]:  # what is computed from them is not sent along
+        return type(self), tuple(getattr(self, entry.name) for entry in fields(self))
+
+    def __repr__(self) -> str:
+        return f"Robot({self.description.name!r}, {self.digest[:12]!r})"
+
+    def ranges(self) -> list[tuple[float, float]]:
+        """Least and largest position of every driven joint [rad or m]."""
+        joints = [self.description.joints[name] for name in self.joints]
+        return [(joint.lower, joint.upper) for joint in joints]
+
+    def frequencies(self, q: Sequence[float] | Array) -> Array:
+        """Of all modes with the driven joints held at q [rad/s], under gravity.
+
+        ValueError where a spring is too soft to carry its load.
+        """
+        values, _ = modes_at(self.dynamics, np.asarray(q, float))
+        return values
+
+    def sag(self, q: Sequence[float] | Array) -> Array:
+        """How far the tip hangs below the robot that does not bend [m], in the tip's frame."""
+        dynamics = self.dynamics
+        q = np.asarray(q, float)
+        p = sag_at(dynamics, q)
+        return tip_offset(dynamics, self.tip_place, q, p)
+
+    @property
+    def tip_place(self) -> Any:
+        """Body and frame of the tip."""
+        assert self.tip is not None
+        return self.mechanism.links[self.tip]
+
+    def _set(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    def _springs(self, entry: str, springs: Mapping[str, Any]) -> dict[str, Spring]:
+        found = dict[str, Spring]()
+        for name, spring in springs.items():
+            self._check_joint(entry, name)
+            values = spring if isinstance(spring, Spring) else Spring(*_two_of(spring))
+            what = f"of {name} in {entry}"
+            found[name] = Spring(
+                positive(f"stiffness {what}", values.stiffness, "N m/rad"),
+                not_negative(f"damping {what}", values.damping, "N m s/rad"),
+            )
+        return found
+
+    def _numbers(self, entry: str, values: Mapping[str, Any], check: Any) -> dict[str, float]:
+        for name in values:
+            self._check_joint(entry, name)
+        return {name: check(f"{entry} of {name}", value) for name, value in values.items()}
+
+    def _check_joint(self, entry: str, name: str) -> None:
+        if name not in self.description.moving:
+            raise ValueError(
+                has_no("the URDF", f"moving joint, for {entry},", name, self.description.moving)
+            )
+
+    def _driven(self) -> tuple[str, ...]:
+        """The driven joints; those that mimic others are held by name alone."""
+        moving = self.description.moving
+        passive = {*self.springs, *self.held}
+        names = tuple(self.joints) or tuple(name for name in moving if name not in passive)
+        for name in names:
+            self._check_joint("joints", name)
+            joint = self.description.joints[name]
+            if joint.mimics is not None:
+                raise ValueError(
+                    f"joint {name!r} of the URDF mimics {joint.mimics!r}; hold both, as "
+                    f"held: {{{name}: 0}}, or leave them out of joints"
+                )
+        if not names:
+            raise ValueError("no joint of the robot is driven; name those that are, as joints")
+        return names
+
+    def _check_names(self) -> None:
+        driven = self.joints
+        for name in {name for name in driven if driven.count(name) > 1}:
+            raise ValueError(f"joint {name!r} is driven twice; name it once in joints")
+        for entry, names in (("held", self.held), ("springs", self.springs)):
+            for name in names:
+                if name in driven:
+                    raise ValueError(
+                        f"joint {name!r} is driven and in {entry}; leave one of them out"
+                    )
+        for name in self.springs:
+            if name in self.held:
+                raise ValueError(f"joint {name!r} is held and in springs; leave one of them out")
+        for entry in ("elastic_joints", "rotor_inertia", "friction"):
+            for name in getattr(self, entry):
+                if name not in driven:
+                    raise ValueError(
+                        has_no("the robot", f"driven joint, for {entry},", name, driven)
+                    )
+        if self.beam is not None and self.beam.at not in self.description.links:
+            raise ValueError(
+                has_no("the URDF", "link, for the beam,", self.beam.at, self.description.links)
+            )
+
+    def _tip(self) -> str:
+        links = self.description.links
+        if self.tip is None:
+            return BEAM_END if self.beam is not None else list(links)[-1]
+        if self.tip != BEAM_END and self.tip not in links:
+            raise ValueError(has_no("the URDF", "link, for the tip,", self.tip, links))
+        if self.tip == BEAM_END and self.beam is None:
+            raise ValueError(f"tip is {BEAM_END!r}, and there is no beam; name a link")
+        return self.tip
+
+    def _check_base(self) -> None:
+        if self.base is None:
+            return
+        stiffness = tuple(
+            positive("stiffness of the base", x, "N m/rad")
+            for x in _pair_of("stiffness", self.base.stiffness)
+        )
+        damping = tuple(
+            not_negative("damping of the base", x, "N m s/rad")
+            for x in _pair_of("damping", self.base.damping)
+        )
+        height = not_negative("height of the base", self.base.height, "m")
+        self._set("base", Base((stiffness[0], stiffness[1]), (damping[0], damping[1]), height))
+
+    def _check_measured(self) -> None:
+        if self.measured is None:
+            return
+        frequency = positive("measured frequency", self.measured.frequency, "rad/s")
+        at = tuple(finite("a position of measured", x, "rad") for x in self.measured.at)
+        if len(at) != len(self.joints):
+            raise ValueError(
+                f"measured has {len(at)} positions and the robot {len(self.joints)} joints; give "
+                "one of each"
+            )
+        self._set("measured", Measured(frequency, at))
+
+    def _check_inertias(self) -> None:
+        """Every driven joint and every spring moves a mass."""
+        mechanism = self.unscaled
+        dynamics = Dynamics(mechanism)
+        x = np.random.default_rng(0).uniform(0.3, 1.0, dynamics.size)
+        masses = dynamics.masses(x).full()
+        names = [*self.joints, *mechanism.spring_names]
+        scale = max(1e-12, float(np.abs(masses).max()))
+        for name, inertia in zip(names, np.diag(masses)):
+            if inertia <= 1e-12 * scale:
+                raise ValueError(
+                    f"joint {name!r} moves no mass; give the links beyond it an <inertial> in the "
+                    "URDF"
+                )
+
+
+@dataclass(frozen=True)
+class RobotOnPath(Plant):
+    """A robot that follows a path; made by `Robot.along`.
+
+    The joint's angle is the place s on the path, from 0 to 1. W are deviations of the modes from
+    the equilibrium under gravity, which moves with the path.
+
+    Raises
+    ------
+    ValueError
+        When the path has other joints than the robot, leaves the range of one, or a spring cannot
+        carry its load on it.
+    """
+
+    name: ClassVar[str] = "robot"
+    path_range: ClassVar[tuple[float, float] | None] = reach()
+
+    robot: Robot = content("what moves")  # noqa: RUF009
+    path: GeometricPath = content("where its joints go")  # noqa: RUF009
+
+    def __post_init__(self) -> None:
+        path = self.path
+        names = self.robot.joints
+        if path.joints and set(path.joints) != set(names):
+            raise ValueError(
+                f"the path is of the joints {', '.join(path.joints)}, and the robot drives "
+                f"{', '.join(names)}; give positions of these"
+            )
+        if path.count != len(names):
+            raise ValueError(
+                f"the path is of {path.count} joints, and the robot drives {len(names)}, "
+                f"{', '.join(names)}; give positions of these, in this order"
+            )
+        if path.joints and path.joints != names:
+            object.__setattr__(self, "path", path.of_joints(names))
+        self._check_ranges()
+        _ = self.tables
+
+    @property
+    def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """How many modal amplitudes it has."""
+        return self.robot.modes
+
+    @property
+    def label(self) -> str:
+        """The robot's name, and what bends."""
+        robot = self.robot
+        bends = [
+            *(["base"] if robot.base is not None else []),
+            *(["gears"] if robot.elastic_joints else []),
+            *(["springs"] if robot.springs else []),
+            *([f"beam at {robot.beam.at}"] if robot.beam is not None else []),
+        ]
+        return f"{robot.description.name} ({len(robot.joints)} joints; {', '.join(bends)})"
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Of the driven joints."""
+        return self.robot.joints
+
+    @property
+    def tables(self) -> Tables:
+        """The coefficients of its equations."""
+        return tables_of(self.robot, self.path)
+
+    def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
+        """W'' by the motion on the path [m/s^2]."""
+        of = self._coefficients(joint, self.tables.modes)
+        square = joint.speed * joint.speed
+        accelerations = list[Expression]()
+        for i in range(self.modes):
+            forces = [
+                (of["a"][i], joint.acceleration),
+                (of["b"][i], square),
+                (of["e"][i], joint.speed),
+            ]
+            for j in range(self.modes):
+                stiffness = _sum([
+                    (of["K"][i, j], 1.0),
+                    (of["A"][i, j], joint.acceleration),
+                    (of["B"][i, j], square),
+                ])  # fmt: skip
+                damping = _sum([(of["D"][i, j], 1.0), (of["C"][i, j], joint.speed)])
+                forces += [(stiffness, W[j]), (damping, dW[j])]
+            accelerations.append(-_sum(forces))
+        return accelerations
+
+    def joints(self, path: JointMotion) -> Sequence[JointMotion]:
+        """Motion of every driven joint [rad or m]."""
+        positions = np.moveaxis(np.array(self.tables.path), 0, -1)
+        by_joint = self.tables.at(path.angle).values(positions)
+        square = path.speed * path.speed
+        nothing = 0 * path.angle
+        motions = list[JointMotion]()
+        for at, slope, bend, third in by_joint:
+            speed = _sum([(slope, path.speed)])
+            acceleration = _sum([(slope, path.acceleration), (bend, square)])
+            jerk = None
+            if path.jerk is not None:
+                jerk = nothing + _sum([
+                    (slope, path.jerk),
+                    (bend, 3 * path.speed * path.acceleration),
+                    (third, square * path.speed),
+                ])  # fmt: skip
+            motion = JointMotion(at + nothing, speed + nothing, acceleration + nothing, jerk)
+            motions.append(motion)
+        return motions
+
+    def torques(self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Sequence[Expression]:
+        """Torque of every driven joint [N m, or N of a sliding one]."""
+        of = self._coefficients(path, self.tables.torques)
+        square = path.speed * path.speed
+        nothing = 0 * path.angle
+        torques = list[Expression]()
+        for i in range(len(self.joint_names)):
+            terms = [
+                (of["g"][i], 1.0),
+                (of["a"][i], path.acceleration),
+                (of["b"][i], square),
+                (of["e"][i], path.speed),
+            ]
+            for j in range(self.modes):
+                stiffness = _sum([
+                    (of["K"][i, j], 1.0),
+                    (of["A"][i, j], path.acceleration),
+                    (of["B"][i, j], square),
+                ])  # fmt: skip
+                damping = _sum([(of["C"][i, j], path.speed)])
+                terms += [(stiffness, W[j]), (damping, dW[j]), (of["N"][i, j], ddW[j])]
+            torques.append(_sum(terms) + nothing)
+        return torques
+
+    def tips_at(self, path: JointMotion, W: Modes) -> Sequence[Expression]:
+        """Displacements of the tip from its place at rest, in its own frame [m]."""
+        rows = self.tables.at(path.angle).values(self.tables.tips)
+        return [_sum(list(zip(row, W))) + 0 * path.angle for row in rows]
+
+    def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
+        """Their rates [m/s]."""
+        place = self.tables.at(path.angle)
+        rows = place.values(self.tables.tips)
+        slopes = place.values(self.tables.tip_rates)
+        return [
+            _sum(list(zip(slope, W))) * path.speed + _sum(list(zip(row, dW)))
+            for row, slope in zip(rows, slopes)
+        ]
+
+    def _coefficients(self, path: JointMotion, tables: Mapping[str, Array]) -> dict[str, Array]:
+        """All of a group at the place on the path, by one product."""
+        place = self.tables.at(path.angle)
+        return {name: place.values(table) for name, table in tables.items()}
+
+    def _check_ranges(self) -> None:
+        """Refuse a path beyond a joint's range."""
+        places = np.linspace(0.0, 1.0, 1001)
+        positions = self.path(places)
+        for name, (least, most), column in zip(self.joint_names, self.robot.ranges(), positions.T):
+            beyond = np.maximum(column - most, least - column)
+            if beyond.max() > _OVER:
+                at = int(beyond.argmax())
+                raise ValueError(
+                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path; "
+                    f"its range is {least:g} to {most:g}, give a path within it"
+                )
+
+
+def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:
+    """Of products of two, without those that are nothing."""
+    terms = [left * right for left, right in products if not (is_zero(left) or is_zero(right))]
+    return sum(terms[1:], terms[0]) if terms else 0.0
+
+
+def _vector(name: str, value: Any) -> tuple[float, float, float]:
+    entries = [finite(name, entry, "m/s^2") for entry in value]
+    if len(entries) != 3:
+        raise ValueError(f"{name} has {len(entries)} numbers; give three, as 0, 0, -9.81")
+    return (entries[0], entries[1], entries[2])
+
+
+def _pair_of(name: str, value: Any) -> tuple[Any, Any]:
+    entries = (value, value) if isinstance(value, int | float) else tuple(value)
+    if len(entries) != 2:
+        raise ValueError(
+            f"{name} of the base has {len(entries)} numbers; give one, or two, about x and about y"
+        )
+    return entries
+
+
+def _two_of(spring: Any) -> tuple[Any, ...]:
+    """Stiffness and damping of a number, a pair or a mapping."""
+    if isinstance(spring, Mapping):
+        names = [entry.name for entry in fields(Spring)]
+        for name in spring:
+            if name not in names:
+                raise ValueError(has_no("a spring", "entry", name, names))
+        return tuple(spring.get(name, 0.0) for name in names)
+    return (spring,) if isinstance(spring, int | float) else tuple(spring)

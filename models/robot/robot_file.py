@@ -1,0 +1,221 @@
+"""A robot's file in YAML: every entry of `Robot`, its numbers in SI units or with a unit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from quietarm.models.checks import has_no
+from quietarm.models.robot.beam import Beam
+from quietarm.models.robot.files import read_text, read_yaml
+from quietarm.models.robot.flexibility import Base, Measured, Spring
+from quietarm.models.robot.urdf import read_urdf
+from quietarm.models.units import parse_quantity
+
+Read = Callable[[Any, str], Any]
+"""(entry of the file, what it is in words) -> its value."""
+OF_URDF = "urdf"
+"""In place of a file of limits: those of the URDF."""
+_LIMITS = {"velocity": "speed", "acceleration": "acceleration", "jerk": "jerk", "effort": "torque"}
+"""What MoveIt's joint_limits.yaml calls a quantity, and what a task does."""
+
+
+def read_robot(path: str | Path) -> dict[str, Any]:
+    """The arguments of `Robot` in a file; ValueError with the entry that is wrong."""
+    document = read_yaml(path, "robot file")
+    if not isinstance(document, dict):
+        raise ValueError(f"robot file {path} is no table; give entries as urdf: robot.urdf")
+    try:
+        return _arguments(document, Path(path).parent)
+    except ValueError as error:
+        raise ValueError(f"robot file {path}: {error}") from None
+
+
+def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    readers: dict[str, Read] = {
+        "urdf": lambda entry, _: read_text(_beside(entry, folder, "urdf"), "URDF"),
+        "joints": _names,
+        "held": partial(_by_joint, read=_quantity("rad")),
+        "beam": _beam,
+        "elastic_joints": partial(_by_joint, read=_spring),
+        "springs": partial(_by_joint, read=_spring),
+        "base": _base,
+        "tip": _name,
+        "gravity": partial(_several, unit="m/s^2"),
+        "rotor_inertia": partial(_by_joint, read=_quantity("kg m^2")),
+        "friction": partial(_by_joint, read=_quantity("N m s/rad")),
+        "modes": lambda entry, _: entry,
+        "limits": lambda entry, _: entry,
+        "measured": _measured,
+    }
+    for name in document:
+        if name not in readers:
+            raise ValueError(has_no("a robot", "entry", str(name), list(readers)))
+    if "urdf" not in document:
+        raise ValueError("it has no urdf; give the file of the robot's URDF")
+    given = {
+        name: readers[name](entry, name) for name, entry in document.items() if entry is not None
+    }
+    if "limits" in given:
+        given["limits"] = _limits(given["limits"], given["urdf"], folder)
+    return given
+
+
+def limits_of(urdf: str) -> dict[str, dict[str, float]]:
+    """The limits of torque and speed that a URDF has, by quantity and joint."""
+    joints = read_urdf(urdf).joints.values()
+    by_quantity = {
+        "torque": {joint.name: joint.effort for joint in joints if joint.effort > 0},
+        "speed": {joint.name: joint.velocity for joint in joints if joint.velocity > 0},
+    }
+    return {quantity: limits for quantity, limits in by_quantity.items() if limits}
+
+
+def _limits(entry: Any, urdf: str, folder: Path) -> dict[str, dict[str, float]]:
+    """Limits by quantity and joint: of the URDF, or those and what MoveIt's file has of them."""
+    if not isinstance(entry, str):
+        raise ValueError(f"limits is {entry!r}; give a joint_limits.yaml of MoveIt, or {OF_URDF}")
+    limits = limits_of(urdf)
+    if entry == OF_URDF:
+        return limits
+    path = _beside(entry, folder, "limits")
+    document = read_yaml(path, "limits file")
+    by_joint = document.get("joint_limits") if isinstance(document, dict) else None
+    if not isinstance(by_joint, dict):
+        raise ValueError(
+            f"limits file {entry} has no joint_limits; give a joint_limits.yaml of MoveIt"
+        )
+    known = read_urdf(urdf).joints
+    for joint, entries in by_joint.items():
+        if joint not in known:
+            raise ValueError(has_no("the URDF", "joint, for limits,", str(joint), known))
+        if not isinstance(entries, dict):
+            raise ValueError(
+                f"limits of {joint} are {entries!r}; give has_velocity_limits and so on"
+            )
+        for theirs, quantity in _LIMITS.items():
+            limit = entries.get(f"max_{theirs}")
+            if entries.get(f"has_{theirs}_limits", limit is not None):
+                number = _number(limit, f"max_{theirs} of {joint} in limits", "-")
+                if not number > 0:
+                    raise ValueError(
+                        f"max_{theirs} of {joint} in limits is {number:g}; give a positive number"
+                    )
+                limits.setdefault(quantity, {})[joint] = number
+    return limits
+
+
+def _beam(entry: Any, what: str) -> Beam:
+    units = {
+        "length": "m", "width": "m", "height": "m", "youngs_modulus": "Pa", "density": "kg/m^3",
+        "tip_mass": "kg", "damping": "-", "mass_per_length": "kg/m",
+    }  # fmt: skip
+    readers: dict[str, Read] = {name: _quantity(unit) for name, unit in units.items()}
+    readers |= {
+        "at": _name,
+        "pieces": lambda value, _: value,
+        "bending_stiffness": partial(_several, unit="N m^2"),
+    }
+    given = _table(entry, what, readers)
+    for name in ("at", "length"):
+        if name not in given:
+            raise ValueError(f"the beam has no {name}; give it, as {_EXAMPLES[name]}")
+    return Beam(**given)
+
+
+_EXAMPLES = {"at": "at: tool0", "length": "length: 0.8"}
+
+
+def _base(entry: Any, what: str) -> Base:
+    readers: dict[str, Read] = {
+        "stiffness": partial(_several, unit="N m/rad"),
+        "damping": partial(_several, unit="N m s/rad"),
+        "height": _quantity("m"),
+    }
+    given = _table(entry, what, readers)
+    if "stiffness" not in given:
+        raise ValueError("the base has no stiffness; give one about x and one about y, in N m/rad")
+    return Base(**given)
+
+
+def _measured(entry: Any, what: str) -> Measured:
+    readers: dict[str, Read] = {
+        "frequency": _quantity("rad/s"),
+        "at": partial(_several, unit="rad"),
+    }
+    given = _table(entry, what, readers)
+    frequency = entry.get("frequency")
+    if isinstance(frequency, int | float):
+        raise ValueError(f"measured frequency is {frequency}; say its unit, as {frequency:g}Hz")
+    if given.keys() != readers.keys():
+        raise ValueError("measured needs a frequency, as 3.05Hz, and at, the joints' positions")
+    return Measured(**given)
+
+
+def _spring(entry: Any, what: str) -> Spring:
+    if not isinstance(entry, dict):
+        return Spring(_number(entry, what, "N m/rad"))
+    units = {"stiffness": "N m/rad", "damping": "N m s/rad"}
+    given = _table(entry, what, {name: _quantity(unit) for name, unit in units.items()})
+    if "stiffness" not in given:
+        raise ValueError(f"{what} has no stiffness; give it in N m/rad")
+    return Spring(**given)
+
+
+def _table(entry: Any, what: str, readers: Mapping[str, Read]) -> dict[str, Any]:
+    if not isinstance(entry, dict):
+        raise ValueError(f"{what} is {entry!r}; give a table of {', '.join(readers)}")
+    for name in entry:
+        if name not in readers:
+            raise ValueError(has_no(what, "entry", str(name), list(readers)))
+    return {
+        name: readers[name](value, f"{name} of {what}")
+        for name, value in entry.items()
+        if value is not None
+    }
+
+
+def _by_joint(entry: Any, what: str, read: Read) -> dict[str, Any]:
+    if not isinstance(entry, dict):
+        raise ValueError(f"{what} is {entry!r}; give values by joint, as {{elbow_joint: 1.0}}")
+    return {str(joint): read(value, f"{what} of {joint}") for joint, value in entry.items()}
+
+
+def _several(entry: Any, what: str, unit: str) -> Any:
+    if isinstance(entry, list):
+        return tuple(_number(value, what, unit) for value in entry)
+    return _number(entry, what, unit)
+
+
+def _names(entry: Any, what: str) -> tuple[str, ...]:
+    if not isinstance(entry, list):
+        raise ValueError(f"{what} is {entry!r}; give a list of names")
+    return tuple(_name(name, what) for name in entry)
+
+
+def _name(entry: Any, what: str) -> str:
+    if not isinstance(entry, str):
+        raise ValueError(f"{what} is {entry!r}; give a name")
+    return entry
+
+
+def _quantity(unit: str) -> Read:
+    return lambda entry, what: _number(entry, what, unit)
+
+
+def _number(entry: Any, what: str, unit: str) -> float:
+    """A number in SI units, or with another unit."""
+    if isinstance(entry, bool) or not isinstance(entry, int | float | str):
+        raise ValueError(f"{what} is {entry!r}; give a number in {unit}")
+    number = parse_quantity(entry, unit, what) if isinstance(entry, str) else float(entry)
+    if not math.isfinite(number):
+        raise ValueError(f"{what} is {entry}; give a finite number")
+    return number
+
+
+def _beside(entry: Any, folder: Path, what: str) -> Path:
+    """A file that is named beside this one, or by its whole name."""
+    return folder / _name(entry, what)

@@ -1,0 +1,126 @@
+"""A robot in rows of a name and a value: what was read, and how it swings along a path."""
+
+from __future__ import annotations
+
+from math import tau
+
+import numpy as np
+
+from quietarm.models import GeometricPath, Robot
+from quietarm.models.joint_motion import joint_unit
+from quietarm.models.robot.modes import modes_at, sag_at
+from quietarm.models.robot.urdf import PRISMATIC
+from quietarm.ocp.limits import QUANTITIES
+
+Row = tuple[str, str]
+_PLACES = (0.0, 0.5, 1.0)
+"""Of a path, at which modes and sag are shown."""
+_MORE = 2
+"""Modes that are shown beyond those that are followed."""
+
+
+def robot_rows(robot: Robot, path: GeometricPath) -> list[Row]:
+    """Bodies, joints, what bends, limits; modes and sag at the ends and in the middle of a path."""
+    return [
+        *_mass_rows(robot),
+        *_joint_rows(robot),
+        *_spring_rows(robot),
+        *_limit_rows(robot),
+        *_path_rows(robot, path),
+    ]
+
+
+def usual_path(robot: Robot) -> GeometricPath:
+    """Straight, all joints by one radian or as far as they go, from 0 or where they begin."""
+    least, most = np.array(robot.ranges()).T
+    start = np.clip(np.zeros(len(robot.joints)), least, most)
+    up = np.minimum(start + 1.0, most)
+    down = np.maximum(start - 1.0, least)
+    end = np.where(up - start >= start - down, up, down)
+    return GeometricPath.line(start, end, joints=robot.joints)
+
+
+def _mass_rows(robot: Robot) -> list[Row]:
+    links = {name: link.mass for name, link in robot.description.links.items() if link.mass > 0}
+    words = ", ".join(f"{name} {mass:.4g}" for name, mass in links.items())
+    rows = [("masses [kg]", f"{sum(links.values()):.5g} of the URDF: {words}")]
+    beam = robot.beam
+    if beam is not None:
+        mass = beam.line_mass * beam.length
+        rows.append(
+            (
+                "beam",
+                f"{beam.length:g} m at {beam.at}, {mass:.4g} kg and {beam.tip_mass:.4g} kg at its "
+                f"end, {beam.count} pieces, their first two frequencies {100 * beam.excess:.2g} % "
+                "off",
+            )
+        )
+    return rows
+
+
+def _joint_rows(robot: Robot) -> list[Row]:
+    rows = [("driven", ", ".join(robot.joints))]
+    others = [
+        name
+        for name in robot.description.moving
+        if name not in robot.joints and name not in robot.springs
+    ]
+    if others:
+        positions = (f"{name} at {robot.held.get(name, 0.0):.4g}" for name in others)
+        rows.append(("held", ", ".join(positions)))
+    for entry, unit in (("rotor_inertia", "kg m^2"), ("friction", "N m s/rad")):
+        values = getattr(robot, entry)
+        listed = ", ".join(f"{name} {value:.4g}" for name, value in values.items())
+        words = f"{listed} {unit}" if listed else "none: give it, as the URDF has none"
+        rows.append((entry.replace("_", " "), words))
+    return rows
+
+
+def _spring_rows(robot: Robot) -> list[Row]:
+    springs = {
+        **{f"gear of {name}": spring for name, spring in robot.elastic_joints.items()},
+        **robot.springs,
+    }
+    rows = [(name, f"{spring.stiffness:.5g} N m/rad, {spring.damping:.4g} N m s/rad")
+            for name, spring in springs.items()]  # fmt: skip
+    if robot.base is not None:
+        stiffness = " and ".join(f"{value:.5g}" for value in robot.base.stiffness)
+        rows.append(
+            ("base", f"{stiffness} N m/rad, {robot.base.height:g} m below {robot.description.root}")
+        )
+    if robot.measured is not None:
+        rows.append(("springs scaled to", f"{robot.measured.frequency / tau:.5g} Hz, as measured"))
+    return rows
+
+
+def _limit_rows(robot: Robot) -> list[Row]:
+    if not robot.limits:
+        return [("limits", "none: give limits, urdf or a joint_limits.yaml")]
+    return [
+        (
+            f"{quantity} limit",
+            f"{', '.join(f'{name} {limit:.4g}' for name, limit in limits.items())} "
+            f"{joint_unit(QUANTITIES[quantity].unit, 'rotary')}",
+        )
+        for quantity, limits in robot.limits.items()
+    ]
+
+
+def _path_rows(robot: Robot, path: GeometricPath) -> list[Row]:
+    """Modes and sag along a path, in the words of its ends."""
+    slides = [robot.description.joints[name].kind == PRISMATIC for name in robot.joints]
+    rows = list[Row]()
+    for place in _PLACES:
+        q = path(place)
+        p = sag_at(robot.dynamics, q)
+        squares, _ = modes_at(robot.dynamics, q, p)
+        shown = [f"{value / tau:.3g}" for value in squares[: robot.modes + _MORE]]
+        followed = ", ".join(shown[: robot.modes])
+        left = f" (left out: {', '.join(shown[robot.modes :])} ...)" if shown[robot.modes :] else ""
+        sag = 1e3 * float(np.linalg.norm(robot.sag(q)))
+        positions = ", ".join(
+            f"{round(x, 9):.4g}" if slide else f"{round(np.degrees(x), 6):.4g}deg"
+            for x, slide in zip(q, slides)
+        )
+        rows.append((f"at {positions}", f"modes {followed} Hz{left}, sag {sag:.3g} mm"))
+    return rows

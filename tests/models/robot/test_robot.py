@@ -1,0 +1,203 @@
+"""Robots from a URDF and from a file: what is read, and what is refused."""
+
+import json
+import math
+import pickle
+
+import numpy as np
+import pytest
+from robots import BAR, END, START, UR5_JOINTS, ur5_with_bar, urdf_of
+
+import quietarm as qa
+
+FILE = """
+urdf: {urdf}
+beam: {{at: tool0, length: 0.8, width: 8mm, height: 12mm, youngs_modulus: 70GPa, density: 2700,
+       tip_mass: 500g, damping: 0.5%}}
+"""
+# Two links that turn in a level plane; `elbow` stands for any joint.
+LINK = '<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>'
+URDF = f"""<robot name="two">
+<link name="ground"/><link name="upper">{LINK}</link><link name="lower">{LINK}</link>
+<joint name="shoulder" type="revolute"><parent link="ground"/><child link="upper"/>
+<axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="50" velocity="3"/></joint>
+<joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/>
+<origin xyz="0.5 0 0"/><axis xyz="0 0 1"/>
+<limit lower="-2" upper="2" effort="20" velocity="4"/></joint>
+</robot>"""
+GEARS = {"shoulder": 800.0, "elbow": 300.0}
+
+
+def _file(tmp_path, more=""):
+    file = tmp_path / "robot.yaml"
+    file.write_text(FILE.format(urdf=urdf_of("ur5_robot.urdf")) + more)
+    return file
+
+
+def test_a_file_gives_the_robot_of_its_entries(tmp_path):
+    robot = qa.Robot.load(_file(tmp_path))
+    assert robot == ur5_with_bar()
+    assert robot.joints == UR5_JOINTS
+    assert robot.modes == 2
+
+
+def test_every_entry_of_a_file(tmp_path):
+    robot = qa.Robot.load(
+        _file(
+            tmp_path,
+            """
+joints: [shoulder_pan_joint, shoulder_lift_joint, elbow_joint]
+held: {wrist_1_joint: -90deg}
+springs: {wrist_2_joint: {stiffness: 8kNm/rad, damping: 2 N m s/rad}}
+elastic_joints: {elbow_joint: 20000}
+base: {stiffness: [200kNm/rad, 3e5], damping: 10, height: 300mm}
+tip: wrist_3_link
+gravity: [0, 0, -9.81]
+rotor_inertia: {elbow_joint: 0.2}
+friction: {elbow_joint: 5}
+modes: 4
+""",
+        )
+    )
+    assert robot.held["wrist_1_joint"] == pytest.approx(-math.pi / 2)
+    assert robot.springs["wrist_2_joint"] == qa.Spring(8000.0, 2.0)
+    assert robot.elastic_joints["elbow_joint"] == qa.Spring(20000.0)
+    assert robot.base == qa.Base((2e5, 3e5), (10.0, 10.0), 0.3)
+    assert (robot.tip, robot.gravity[2], robot.modes) == ("wrist_3_link", -9.81, 4)
+    # the wrist's spring, the gear, two axes of the base, six hinges in two planes
+    assert len(robot.mechanism.sprung) == 1 + 1 + 2 + 12
+
+
+def test_a_measured_frequency_scales_the_springs(tmp_path):
+    file = _file(
+        tmp_path, "measured: {frequency: 3.05Hz, at: [0, -80deg, 97deg, -107deg, -90deg, 0]}\n"
+    )
+    robot = qa.Robot.load(file)
+    at = robot.measured.at
+    assert robot.frequencies(at)[0] == pytest.approx(math.tau * 3.05, rel=1e-9)
+    assert ur5_with_bar().frequencies(at)[0] > math.tau * 3.1
+
+
+def test_limits_are_of_the_urdf_or_of_moveit(tmp_path):
+    of_urdf = qa.Robot.load(_file(tmp_path, "limits: urdf\n"))
+    assert of_urdf.limits["torque"]["wrist_1_joint"] == 28.0
+    assert of_urdf.limits["speed"]["elbow_joint"] == 3.15
+    (tmp_path / "joint_limits.yaml").write_text("""
+joint_limits:
+  elbow_joint: {has_velocity_limits: true, max_velocity: 2.5, has_acceleration_limits: true,
+                max_acceleration: 10, has_jerk_limits: false, max_jerk: 0.0}
+""")
+    robot = qa.Robot.load(_file(tmp_path, "limits: joint_limits.yaml\n"))
+    assert robot.limits["speed"]["elbow_joint"] == 2.5
+    assert robot.limits["speed"]["wrist_1_joint"] == 3.2
+    assert robot.limits["acceleration"] == {"elbow_joint": 10.0}
+    assert "jerk" not in robot.limits
+
+
+def test_gears_bend_under_gravity_and_swing_at_their_frequency(tmp_path):
+    """Two links of 1 kg hang on springs: k angle = m g r, and sqrt(k / J) with the elbow held."""
+    upright = URDF.replace('xyz="0 0 1"', 'xyz="0 1 0"').replace(
+        '<mass value="1"/>', '<origin xyz="0.3 0 0"/><mass value="1"/>'
+    )
+    robot = qa.Robot(urdf=upright, elastic_joints={"elbow": 1000.0}, modes=1)
+    p = robot.dynamics.sag(np.zeros(2))
+    assert 1000.0 * p[0] == pytest.approx(9.80665 * 0.3 * math.cos(p[0]), rel=1e-12)
+    level = qa.Robot(urdf=upright, elastic_joints={"elbow": 1000.0}, modes=1, gravity=(0, 0, 0))
+    assert level.frequencies([0.0, 0.0])[0] == pytest.approx(math.sqrt(1000 / (0.1 + 0.3**2)))
+
+
+def test_a_robot_is_the_same_in_another_process():
+    robot = ur5_with_bar()
+    _ = robot.dynamics.masses
+    assert pickle.loads(pickle.dumps(robot)) == robot
+
+
+@pytest.mark.parametrize(("more", "words"), [
+    ("colour: red\n", "a robot has no entry 'colour'"),
+    ("joints: [elbow]\n", "has no moving joint, for joints, 'elbow'; did you mean 'elbow_joint'"),
+    ("tip: tool7\n", "has no link, for the tip, 'tool7'; did you mean 'tool0'"),
+    ("modes: 0\n", "modes is 0; give a whole number from 1 up"),
+    ("modes: 13\n", "modes is 13; give at most 12"),
+    ("held: {elbow_joint: 1}\njoints: [elbow_joint]\n", "is driven and in held"),
+    ("friction: {elbow_joint: fast}\n", "'fast' is not friction of elbow_joint"),
+    ("springs: {elbow_joint: 0}\n", "stiffness of elbow_joint in springs is 0"),
+    ("springs: {elbow_joint: {softness: 3}}\n", "springs of elbow_joint has no entry 'softness'"),
+    ("base: {stiffness: [1, 2, 3]}\n", "stiffness of the base has 3 numbers"),
+    ("limits: none.yaml\n", "none.yaml cannot be read: no such file"),
+    ("limits: 3\n", "give a joint_limits.yaml of MoveIt, or urdf"),
+    ("measured: {frequency: 3, at: [0, 0, 0, 0, 0, 0]}\n", "say its unit, as 3Hz"),
+    ("measured: {frequency: 900Hz, at: [0, 0, 0, 0, 0, 0]}\n", "measured frequency is 900 Hz"),
+    ("measured: {frequency: 3Hz, at: [0, 0]}\n", "measured has 2 positions and the robot 6 joints"),
+    ("gravity: [0, 9.81]\n", "gravity has 2 numbers; give three"),
+    ("a: [\n", "is no valid YAML"),
+    ("!!python/object/apply:os.system ['true']\n", "is no valid YAML"),
+])  # fmt: skip
+def test_what_a_file_may_not_say(tmp_path, more, words):
+    with pytest.raises(ValueError, match=words):
+        qa.Robot.load(_file(tmp_path, more))
+
+
+@pytest.mark.parametrize(("old", "new", "words"), [
+    (LINK, "", "moves no mass; give the links beyond it an <inertial>"),
+    ('<link name="ground"/>', '<link name="ground"/><link name="other"/>', "has 2 roots"),
+    ('revolute"><parent link="upper"', 'floating"><parent link="upper"', "is 'floating'; give"),
+    ('<parent link="upper"/>', '<parent link="none"/>', "joins 'none', which is no link"),
+    ('<child link="lower"/>', '<child link="upper"/>', "hangs on 2 joints, a closed loop"),
+    ('<origin xyz="0.5 0 0"/>', '<mimic joint="shoulder"/>', "mimics 'shoulder'; hold both"),
+    ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 0"/>', "axis of joint .* is 0 0 0"),
+    ('<mass value="1"/>', '<mass value="heavy"/>', "mass of link .* is 'heavy'; give a number"),
+    ('<mass value="1"/>', '<mass value="-1"/>', "has a mass of -1 kg"),
+    ("<robot", '<!DOCTYPE r [<!ENTITY a "b">]><robot', "XML entities, which are not read"),
+    ("<robot", "<robots", "no valid XML"),
+    ('<robot name="two">', '<robot xmlns:xacro="x"><xacro:arm/>', "run xacro on it first"),
+])  # fmt: skip
+def test_a_urdf_that_cannot_be_followed_is_refused(old, new, words):
+    assert old in URDF
+    with pytest.raises(ValueError, match=words):
+        qa.Robot(urdf=URDF.replace(old, new), elastic_joints=GEARS)
+
+
+def test_a_mimicking_joint_that_is_held_is_no_trouble():
+    robot = qa.Robot(
+        urdf=urdf_of("panda.urdf"), base=qa.Base((1e5, 1e5)),
+        held={"panda_finger_joint1": 0.02, "panda_finger_joint2": 0.02},
+    )  # fmt: skip
+    assert len(robot.joints) == 7
+
+
+def test_a_robot_that_does_not_bend_is_refused():
+    with pytest.raises(ValueError, match="has nothing that bends; give a beam"):
+        qa.Robot(urdf=URDF)
+
+
+def test_a_spring_too_soft_to_carry_its_load_is_refused():
+    """Thirty kilograms at the end of a bar that lies level: more than a metre of sag."""
+    heavy = qa.Beam(at="tool0", **(BAR | {"tip_mass": 30.0}))
+    soft = qa.Robot(urdf=urdf_of("ur5_robot.urdf"), beam=heavy)
+    level = qa.GeometricPath.line(np.zeros(6), np.full(6, 0.2))
+    with pytest.raises(ValueError, match=r"spring beam 1 about . is too soft to carry its load"):
+        soft.along(level)
+
+
+@pytest.mark.parametrize(("path", "words"), [
+    (qa.GeometricPath.line(START[:5], END[:5]), "is of 5 joints, and the robot drives 6"),
+    (qa.GeometricPath.line(START, END, list("abcdef")), "is of the joints a, b, c, d, e, f"),
+    (qa.GeometricPath.line(START, 3 * END), "'elbow_joint' is at .* its range is"),
+])  # fmt: skip
+def test_a_path_that_the_robot_cannot_follow_is_refused(path, words):
+    with pytest.raises(ValueError, match=words):
+        ur5_with_bar().along(path)
+
+
+def test_a_path_that_names_its_joints_may_have_them_in_any_order():
+    turned = [3, 1, 0, 2, 5, 4]
+    names = [UR5_JOINTS[i] for i in turned]
+    plant = ur5_with_bar().along(qa.GeometricPath.line(START[turned], END[turned], joints=names))
+    assert plant.path(1.0) == pytest.approx(END)
+
+
+def test_a_robots_content_is_plain():
+    """What a plan's file holds of it can be written as JSON."""
+    from dataclasses import asdict
+
+    assert json.loads(json.dumps(asdict(ur5_with_bar())))["beam"]["length"] == 0.8

@@ -1,0 +1,99 @@
+"""Robots on the command line, as typed: from a file and waypoints to a trajectory."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from robots import UR5_JOINTS, urdf_of
+
+import quietarm as qa
+
+START = "--start=0,-80deg,97deg,-107deg,-90deg,0"
+TARGET = "--target=80deg,-57deg,69deg,-75deg,-69deg,34deg"
+ENDS = f"{START} {TARGET}"
+ROBOT = """
+urdf: {urdf}
+beam: {{at: tool0, length: 0.8, width: 8mm, height: 12mm, youngs_modulus: 70GPa, density: 2700,
+       tip_mass: 500g, damping: 0.5%}}
+"""
+
+
+@pytest.fixture(autouse=True)
+def _files(folder):
+    """A robot's file, and others that are none."""
+    Path("ur5_bar.yaml").write_text(ROBOT.format(urdf=urdf_of("ur5_robot.urdf")))
+    Path("stiff.yaml").write_text(f"urdf: {urdf_of('ur5_robot.urdf')}\n")
+    Path("corner.csv").write_text(
+        "0,-1.4,1.7,-1.8,-1.5,0\n1,-1,1.2,-1,-1,0\n0,-1.4,1.7,-1.8,-1.5,0\n"
+    )
+    Path("short.csv").write_text("0,-1.4,1.7\n1,-1,1.2\n")
+
+
+def test_a_plan_of_a_robot_and_its_files(call):
+    outputs = "--output move.json --output move.yaml --output move.csv"
+    code, out, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 {outputs}")
+    assert code == 0
+    assert "ur5 (6 joints; beam at tool0), 0 to 1 of the path in 1 s" in out
+    assert "at rest (below 0.001 mm) at the worst of 2 tips" in out
+    plan = qa.Plan.load("move.json")
+    path = plan.task.plant.path
+    assert path(1.0) == pytest.approx(np.radians([80, -57, 69, -75, -69, 34]))
+    message = yaml.safe_load(Path("move.yaml").read_text())
+    assert tuple(message["joint_names"]) == UR5_JOINTS
+    assert len(message["points"]) == 1001
+    first, last = message["points"][0], message["points"][-1]
+    assert first["positions"] == pytest.approx(path(0.0).tolist())
+    assert last["positions"] == pytest.approx(path(1.0).tolist())
+    assert last["velocities"] == pytest.approx([0.0] * 6, abs=1e-9)
+    assert len(last["accelerations"]) == 6
+    with open("move.csv", newline="") as file:
+        header, *rows = csv.reader(file)
+    assert header[1] == "shoulder_pan_joint_angle_rad"
+    assert "wrist_3_joint_torque_Nm" in header
+    assert float(rows[-1][1]) == pytest.approx(path(1.0)[0])
+
+
+def test_limits_by_joint_and_of_the_file(call):
+    """A limit that is typed stands in place of that of the file."""
+    Path("limited.yaml").write_text(Path("ur5_bar.yaml").read_text() + "limits: urdf\n")
+    line = f"plan limited.yaml {ENDS} --duration 2 --torque-limit elbow_joint=30,wrist_1_joint=20Nm"
+    code, out, _ = call(f"{line} --output move.json")
+    assert code == 0
+    task = qa.Plan.load("move.json").task
+    assert dict(task.torque_limit) == {"elbow_joint": 30.0, "wrist_1_joint": 20.0}
+    assert dict(task.speed_limit)["elbow_joint"] == 3.15
+    assert "elbow_joint 30 N m" in out
+
+
+def test_a_robot_is_listed_with_what_was_read(call):
+    code, out, _ = call(f"list ur5_bar.yaml {ENDS}")
+    assert code == 0
+    for words in (
+        "upper_arm_link 8.393", "0.2074 kg and 0.5 kg at its end, 6 pieces",
+        "modes 3.18, 4.72 Hz (left out: 47.1, 70.6 ...)", "sag 14.", "rotor inertia",
+        "none: give limits, urdf or a joint_limits.yaml",
+    ):  # fmt: skip
+        assert words in " ".join(out.split()), words
+
+
+@pytest.mark.parametrize(("line", "words"), [
+    ("plan ur5_bar.yaml --duration 1", "has no path; give --start and --target"),
+    (f"plan ur5_bar.yaml {ENDS}", "Missing option '--duration'"),
+    (f"plan ur5_bar.yaml {START} --target=1,2 --duration 1", "--target has 2 positions"),
+    (f"plan ur5_bar.yaml {START} --target=far,0,0,0,0,0 --duration 1", "'far' is not a position"),
+    (f"plan ur5_bar.yaml {START} --target=9,0,0,0,0,0 --duration 1", "its range is -6.28"),
+    (f"plan ur5_bar.yaml {START} {START.replace('start', 'target')} --duration 1", "a length of 0"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --set x=1", "--set is not for a robot"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --path corner.csv", "--start is in the file of"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --torque-limit elbow=3", "has no joint 'elbow'"),
+    ("plan ur5_bar.yaml --path corner.csv --duration 1", "turns back at waypoint 2, a corner"),
+    ("plan ur5_bar.yaml --path short.csv --duration 1", "is of 3 joints, and the robot drives 6"),
+    ("plan ur5_bar.yaml --path none.csv --duration 1", "none.csv cannot be read"),
+    (f"plan stiff.yaml {ENDS} --duration 1", "has nothing that bends; give a beam"),
+    (f"plan none.yaml {ENDS} --duration 1", "none.yaml cannot be read"),
+    ("plan single-link --path corner.csv --target 1 --duration 1", "--path is for a robot"),
+])  # fmt: skip
+def test_what_is_refused_in_one_line(refused, line, words):
+    assert words in refused(f"{line} --output move.json")
