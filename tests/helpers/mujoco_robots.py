@@ -256,11 +256,7 @@ def motion_of(plan):
 
     task = plan.task
     time = ca.SX.sym("t")
-    s = (
-        plan.profile.angle(plan.coefficients, time / task.duration, *task.move)
-        if hasattr(plan.profile, "angle")
-        else plan.profile.derivatives(list(plan.coefficients), time / task.duration, *task.move)[0]
-    )
+    s = plan.profile.motion(list(plan.coefficients), time / task.duration, *task.move)[0]
     ds = ca.jacobian(s, time)
     along = ca.Function("along", [time], [ca.vertcat(s, ds, ca.jacobian(ds, time))])
     path = task.plant.path

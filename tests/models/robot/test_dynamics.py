@@ -6,8 +6,9 @@ import pytest
 from robots import UR5_JOINTS, urdf_of
 
 import quietarm as qa
+from quietarm.models import Base
 
-STIFF = qa.Base(stiffness=(1e9, 1e9))  # something has to bend; it adds nothing at rest
+STIFF = Base(stiffness=(1e9, 1e9))  # something has to bend; it adds nothing at rest
 FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
 ROBOTS = {
     "ur5_robot.urdf": {},

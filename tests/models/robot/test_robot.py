@@ -9,6 +9,7 @@ import pytest
 from robots import BAR, END, START, UR5_JOINTS, ur5_with_bar, urdf_of
 
 import quietarm as qa
+from quietarm.models import Base, Spring
 
 FILE = """
 urdf: {urdf}
@@ -60,9 +61,9 @@ modes: 4
         )
     )
     assert robot.held["wrist_1_joint"] == pytest.approx(-math.pi / 2)
-    assert robot.springs["wrist_2_joint"] == qa.Spring(8000.0, 2.0)
-    assert robot.elastic_joints["elbow_joint"] == qa.Spring(20000.0)
-    assert robot.base == qa.Base((2e5, 3e5), (10.0, 10.0), 0.3)
+    assert robot.springs["wrist_2_joint"] == Spring(8000.0, 2.0)
+    assert robot.elastic_joints["elbow_joint"] == Spring(20000.0)
+    assert robot.base == Base((2e5, 3e5), (10.0, 10.0), 0.3)
     assert (robot.tip, robot.gravity[2], robot.modes) == ("wrist_3_link", -9.81, 4)
     # the wrist's spring, the gear, two axes of the base, six hinges in two planes
     assert len(robot.mechanism.sprung) == 1 + 1 + 2 + 12
@@ -159,7 +160,7 @@ def test_a_urdf_that_cannot_be_followed_is_refused(old, new, words):
 
 def test_a_mimicking_joint_that_is_held_is_no_trouble():
     robot = qa.Robot(
-        urdf=urdf_of("panda.urdf"), base=qa.Base((1e5, 1e5)),
+        urdf=urdf_of("panda.urdf"), base=Base((1e5, 1e5)),
         held={"panda_finger_joint1": 0.02, "panda_finger_joint2": 0.02},
     )  # fmt: skip
     assert len(robot.joints) == 7

@@ -8,6 +8,7 @@ import pytest
 from robots import END, START, straight, ur5_with_bar
 
 import quietarm as qa
+from quietarm.models import Base, JointMotion
 from quietarm.models.robot.reduction import OF_MODES, OF_TORQUES, Reduction
 from quietarm.models.robot.tables import ACCURACY, tables_of
 
@@ -94,9 +95,7 @@ def test_the_equilibrium_moves_with_the_path():
     """A slow motion stays in it: W = 0 solves the equations where speed and acceleration are 0."""
     plant = ur5_with_bar().along(straight())
     for place in (0.0, 0.4, 1.0):
-        rest = plant.modal_accelerations(
-            qa.models.JointMotion(place, 0.0, 0.0), [0.0] * 2, [0.0] * 2
-        )
+        rest = plant.modal_accelerations(JointMotion(place, 0.0, 0.0), [0.0] * 2, [0.0] * 2)
         assert [float(w) for w in rest] == [0.0, 0.0]
 
 
@@ -105,7 +104,7 @@ def test_torques_at_rest_hold_the_robot_and_its_bar():
     robot = ur5_with_bar()
     plant = robot.along(straight())
     still = [0.0] * 2
-    torques = plant.torques(qa.models.JointMotion(0.0, 0.0, 0.0), still, still, still)
+    torques = plant.torques(JointMotion(0.0, 0.0, 0.0), still, still, still)
     assert float(torques[0]) == pytest.approx(0.0, abs=1e-9)
     p = robot.dynamics.sag(START)
     rest = robot.dynamics.at_rest(np.concatenate([START, p]))[0].full().ravel()[:6]
@@ -120,7 +119,7 @@ def test_frequency_of_the_table_is_that_of_the_robot():
 
 def test_more_modes_and_a_base_that_rocks():
     """Its equations, too, are those of a plant: stable, passive, at rest with the path."""
-    robot = dataclasses.replace(ur5_with_bar(), base=qa.Base((2e4, 2e4), (5.0, 5.0), 0.5), modes=4)
+    robot = dataclasses.replace(ur5_with_bar(), base=Base((2e4, 2e4), (5.0, 5.0), 0.5), modes=4)
     plant = robot.along(straight())
     plant.validate()
     assert plant.modes == 4

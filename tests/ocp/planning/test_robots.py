@@ -9,6 +9,7 @@ from mujoco_robots import FlexibleRobot, Truth, motion_of
 from robots import BAR, END, START, UR5_JOINTS, straight, ur5_with_bar, urdf_of
 
 import quietarm as qa
+from quietarm.models import JointMotion, RobotOnPath
 
 # The figures of the move, by another program and MuJoCo.
 ENERGY = 33.287
@@ -70,7 +71,7 @@ def test_both_solvers_find_the_same(plan):
     assert other.energy == pytest.approx(plan.energy, rel=1e-5)
 
 
-class Frozen(qa.RobotOnPath):
+class Frozen(RobotOnPath):
     """A robot whose modes are everywhere those of one place of its path."""
 
     name = "frozen-robot"
@@ -101,7 +102,7 @@ def test_the_posture_changes_the_forcing(frozen, least):
     assert residual >= least
 
 
-class Weightless(qa.RobotOnPath):
+class Weightless(RobotOnPath):
     """A robot whose modes know nothing of gravity, though its motors do."""
 
     name = "weightless-robot"
@@ -150,7 +151,7 @@ def test_a_spline_through_six_waypoints_is_followed():
     path = qa.GeometricPath.through(_waypoints())
     task = _task(path=path, duration=1.2)
     places = np.linspace(0.0, 1.0, 501)
-    joints = task.plant.joints(qa.models.JointMotion(places, 0.0 * places, 0.0 * places))
+    joints = task.plant.joints(JointMotion(places, 0.0 * places, 0.0 * places))
     followed = np.column_stack([joint.angle for joint in joints])
     assert np.abs(followed - path(places)).max() <= 1e-9
     residual, _, _ = _measured(qa.plan_move(task))
