@@ -273,11 +273,6 @@ def tolerated_residual(task: PointToPoint) -> float:
     return TOLERATED * _plain(task).residual
 
 
-def quiet_residual(task: PointToPoint) -> float:
-    """Its peak deflection [m], times `TOLERATED`: over durations this has no zeros."""
-    return TOLERATED * _plain(task).motion.peak_deflection
-
-
 def _plain(task: PointToPoint) -> Candidate:
     return Candidate.of_profile(task.certain, CycloidPolynomial(0), [])
 

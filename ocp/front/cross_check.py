@@ -11,7 +11,7 @@ from quietarm.ocp.front.curve import Curve, Report, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.planning.certify import OVERRUN, judge
+from quietarm.ocp.planning.certify import OVERRUN, by_cvodes
 from quietarm.ocp.record import number_of_points
 from quietarm.ocp.solvers.choice import other_solver, stated_solver
 from quietarm.ocp.solvers.problem import Problem
@@ -108,7 +108,7 @@ def _compare(curve: Curve, point: FrontPoint) -> Compared:
     transcription, asked = curve.problem()
     motion = transcription.evaluate(np.array(point.coefficients))
     peaks = transcription.measure(motion).peaks_of(0)
-    own = judge(transcription, np.array(point.coefficients))
+    own = by_cvodes(transcription, np.array(point.coefficients))
     # a limit that the point is at was tightened until it held between the nodes as well
     limits = [
         one if one.keeps(one.peak_of(own), -OVERRUN) else one.tightened(one.size / peaks[one.name])
@@ -120,7 +120,7 @@ def _compare(curve: Curve, point: FrontPoint) -> Compared:
     for start, warm in [*starts, (np.array(point.coefficients), True)]:
         (found,) = curve.solver.solve([problem], [start], warm=warm)
         if found.status.solved:
-            energy = judge(transcription, found.coefficients).energy
+            energy = by_cvodes(transcription, found.coefficients).energy
             best = float(np.nanmin([best, energy]))
         if best <= own.energy * (1 + _SAME):
             break

@@ -14,7 +14,7 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Asked, Curve, Report, no_re
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.planning.best_of_starts import best_of_starts, objective_of
+from quietarm.ocp.planning.best_of_starts import best_of_starts, minimum_of
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -120,7 +120,7 @@ def _minimise(ends: Ends, of_residual: float, of_energy: float, starts: Sequence
     problem, solver = ends.curve.problem(minimise=weights), ends.curve.solver
     # far starts lead past a dearer minimum, near ones keep to the minimum beside them
     found = [best_of_starts([problem], [starts], solver, warm=warm)[0] for warm in (False, True)]
-    best = min(found, key=lambda one: objective_of(one, problem.scalarization))
+    best = min(found, key=lambda one: minimum_of(one, problem.scalarization))
     best = replace(best, iterations=sum(one.iterations for one in found))
     if best.status.solved:  # if it is not certified, its place is known
         return best, {RESIDUAL_LIMIT: best.residual}
