@@ -17,6 +17,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.planning.best_of_starts import best_of_starts
@@ -25,6 +26,7 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.request import PlanRequest
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.task import PointToPoint
@@ -79,8 +81,7 @@ def _plan_without_limits(request: PlanRequest) -> Plan | None:
     """The plan of six terms, or of more where these find no motion."""
     with suppress(SolverFailedError):
         return plan_along(request)
-    richer = replace(request, profile=more_terms(request.task))
-    plan = _try(richer)
+    plan = _try(replace(request, profile=more_terms(request.task)))
     return None if plan is None else _state_terms(plan)
 
 
@@ -94,11 +95,11 @@ def _plan_within_limits(request: PlanRequest) -> Plan | None:
     profile = request.profile
     uncertain = request.task.uncertainty is not None
     six = _solve_with_six(request)
-    best = _try(request.along(profile))
+    best = _try_along(request, profile)
     six_is_cheaper = best is None or (not uncertain and six.energy < best.energy)
     if six.status.solved and six_is_cheaper:
         padded = np.pad(six.coefficients, (0, profile.size - SIX.size))
-        from_six = _try(request.along(profile, padded.tolist()))
+        from_six = _try_along(request, profile, padded)
         if best is None or (from_six is not None and from_six.energy < best.energy):
             best = from_six
     if best is None:
@@ -129,14 +130,20 @@ def _plan_on_spline(request: PlanRequest) -> Plan | None:
     fitted = fitting_spline(request.task, request.residual_limit.size, None)
     if fitted is None:
         return None
-    spline, coefficients = fitted
-    return _try(request.along(spline, coefficients.tolist()))
+    return _try_along(request, *fitted)
+
+
+def _try_along(
+    request: PlanRequest, profile: JointProfile, guess: ArrayLike | None = None
+) -> Plan | None:
+    """The plan along another profile from one start; None where no motion was found."""
+    return _try(request.along(profile, guess))
 
 
 def _try(request: PlanRequest) -> Plan | None:
     """The plan that is asked for; None where no motion was found, and not why."""
     try:
-        return plan_along(request.quickly())
+        return plan_along(replace(request, quick=True))
     except SolverFailedError:
         return None
 
@@ -176,9 +183,9 @@ def _feasible_duration(
         least = least_time(task, request.residual_limit.size, None, 2e-3)
     except ValueError:
         return None
-    along = request.along(least.profile, least.coefficients.tolist())
     for margin in margins:
         duration = float(f"{(1 + margin) * least.duration:.3g}")
-        if _try(along.on(replace(task, duration=duration))) is not None:
+        lasting = replace(request, task=replace(task, duration=duration))
+        if _try_along(lasting, least.profile, least.coefficients) is not None:
             return duration
     return None

@@ -152,7 +152,7 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
             tightenings += 1
             tightened /= (1 + excess) * (1 + OVERRUN)
             setup = replace(request.setup, steps=plan.verification.steps)
-            following = replace(request, setup=setup).within(tightened).quickly()
+            following = replace(request, setup=setup, quick=True).within(tightened)
         else:
             break
         try:

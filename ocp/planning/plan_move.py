@@ -7,8 +7,6 @@ solutions from several starts (`best_of_starts`), of which CVODES has the last w
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -100,7 +98,7 @@ def plan_move(
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
     limit = ResidualLimit.of(task, residual_limit)
-    if guess is not None:
-        setup = replace(setup, guess=profile.checked(guess))
     request = PlanRequest(task, profile, setup, limit)
+    if guess is not None:
+        request = request.from_guess(guess)
     return plan_on_chosen_profile(request) if takes_its_profile else plan_along(request)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
@@ -55,10 +55,6 @@ class PlanRequest:
             minimise,
         )
 
-    def quickly(self) -> PlanRequest:
-        """The same, where a failure need not say what would be feasible."""
-        return replace(self, quick=True)
-
     def on(self, task: PointToPoint) -> PlanRequest:
         """The same of another task."""
         return replace(self, task=task)
@@ -67,11 +63,13 @@ class PlanRequest:
         """The same within a residual limit [m] that does not adapt."""
         return replace(self, residual_limit=ResidualLimit(size))
 
-    def along(self, profile: JointProfile, guess: Sequence[float] | None = None) -> PlanRequest:
+    def from_guess(self, guess: ArrayLike) -> PlanRequest:
+        """The same from these coefficients first; ValueError where they do not fit the profile."""
+        setup = replace(self.setup, guess=self.profile.checked(guess))
+        return replace(self, setup=setup)
+
+    def along(self, profile: JointProfile, guess: ArrayLike | None = None) -> PlanRequest:
         """The same along another profile from one start: the guess, or the plain motion."""
-        start = None if guess is None else tuple(guess)
-        return replace(
-            self,
-            profile=profile,
-            setup=replace(self.setup, starts=1, guess=start),
-        )
+        setup = replace(self.setup, starts=1, guess=None)
+        request = replace(self, profile=profile, setup=setup)
+        return request if guess is None else request.from_guess(guess)

@@ -232,9 +232,9 @@ def assumed_bounds(task: PointToPoint) -> RigidBounds:
             accelerations += (torque / inertia for torque in torques)
         if friction > 0:
             speeds += (torque / friction for torque in torques)
-    limit = task.limit_of("deflection")
-    if limit is not None and needed.deflection > 0:
-        accelerations.append(limit.size / needed.deflection)
+    sizes = {limit.name: limit.size for limit in task.limits}
+    if "deflection" in sizes and needed.deflection > 0:
+        accelerations.append(sizes["deflection"] / needed.deflection)
     largest = min(accelerations, default=math.inf)
     return declared._replace(
         speed=min(declared.speed, *speeds, math.inf),
