@@ -47,7 +47,8 @@ def multistart_front(
     solved = [
         (one, {RESIDUAL_LIMIT: one.residual}) for one in [cheapest, *found] if one.status.solved
     ]
-    return curve.to_front("multistart", curve.certify(solved), starts, time.perf_counter() - began)
+    front = curve.to_front("multistart", curve.certify(solved), starts)
+    return front.restated(seconds=time.perf_counter() - began)
 
 
 _FRONTS: Mapping[str, tuple[Callable[..., Front], str]] = {

@@ -60,10 +60,10 @@ def _along_errors(
     candidate: Candidate, ranges: Mapping[str, float], errors: Array, report: Report | None = None
 ) -> Figures:
     """Figures on plants with errors of shape (plants, ranges), within the ranges."""
-    nominal = candidate.on(candidate.task.certain)
     faster = 1 + max(ranges.values())  # any of them may be a frequency
-    steps = max(ROLLOUT_STEPS, int(np.ceil(faster * default_steps(nominal.task, least=1))))
-    evaluator = nominal.by_steps(steps, quantities=[QUANTITIES["torque"]], error_names=ranges)
+    nominal_steps = default_steps(candidate.task.certain, least=1)
+    steps = max(ROLLOUT_STEPS, int(np.ceil(faster * nominal_steps)))
+    evaluator = candidate.by_steps(steps, quantities=[QUANTITIES["torque"]], error_names=ranges)
     parts: list[Figures] = []
     for first in range(0, len(errors), _BLOCK):
         block = errors[first : first + _BLOCK]
@@ -271,11 +271,6 @@ class Robustness:
 def tolerated_residual(task: PointToPoint) -> float:
     """The plain cycloid's residual on the nominal plant [m], times `TOLERATED`."""
     return TOLERATED * _plain(task).residual
-
-
-def quiet_residual(task: PointToPoint) -> float:
-    """Its peak deflection [m], times `TOLERATED`: over durations this has no zeros."""
-    return TOLERATED * _plain(task).motion.peak_deflection
 
 
 def _plain(task: PointToPoint) -> Candidate:

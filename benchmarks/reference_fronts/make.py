@@ -27,6 +27,8 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.planning.plan_along import plan_from_starts
+from quietarm.ocp.planning.request import PlanRequest
+from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.solver import Solver
@@ -110,13 +112,9 @@ def _better(
         coefficients = None if guess is None else guess.coefficients
         setup = Setup(solver, bound, starts, SEED, steps, coefficients)
         # not `plan_move`: a front's residual is that at the samples of an uncertain plant
-        plan, _ = plan_from_starts(
-            front.task,
-            front.profile,
-            setup,
-            point.residual,
-            setup.start_coefficients(front.profile),
-        )
+        limit = ResidualLimit(point.residual)
+        request = PlanRequest(front.task, front.profile, setup, limit)
+        plan, _ = plan_from_starts(request, request.starts)
     except QuietarmError:
         return point
     found = FrontPoint(plan.coefficients, plan.residual, plan.energy)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from operator import attrgetter
 from typing import ClassVar
 
 import numpy as np
@@ -19,6 +18,7 @@ from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, Positive, positive, takes, whole
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
+from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import SAME, Sought, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.certify import excess_error, tighten
 from quietarm.ocp.planning.plan_move import plan_move
@@ -35,18 +35,9 @@ from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 FIRST_INTERVALS = 80
-MOST_FIRST_INTERVALS, MOST_INTERVALS = 1500, 6000
+MOST_FIRST_INTERVALS = 1500
+MOST_INTERVALS = 6000
 """Most intervals of the first grid, and of any finer one."""
-_MOST_COLD = 600
-"""After a failed warm solve a cold one is tried on grids of up to this many intervals."""
-_LEAST_LEVELS = 3
-"""Two falls of the energy at least, to see whether they become smaller, and how fast."""
-_ROUNDS, _KEPT = 4, 1e-6
-"""Rounds of tightening, and the share by which a verified peak may pass its limit without one."""
-_by_energy = attrgetter("energy")
-_FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
-"""Ratios of successive falls of the energy: where the error is proportional to the intervals'
-length (1/4 to its square), and above which they are not taken for a converging series."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +73,11 @@ class Floor(MotionAnswer):
 
     kind: ClassVar[str] = "floor"
     version: ClassVar[int] = 3
+    first_order: ClassVar[float] = 0.5
+    """Ratio of successive falls of the energy where the error is proportional to the intervals'
+    length; it is 1/4 where to its square."""
+    most_ratio: ClassVar[float] = 0.8
+    """Ratio above which they are not taken for a converging series."""
 
     task: PointToPoint
     free: FreeMotion
@@ -94,7 +90,8 @@ class Floor(MotionAnswer):
     record: Record
 
     def __post_init__(self) -> None:
-        end, duration = self.free.times[-1], self.task.duration
+        end = self.free.times[-1]
+        duration = self.task.duration
         if not math.isclose(end, duration, rel_tol=1e-12):
             raise ValueError(f"its times end at {end:g} s, not at the duration {duration:g} s")
         if len(self.levels) < 2 or not self.starts:
@@ -118,8 +115,10 @@ class Floor(MotionAnswer):
     @property
     def ratio(self) -> float | None:
         """The last decrease of the energy over the one before; None if there are not two."""
-        falls = [one.energy - other.energy for one, other in pairwise(self.levels)][-2:]
-        return falls[1] / falls[0] if len(falls) == 2 and min(falls) > 0 else None
+        falls = [coarse.energy - fine.energy for coarse, fine in pairwise(self.levels)]
+        if len(falls) < 2 or min(falls[-2:]) <= 0:
+            return None
+        return falls[-1] / falls[-2]
 
     @property
     def discretisation_error(self) -> float:
@@ -135,8 +134,9 @@ class Floor(MotionAnswer):
         lowest = energies.index(min(energies))
         missed = max(-self.verification.energy_difference, 0.0)
         if energies[lowest] < energies[-1]:
-            return max(energies[max(lowest - 1, 0) :]) - energies[lowest] + missed
-        ratio = min(max(self.ratio or 0.0, _FIRST_ORDER), _MOST_RATIO)
+            highest = max(energies[max(lowest - 1, 0) :])
+            return highest - energies[lowest] + missed
+        ratio = min(max(self.ratio or 0.0, self.first_order), self.most_ratio)
         return self.change * ratio / (1 - ratio) + missed
 
     def agreeing(self, share: float = 0.005) -> int:
@@ -197,24 +197,30 @@ def energy_floor(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    starts, seed = number_of_starts(starts), whole("seed", seed, 0)
-    tolerance = positive("energy tolerance", energy_tolerance)
     began = time.perf_counter()
+    starts = number_of_starts(starts)
+    seed = whole("seed", seed, 0)
+    tolerance = positive("energy tolerance", energy_tolerance)
     program = FloorProgram(task, smooth, solver)
     solved = _solve_from_starts(program, _paths(task, starts, seed, solver))
     improved = _refine_each(program, solved)
-    levels = [min(solved, key=_by_energy), min(improved, key=_by_energy)]
+    levels = [_cheapest(solved), _cheapest(improved)]
     _refine(program, levels, tolerance)
-    best, motion = _certify_least(program, levels)
+    solution, motion = _certify_least(program, levels)
     method = f"ipopt, free {'jerk' if smooth else 'acceleration'}"
     return Floor(
         task=task,
-        free=best.free,
+        free=solution.free,
         motion=motion,
-        levels=tuple(Level(found.free.steps, found.energy) for found in levels),
-        starts=tuple(found.energy for found in improved),
-        status=best.status,
-        verification=Verification.between(best.free.steps, best.energy, 0.0, motion),
+        levels=tuple(Level(level.free.steps, level.energy) for level in levels),
+        starts=tuple(solution.energy for solution in improved),
+        status=solution.status,
+        verification=Verification.between(
+            solution.free.steps,
+            solution.energy,
+            0.0,
+            motion,
+        ),
         tolerance=tolerance,
         record=_record(method, starts, seed, solver, time.perf_counter() - began),
     )
@@ -224,6 +230,10 @@ def _record(method: str, starts: int, seed: int, solver: Solver, seconds: float)
     """What found a floor; of its solver what is not the default."""
     options = {} if solver.stated == Sqp().stated else solver.stated
     return Record(method, {"starts": starts, **options}, None, seed, seconds=seconds)
+
+
+def _cheapest(solutions: Iterable[FreeSolution]) -> FreeSolution:
+    return min(solutions, key=lambda solution: solution.energy)
 
 
 def _first_fractions(task: PointToPoint) -> NDArray[np.float64]:
@@ -238,60 +248,80 @@ def _first_fractions(task: PointToPoint) -> NDArray[np.float64]:
 
 def _paths(task: PointToPoint, starts: int, seed: int, solver: Solver) -> Iterator[JointPath]:
     """Motions to start from: plain cycloid, the plan of six terms, random ones."""
-    random, profile = np.random.default_rng(seed), CycloidPolynomial()
-    drawn = [random.uniform(*profile.start_box(None)) for _ in range(starts)]
-    drawn[0] = profile.plain
+    profile = CycloidPolynomial()
+    random = np.random.default_rng(seed)
+    guesses = [random.uniform(*profile.start_box(None)) for _ in range(starts)]
+    guesses[0] = profile.plain
     if starts > 1:
         with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
             plan = plan_move(task.certain, profile, starts=1, solver=solver)
-            drawn[1] = np.array(plan.coefficients)
-    return (profile.path(coefficients, *task.move) for coefficients in drawn)
+            guesses[1] = np.array(plan.coefficients)
+    return (profile.path(coefficients, *task.move) for coefficients in guesses)
 
 
 def _solve_from_starts(program: FloorProgram, paths: Iterable[JointPath]) -> list[FreeSolution]:
     """The solutions from all starts; where there are none, from motions of least peaks."""
-    task, limits = program.task, program.task.limits
-    fractions = _first_fractions(task)
+    limits = program.task.limits
+    fractions = _first_fractions(program.task)
     guesses = [program.along(path, fractions) for path in paths]
     tried = [program.solve(free, limits) for free in guesses]
-    least = dict[str, FreeSolution]()
-    if not any(found.status.solved for found in tried):
-        least = least_peaks(
-            limits,
-            lambda others, name: [program.solve(one.free, others, name) for one in tried[:2]],
-        )
-        within = [least[one.name].free for one in limits
-                  if one.name in least and one.keeps(least[one.name].peaks[one.name])]  # fmt: skip
-        tried += [program.solve(free, limits) for free in within]
-    solved = [found for found in tried if found.status.solved]
-    if not solved:
-        peaks = true_peaks(
-            limits, least, lambda found: Candidate.of_free_motion(task.certain, found.free)
-        )
-        sought = Sought(
-            "motion at all",
-            "a longer duration",
-            otherwise="try another seed, more starts or a longer duration.",
-        )
-        raise unmet(sought, limits, tried, peaks)
-    return solved
+    solved = _solved(tried)
+    if solved:
+        return solved
+
+    def solve_least(remaining: Sequence[Limit], name: str) -> list[FreeSolution]:
+        return [program.solve(solution.free, remaining, name) for solution in tried[:2]]
+
+    least = least_peaks(limits, solve_least)
+    within = [
+        least[limit.name].free
+        for limit in limits
+        if limit.name in least and limit.keeps(least[limit.name].peaks[limit.name])
+    ]
+    tried = [*tried, *(program.solve(free, limits) for free in within)]
+    solved = _solved(tried)
+    if solved:
+        return solved
+    peaks = true_peaks(limits, least, lambda solution: _by_cvodes(program, solution))
+    sought = Sought(
+        "motion at all",
+        "a longer duration",
+        otherwise="try another seed, more starts or a longer duration.",
+    )
+    raise unmet(sought, limits, tried, peaks)
 
 
-def _refine_each(program: FloorProgram, solved: list[FreeSolution]) -> list[FreeSolution]:
+def _solved(solutions: Iterable[FreeSolution]) -> list[FreeSolution]:
+    return [solution for solution in solutions if solution.status.solved]
+
+
+def _by_cvodes(program: FloorProgram, solution: FreeSolution) -> Candidate:
+    """The motion on the nominal plant, for CVODES."""
+    return Candidate.of_free_motion(program.task.certain, solution.free)
+
+
+def _refine_each(program: FloorProgram, solutions: list[FreeSolution]) -> list[FreeSolution]:
     """Every solution on its next grid, or as it was; of equal energies one is solved."""
-    refined = list[tuple[FreeSolution, FreeSolution]]()
-    for found in solved:
-        equal = (new for old, new in refined if abs(old.energy / found.energy - 1) <= SAME)
-        after = next(equal, None) or _on_finer_grid(program, found)
-        refined.append((found, after if after.status.solved else found))
-    return [after for _, after in refined]
+    refined: list[tuple[FreeSolution, FreeSolution]] = []
+    for solution in solutions:
+        same = (
+            fine for coarse, fine in refined if abs(coarse.energy / solution.energy - 1) <= SAME
+        )
+        fine = next(same, None) or _on_finer_grid(program, solution)
+        refined.append((solution, fine if fine.status.solved else solution))
+    return [fine for _, fine in refined]
 
 
-def _refine(program: FloorProgram, levels: list[FreeSolution], tolerance: float) -> None:
-    """Append finer grids until the energy settles, a solve fails or the grid is the finest."""
+def _refine(
+    program: FloorProgram, levels: list[FreeSolution], tolerance: float, least_levels: int = 3
+) -> None:
+    """Append finer grids until the energy settles, a solve fails or the grid is the finest.
+
+    Two falls of the energy at least show whether they become smaller, and how fast.
+    """
     while 2 * levels[-1].free.steps <= MOST_INTERVALS:
         fall = levels[-2].energy - levels[-1].energy
-        if len(levels) >= _LEAST_LEVELS and abs(fall) <= tolerance * levels[-1].energy:
+        if len(levels) >= least_levels and abs(fall) <= tolerance * levels[-1].energy:
             return
         following = _on_finer_grid(program, levels[-1])
         if not following.status.solved:
@@ -299,11 +329,17 @@ def _refine(program: FloorProgram, levels: list[FreeSolution], tolerance: float)
         levels.append(following)
 
 
-def _on_finer_grid(program: FloorProgram, found: FreeSolution) -> FreeSolution:
-    """The solution on the next grid, warm, or cold where that fails and the grid is coarse."""
-    free, limits = finer(found.free), program.task.limits
+def _on_finer_grid(
+    program: FloorProgram, solution: FreeSolution, most_cold: int = 600
+) -> FreeSolution:
+    """The solution on the next grid, warm, or cold where that fails and the grid is coarse.
+
+    A coarse grid has up to `most_cold` intervals.
+    """
+    limits = program.task.limits
+    free = finer(solution.free)
     warm = program.solve(free, limits, warm=True)
-    if warm.status.solved or free.steps > _MOST_COLD:
+    if warm.status.solved or free.steps > most_cold:
         return warm
     return program.solve(free, limits)
 
@@ -313,26 +349,35 @@ def _certify_least(
 ) -> tuple[FreeSolution, Motion]:
     """The last grid's motion, or that of a coarser grid where it is verified to need less."""
     least = _certify(program, levels[-1])
-    for found in levels[:-1]:
-        if found.energy < levels[-1].energy:
+    for level in levels[:-1]:
+        if level.energy < levels[-1].energy:
             with suppress(SolverFailedError):  # a coarse grid may not keep the limits in between
-                least = min(least, _certify(program, found), key=lambda one: one[1].energy)
+                certified = _certify(program, level)
+                least = min(least, certified, key=lambda pair: pair[1].energy)
     return least
 
 
-def _certify(program: FloorProgram, found: FreeSolution) -> tuple[FreeSolution, Motion]:
-    """Compare with CVODES; tighten limits that are exceeded between the solver's nodes."""
-    task, limits = program.task.certain, program.task.limits
-    motion, tightened = Candidate.of_free_motion(task, found.free), limits
-    for _ in range(_ROUNDS):
-        if not motion.exceeded(limits, _KEPT):
+def _certify(
+    program: FloorProgram, solution: FreeSolution, rounds: int = 4, tolerated: float = 1e-6
+) -> tuple[FreeSolution, Motion]:
+    """Compare with CVODES; tighten limits that are exceeded between the solver's nodes.
+
+    There are so many `rounds` of it; a peak may pass its limit by the share that is tolerated.
+    """
+    limits = program.task.limits
+    tightened = limits
+    candidate = _by_cvodes(program, solution)
+    for _ in range(rounds):
+        if not candidate.exceeded(limits, tolerated):
             break
-        tightened = tighten(tightened, motion, limits)
-        again = program.solve(found.free, tightened, warm=True)
-        if not again.status.solved:
+        tightened = tighten(tightened, candidate, limits)
+        following = program.solve(solution.free, tightened, warm=True)
+        if not following.status.solved:
             break
-        found, motion = again, Candidate.of_free_motion(task, again.free)
+        solution = following
+        candidate = _by_cvodes(program, solution)
     remedy = "the grid is too coarse for this motion; give a smaller energy tolerance"
-    if error := excess_error(motion, limits, remedy):
+    error = excess_error(candidate, limits, remedy)
+    if error is not None:
         raise error
-    return found, motion.motion
+    return solution, candidate.motion

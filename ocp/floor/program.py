@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 import casadi as ca
 import numpy as np
@@ -29,42 +30,38 @@ from quietarm.ocp.solvers.problem import ENERGY
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.task import PointToPoint
 
-_AT_AN_END, _SHRINK = 3, 4.0
-"""The first and last interval are cut at 1/4, 1/16 and 1/64 of their length: without a limit
-against it, the motion of least energy starts and stops the joint with a jolt."""
-_JOLT, _PARTS_OF_A_JOLT = 0.02, 4
-"""An interval that changes the speed by more than this share of its largest is cut in four."""
-_SHORTEST = 4e-5
-"""Intervals shorter than this share of the move are left alone."""
-_SCALE_STEPS = 40
-_ROOM = 1e-2
-"""How far the two parts of the power start inside their bounds, as a share of its peak."""
-_LARGER = 10
-"""A floor's tolerance is so many times that of its solver."""
-_MOST_ITERATIONS = 400
-_MOST_ITERATIONS_WARM = 150
-COLD = {**OPTIONS, "tol": 1e-8, "max_iter": _MOST_ITERATIONS, "mumps_pivot_order": 0}
+COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400, "mumps_pivot_order": 0}
 """The systems are sparse and have no dense columns: minimum degree makes them a quarter faster."""
-_WARM = {**COLD, "mu_strategy": "monotone", "mu_init": 1e-6}
+_WARM = {**COLD, "max_iter": 150, "mu_strategy": "monotone", "mu_init": 1e-6}
 """From a coarser grid's solution; with a larger barrier the solver would move away from it."""
 
 Array = NDArray[np.float64]
 
 
 def first_grid(steps: int) -> Array:
-    """Boundaries of about `steps` intervals, as fractions of the move, finer at the ends."""
-    even = Grid(max(2, steps - 2 * _AT_AN_END)).boundaries
-    cuts = even[1] * _SHRINK ** -np.arange(_AT_AN_END, 0.0, -1)
+    """Boundaries of about `steps` intervals, as fractions of the move, finer at the ends.
+
+    The first and last interval are cut at 1/4, 1/16 and 1/64 of their length: without a limit
+    against it, the motion of least energy starts and stops the joint with a jolt.
+    """
+    powers = np.arange(3, 0.0, -1)
+    even = Grid(max(2, steps - 2 * len(powers))).boundaries
+    cuts = even[1] * 4.0**-powers
     return np.concatenate([[0.0], cuts, even[1:-1], 1 - cuts[::-1], [1.0]])
 
 
-def finer(free: FreeMotion) -> FreeMotion:
-    """The motion on a grid of twice the intervals, and more where its speed jumps."""
+def finer(free: FreeMotion, jolt: float = 0.02, shortest: float = 4e-5) -> FreeMotion:
+    """The motion on a grid of twice the intervals, and more where its speed jumps.
+
+    An interval that changes the speed by more than the share `jolt` of its largest is cut in four;
+    those shorter than the share `shortest` of the move are not cut.
+    """
     h = free.lengths
     change = np.abs(h * (free.acceleration + h * free.jerk / 2))
-    jolt = change > _JOLT * np.abs(free.boundaries(0.0)[1]).max()
-    parts = np.where(jolt, _PARTS_OF_A_JOLT, 2)
-    parts[h < _SHORTEST * free.times[-1]] = 1
+    _, speed = free.boundaries(0.0)
+    jumps = change > jolt * np.abs(speed).max()
+    parts = np.where(jumps, 4, 2)
+    parts[h < shortest * free.times[-1]] = 1
     return free.split(parts)
 
 
@@ -78,22 +75,26 @@ def _interval(
     A column is the state before the interval (joint, W, W'), the last derivative of the joint, and
     W'' at the nodes. Quantities of the joint count where the interval begins, all else at nodes.
     """
-    modes, orders = plant.modes, 2 + smooth
+    modes = plant.modes
+    orders = 2 + smooth
     states = orders + 2 * modes
-    x, h = ca.SX.sym("x", states + 1 + NODES * modes), ca.SX.sym("h")
-    begun = [*ca.vertsplit(x[:orders]), x[states]]
+    x = ca.SX.sym("x", states + 1 + NODES * modes)
+    h = ca.SX.sym("h")
+    at_begin = [*ca.vertsplit(x[:orders]), x[states]]
     modal = ca.vertcat(x[orders:states], x[states + 1 :])
     W, dW, *ddW = map(ca.vertsplit, ca.vertsplit(modal, modes))
-    one = Step(h, [], modes)
-    equations, powers, rest = list[Expression](), list[list[Expression]](), list[Expression]()
-    at_begin = sample_plant(plant, JointMotion(*begun), W, dW, ddW[0])
+    interval = Step(h, [], modes)
+    sample = sample_plant(plant, JointMotion(*at_begin), W, dW, ddW[0])
     limited = [
-        list(quantity.values(at_begin)) if quantity.derivative else [] for quantity in quantities
+        list(quantity.values(sample)) if quantity.derivative else [] for quantity in quantities
     ]
-    for share, node in zip(GAUSS_NODES, one.nodes(W, dW, ddW)):
-        joint = joint_after(begun, share * h)
+    equations: list[Expression] = []
+    powers: list[list[Expression]] = []
+    rest: list[Expression] = []
+    for share, node in zip(GAUSS_NODES, interval.nodes(W, dW, ddW)):
+        joint = joint_after(at_begin, share * h)
         by_plant = plant.modal_accelerations(joint, node.W, node.dW)
-        equations += [own - other for own, other in zip(node.ddW, by_plant)]
+        equations += [unknown - exact for unknown, exact in zip(node.ddW, by_plant)]
         sample = sample_plant(plant, joint, *node)
         powers.append(sample.powers)
         rest.append(smooth_power(energy, sample))
@@ -101,8 +102,8 @@ def _interval(
             if not quantity.derivative:
                 values += quantity.values(sample)
     power = [of_node for of_joint in zip(*powers) for of_node in of_joint]
-    W_after, dW_after = one.end(W, dW, ddW)
-    after = [*joint_after(begun, h)[:orders], *W_after, *dW_after]
+    W_after, dW_after = interval.end(W, dW, ddW)
+    after = [*joint_after(at_begin, h)[:orders], *W_after, *dW_after]
     outputs = [ca.vertcat(*rows) for rows in (after, equations, power, rest, *limited)]
     return ca.Function("interval", [x, h], outputs, {"cse": True})
 
@@ -124,6 +125,13 @@ class FloorProgram:
     `_interval`) and both parts of the power at the nodes, scaled by what the plain cycloid reaches.
     """
 
+    room: ClassVar[float] = 1e-2
+    """How far the two parts of the power start inside their bounds, as a share of its peak."""
+    larger_tolerance: ClassVar[float] = 10
+    """A floor's tolerance is so many times that of its solver."""
+    scale_steps: ClassVar[int] = 40
+    """Of the plain cycloid, for the scales."""
+
     def __init__(self, task: PointToPoint, smooth: bool, solver: Solver = Ipopt()) -> None:
         jerk = task.limit_of("jerk")
         if jerk is not None and not smooth:
@@ -131,7 +139,9 @@ class FloorProgram:
                 f"jerk limit is {jerk.bounds} and the acceleration of this floor jumps; ask for a "
                 "smooth floor (smooth=True, or --smooth)"
             )
-        self.task, self.smooth, self._limits = task, smooth, task.limits
+        self.task = task
+        self.smooth = smooth
+        self._limits = task.limits
         self._options = solver
         self._states = 2 + smooth + 2 * task.plant.modes
         joints = len(task.plant.joint_names)
@@ -139,19 +149,23 @@ class FloorProgram:
         quantities = [limit.quantity for limit in task.limits]
         self._interval = Compiled(lambda: _interval(task.plant, smooth, quantities, task.energy))
         self._solver = lru_cache(maxsize=4)(self._compile)
-        cycloid = self.along(CycloidPolynomial(0).path([], *task.move), first_grid(_SCALE_STEPS))
+        plain = CycloidPolynomial(0).path([], *task.move)
+        cycloid = self.along(plain, first_grid(self.scale_steps))
         columns, (power, rest, *limited) = self._simulate(cycloid)
         self._scale = np.abs(columns).max(axis=1)
         self._scale[0] = abs(task.span)
         self._scale[self._scale == 0] = 1.0
         of_joints = np.abs(power).reshape(-1, *rest.shape).sum(axis=0)
         energy = task.energy.absolute * of_joints + np.abs(rest)
-        self._measures = np.array([energy.max() or 1.0, *(x or 1.0 for x in self._peaks(limited))])
+        measures = [energy.max(), *self._peaks(limited)]
+        self._measures = np.array([measure or 1.0 for measure in measures])
 
     def _peaks(self, limited: Sequence[Array]) -> list[float]:
         """The peak of each limited quantity, of its values."""
-        each = zip(self._limits, limited)
-        return [float(limit.peak(values.min(), values.max())) for limit, values in each]
+        return [
+            float(limit.peak(values.min(), values.max()))
+            for limit, values in zip(self._limits, limited)
+        ]
 
     def _compile(self, steps: int, warm: bool) -> tuple[Compiled, Array]:
         """What `_build` gives, guarded."""
@@ -160,11 +174,15 @@ class FloorProgram:
 
     def _build(self, steps: int, warm: bool) -> tuple[ca.Function, Array]:
         """IPOPT, of lengths and weights of what is least, and its constraints' upper bounds."""
-        rows, states, parts = len(self._scale), self._states, self._parts
+        rows = len(self._scale)
+        states = self._states
+        parts = self._parts
         scale = ca.repmat(ca.DM(self._scale), 1, steps)
         of_energy, *measures = self._measures.tolist()
-        lengths, weights = ca.MX.sym("lengths", steps), ca.MX.sym("weights", 1 + len(measures))
-        peaks, x = ca.MX.sym("peaks", len(measures)), ca.MX.sym("x", rows + 2 * parts, steps)
+        lengths = ca.MX.sym("lengths", steps)
+        weights = ca.MX.sym("weights", 1 + len(measures))
+        peaks = ca.MX.sym("peaks", len(measures))
+        x = ca.MX.sym("x", rows + 2 * parts, steps)
         columns, forward, backward = ca.vertsplit(x, [0, rows, rows + parts, rows + 2 * parts])
         after, equations, power, rest, *values = self._interval.function.map(steps)(
             columns * scale, lengths.T
@@ -178,28 +196,32 @@ class FloorProgram:
         if parts:
             spent += self.task.energy.absolute * total(ca.vertsplit(forward + backward, NODES))
             equal.append(forward - backward - power / of_energy)
-        positive = list[ca.MX]()
-        for limit, peak, value, of in zip(self._limits, ca.vertsplit(peaks), values, measures):
+        positive: list[ca.MX] = []
+        limited = zip(self._limits, ca.vertsplit(peaks), values, measures)
+        for limit, peak, value, measure in limited:
             below, above = limit.sides
-            positive += [above * peak - value / of, value / of - below * peak]
-        mean = ca.dot(lengths, (ca.DM(GAUSS_WEIGHTS).T @ spent).T) / ca.sum1(lengths)
-        problem = {
+            scaled = value / measure
+            positive += [above * peak - scaled, scaled - below * peak]
+        of_intervals = (ca.DM(GAUSS_WEIGHTS).T @ spent).T
+        mean = ca.dot(lengths, of_intervals) / ca.sum1(lengths)
+        nlp = {
             "x": ca.vertcat(peaks, ca.vec(x)),
             "p": ca.vertcat(lengths, weights),
             "f": ca.dot(weights, ca.vertcat(mean, peaks)),
             "g": ca.vertcat(*map(ca.vec, [*equal, *positive])),
         }
-        counts = [sum(rows.numel() for rows in kind) for kind in (equal, positive)]
-        return compile_nlp(problem, self._ipopt(warm)), np.repeat([0.0, np.inf], counts)
+        counts = [sum(entry.numel() for entry in kind) for kind in (equal, positive)]
+        upper = np.repeat([0.0, np.inf], counts)
+        return compile_nlp(nlp, self._ipopt(warm)), upper
 
     def _ipopt(self, warm: bool) -> dict[str, str | int | float]:
         """Options of IPOPT; a floor takes a larger tolerance, and fewer iterations."""
-        most = _MOST_ITERATIONS_WARM if warm else _MOST_ITERATIONS
+        options = _WARM if warm else COLD
         return {
-            **(_WARM if warm else COLD),
+            **options,
             **options_of(self._options),
-            "tol": _LARGER * self._options.tolerance,
-            "max_iter": min(most, self._options.iterations),
+            "tol": self.larger_tolerance * self._options.tolerance,
+            "max_iter": min(options["max_iter"], self._options.iterations),
         }
 
     def along(self, path: JointPath, fractions: Array) -> FreeMotion:
@@ -216,44 +238,51 @@ class FloorProgram:
         self, free: FreeMotion, limits: Sequence[Limit], minimise: str = ENERGY, warm: bool = False
     ) -> FreeSolution:
         """Run the solver from one motion, on its grid."""
-        names, units = [one.name for one in self._limits], np.eye(1 + len(self._limits))
+        names = [limit.name for limit in self._limits]
+        units = np.eye(1 + len(names))
+        least = [ENERGY, *names].index(minimise)
         solver, upper = self._solver(free.steps, warm)
         stop = run_ipopt(
             solver,
             self._guess(free),
             self._bounds(limits, free.steps),
             (np.zeros(len(upper)), upper),
-            np.append(free.lengths, units[[ENERGY, *names].index(minimise)]),
+            np.append(free.lengths, units[least]),
         )
         objective = Compiled(lambda: solver.function.get_function("nlp_f"))
         (mean,) = objective(stop.unknowns, np.append(free.lengths, units[0]))
-        peaks, found = np.split(stop.unknowns, [len(names)])
-        columns = found.reshape(free.steps, -1).T[: len(self._scale)] * self._scale[:, None]
-        last = columns[self._states]
-        acceleration, jerk = (columns[2], last) if self.smooth else (last, np.zeros(free.steps))
+        peaks, of_intervals = np.split(stop.unknowns, [len(names)])
+        scaled = of_intervals.reshape(free.steps, -1).T[: len(self._scale)]
         return FreeSolution(
-            free=FreeMotion(free.times, acceleration, jerk),
+            free=self._motion(free.times, scaled * self._scale[:, None]),
             energy=float(mean.item() * self.task.duration * self._measures[0]),
             peaks=dict(zip(names, (peaks * self._measures[1:]).tolist())),
             status=SolveStatus.from_ipopt(stop.return_status),
         )
 
+    def _motion(self, times: Array, columns: Array) -> FreeMotion:
+        """The motion that the columns describe, in SI units."""
+        last = columns[self._states]
+        if self.smooth:
+            return FreeMotion(times, columns[2], last)
+        return FreeMotion(times, last, np.zeros(len(last)))
+
     def _guess(self, free: FreeMotion) -> Array:
         columns, (power, _, *limited) = self._simulate(free)
         peaks = self._peaks(limited) / self._measures[1:]
-        power = np.concatenate([power, -power])[: 2 * self._parts] / self._measures[0]
-        return _flat(
-            peaks, np.vstack([columns / self._scale[:, None], np.maximum(power, 0.0) + _ROOM])
-        )
+        both_signs = np.concatenate([power, -power])[: 2 * self._parts]
+        parts = np.maximum(both_signs / self._measures[0], 0.0) + self.room
+        return _flat(peaks, np.vstack([columns / self._scale[:, None], parts]))
 
     def _bounds(self, limits: Sequence[Limit], steps: int) -> tuple[Array, Array]:
         upper = np.full((len(self._scale) + 2 * self._parts, steps), np.inf)
         lower = -upper
         lower[len(self._scale) :] = 0.0
-        begun = self._resting(self.task.start, self.task.initial_state)
-        lower[: self._states, 0] = upper[: self._states, 0] = begun
+        at_start = self._resting(self.task.start, self.task.initial_state)
+        lower[: self._states, 0] = at_start
+        upper[: self._states, 0] = at_start
         sizes = {limit.name: limit.size for limit in limits}
-        most = [sizes.get(one.name, np.inf) for one in self._limits] / self._measures[1:]
+        most = [sizes.get(limit.name, np.inf) for limit in self._limits] / self._measures[1:]
         return _flat(np.zeros(len(most)), lower), _flat(most, upper)
 
     def _resting(self, angle: float, modes: tuple[float, ...]) -> Array:
@@ -266,12 +295,14 @@ class FloorProgram:
 
     def _values_along(self, free: FreeMotion) -> tuple[Array, list[Array]]:
         h = ca.DM(free.lengths).T
-        given = [*free.boundaries(self.task.start)[:, :-1], free.acceleration, free.jerk]
-        begun = [ca.DM(row).T for row in given[: 3 + self.smooth]]
-        one = step(self.task.plant, [joint_after(begun, share * h) for share in GAUSS_NODES], h)
-        W, dW, _ = march(*one.transition(), h.shape, self.task.initial_state)
-        ddW = [ca.DM.zeros(h.shape) + entry for node in one.accelerations(W, dW) for entry in node]
-        columns = ca.vertcat(*begun[:-1], *W, *dW, begun[-1], *ddW)
+        joint = [*free.boundaries(self.task.start)[:, :-1], free.acceleration, free.jerk]
+        at_begin = [ca.DM(row).T for row in joint[: 3 + self.smooth]]
+        at_nodes = [joint_after(at_begin, share * h) for share in GAUSS_NODES]
+        intervals = step(self.task.plant, at_nodes, h)
+        W, dW, _ = march(*intervals.transition(), h.shape, self.task.initial_state)
+        accelerations = intervals.accelerations(W, dW)
+        ddW = [ca.DM.zeros(h.shape) + entry for node in accelerations for entry in node]
+        columns = ca.vertcat(*at_begin[:-1], *W, *dW, at_begin[-1], *ddW)
         outputs = self._interval.function(columns, h)
         return columns.full(), [values.full() for values in outputs[2:]]
 

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import takes
-from quietarm.ocp.front.curve import Curve, Report, curve_of, no_report
+from quietarm.ocp.front.curve import Curve, Progress, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.planning.certify import OVERRUN, judge
+from quietarm.ocp.planning.certify import OVERRUN, by_cvodes
 from quietarm.ocp.record import number_of_points
 from quietarm.ocp.solvers.choice import other_solver, stated_solver
-from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.problem import Problem, Transcription
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
-
-_SAME = 1e-6
-"""Energies that differ by no more than this share agree."""
-_STARTS = 4
-"""The plain cycloid first; where that leads to a dearer minimum random ones, and last the point."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +63,7 @@ def cross_check(
     *,
     checked_points: int = 7,
     solver: Solver | None = None,
-    report: Report = no_report,
+    report: Progress = no_report,
 ) -> CrossCheck:
     """Solve points of a front by the solver that did not find them, from the plain cycloid.
 
@@ -95,33 +93,49 @@ def cross_check(
     count = min(number_of_points(checked_points), len(front.points))
     if solver is None:
         solver = other_solver(stated_solver(front.record.settings) or Sqp())
-    curve = curve_of(front, starts=_STARTS, solver=solver)
-    found = list[Compared]()
-    for i in np.linspace(0, len(front.points) - 1, count).round().astype(int):
-        found.append(_compare(curve, front.points[i]))
-        report(len(found), count)
-    return CrossCheck(solver, tuple(found))
+    curve = curve_of(front, starts=4, solver=solver)
+    checked = np.linspace(0, len(front.points) - 1, count).round().astype(int)
+    compared: list[Compared] = []
+    for i in checked:
+        compared.append(_compare(curve, front.points[i]))
+        report(len(compared), count)
+    return CrossCheck(solver, tuple(compared))
 
 
-def _compare(curve: Curve, point: FrontPoint) -> Compared:
-    """A point by both, within the same limits at the nodes of the same steps."""
-    transcription, asked = curve.problem()
-    motion = transcription.evaluate(np.array(point.coefficients))
-    peaks = transcription.measure(motion).peaks_of(0)
-    own = judge(transcription, np.array(point.coefficients))
-    # a limit that the point is at was tightened until it held between the nodes as well
-    limits = [
-        one if one.keeps(one.peak_of(own), -OVERRUN) else one.tightened(one.size / peaks[one.name])
-        for one in curve.task.limits
-    ]
-    limits.append(Limit.of_residual(peaks[RESIDUAL]))
-    problem, best = Problem(transcription, asked._replace(limits=tuple(limits))), np.nan
+def _compare(curve: Curve, point: FrontPoint, same: float = 1e-6) -> Compared:
+    """A point by both, within the same limits at the nodes of the same steps.
+
+    Energies that differ by no more than the share `same` agree.
+    """
+    transcription, scalarization = curve.problem()
+    coefficients = np.array(point.coefficients)
+    motion = by_cvodes(transcription, coefficients)
+    limits = tuple(_limits_at_nodes(transcription, motion, coefficients))
+    problem = Problem(transcription, scalarization._replace(limits=limits))
+    best = np.nan
     starts = [(start, False) for start in curve.starts]
-    for start, warm in [*starts, (np.array(point.coefficients), True)]:
-        (found,) = curve.solver.solve([problem], [start], warm=warm)
-        if found.status.solved:
-            energy = judge(transcription, found.coefficients).energy
+    for start, warm in [*starts, (coefficients, True)]:
+        (solution,) = curve.solver.solve([problem], [start], warm=warm)
+        if solution.status.solved:
+            energy = by_cvodes(transcription, solution.coefficients).energy
             best = float(np.nanmin([best, energy]))
-        if best <= own.energy * (1 + _SAME):
+        if best <= motion.energy * (1 + same):
             break
-    return Compared(point.residual, own.energy, best)
+    return Compared(point.residual, motion.energy, best)
+
+
+def _limits_at_nodes(
+    transcription: Transcription, motion: Candidate, coefficients: NDArray[np.float64]
+) -> Iterator[Limit]:
+    """The limits that a point's motion keeps at the nodes of the steps.
+
+    A limit that it is at was tightened until it held between the nodes as well.
+    """
+    at_nodes = transcription.measure(transcription.evaluate(coefficients))
+    peaks = at_nodes.peaks_of(0)
+    for limit in transcription.task.limits:
+        if limit.keeps(limit.peak_of(motion), -OVERRUN):
+            yield limit
+        else:
+            yield limit.tightened(limit.size / peaks[limit.name])
+    yield Limit.of_residual(peaks[RESIDUAL])

@@ -23,8 +23,8 @@ from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
-Report = Callable[[int, int], None]
-"""Called with the number of points done and asked for."""
+Progress = Callable[[int, int], None]
+"""Called with the number of points done and of all."""
 RESIDUAL_LIMIT = "residual_limit"
 
 
@@ -32,8 +32,8 @@ def no_report(done: int, total: int) -> None:
     """Report nothing."""
 
 
-Asked = Mapping[str, float]
-"""A residual limit [m], or weights, by name."""
+Place = Mapping[str, float]
+"""Where a point was to be: a residual limit [m], or weights, by name."""
 
 
 class Certificate(NamedTuple):
@@ -84,35 +84,45 @@ class Curve:
 
     def certify(
         self,
-        found: Sequence[tuple[Solution, Asked]],
+        solutions: Sequence[tuple[Solution, Place]],
         most_residual: float = np.inf,
         *,
         free: bool = False,
     ) -> list[Certificate]:
-        """Give solutions, each with what was asked for, the figures of another integrator.
+        """Give solutions, each with its place, the figures of another integrator.
 
         Their residuals are their limits, unless it is the cheapest of all, whose residual is free.
         What was not solved is a failed point.
         """
-        solved = [solution for solution, _ in found if solution.status.solved]
-        problems = [self.problem(np.inf if free else one.residual) for one in solved]
-        tolerances = OF_A_PLAN if free else self.tolerances
-        limits = (Limit.of_residual(most_residual, self.task.plant.tip_unit), *self.task.limits)
-        outcomes = iter(certify(problems, solved, self.solver, tolerances, limits))
-        ended = [next(outcomes) if one.status.solved else one.status.text for one, _ in found]
-        return [
-            self.point_of(outcome)
-            if isinstance(outcome, Certified)
-            else Certificate(FailedPoint(asked, str(outcome)), solution.iterations)
-            for (solution, asked), outcome in zip(found, ended)
-        ]
+        solved = [solution for solution, _ in solutions if solution.status.solved]
+        problems = [self.problem(np.inf if free else solution.residual) for solution in solved]
+        outcomes = certify(
+            problems,
+            solved,
+            self.solver,
+            OF_A_PLAN if free else self.tolerances,
+            (Limit.of_residual(most_residual, self.task.plant.tip_unit), *self.task.limits),
+        )
+        remaining = iter(outcomes)
+        certificates: list[Certificate] = []
+        for solution, place in solutions:
+            outcome = next(remaining) if solution.status.solved else solution.status.text
+            if isinstance(outcome, Certified):
+                certificates.append(self.point_of(outcome))
+            else:
+                failed = FailedPoint(place, str(outcome))
+                certificates.append(Certificate(failed, solution.iterations))
+        return certificates
 
-    def point_of(self, found: Certified) -> Certificate:
+    def point_of(self, certified: Certified) -> Certificate:
         """A certified solution as a point."""
-        coefficients = self.transcription.profile.checked(found.solution.coefficients)
-        solution, checked = found.solution, found.checked
-        prices = solution.shadow_prices
-        point = FrontPoint(coefficients, checked.residual, checked.energy, prices)
+        solution = certified.solution
+        point = FrontPoint(
+            self.transcription.profile.checked(solution.coefficients),
+            certified.checked.residual,
+            certified.checked.energy,
+            solution.shadow_prices,
+        )
         return Certificate(point, solution.iterations)
 
     def to_front(
@@ -120,31 +130,33 @@ class Curve:
         method: str,
         certificates: Iterable[Certificate],
         points: int,
-        seconds: float,
         *,
         iterations: int = 0,
-        gaps: Iterable[tuple[float, float]] = (),
-        also: Mapping[str, Setting] = {},
+        settings: Mapping[str, Setting] = {},
     ) -> Front:
-        """The points as a front; iterations are those that no certificate counts."""
-        found = list(certificates)
-        failures = tuple(one.point for one in found if isinstance(one.point, FailedPoint))
+        """The points as a front, whose record states how many there were to be, and these settings.
+
+        Iterations are those that no certificate counts.
+        """
+        ended = list(certificates)
+        failures = tuple(end.point for end in ended if isinstance(end.point, FailedPoint))
+        certified = [end.point for end in ended if isinstance(end.point, FrontPoint)]
+        record = self.setup.record(
+            method,
+            iterations + sum(end.iterations for end in ended),
+            0.0,
+            points=points,
+            steps=self.transcription.steps,
+            **settings,
+        )
         return Front(
             task=self.task,
             profile=self.transcription.profile,
-            points=non_dominated(one.point for one in found if isinstance(one.point, FrontPoint)),
-            record=self.setup.record(
-                method,
-                iterations + sum(one.iterations for one in found),
-                seconds,
-                points=points,
-                steps=self.transcription.steps,
-                **also,
-            ),
+            points=non_dominated(certified),
+            record=record,
             reference=reference_corner(self.task),
             failed=len(failures),
             failures=failures,
-            gaps=tuple(gaps),
         )
 
 
@@ -153,6 +165,6 @@ def curve_of(
 ) -> Curve:
     """The curve of a front that is there already, within its bound; it must have a point."""
     front.smallest_residual()
-    bound, seed = front.record.bound, front.record.seed or 0
-    setup = Setup(solver, bound, starts, seed, steps)
+    seed = front.record.seed or 0
+    setup = Setup(solver, front.record.bound, starts, seed, steps)
     return Curve.begin(front.task, front.profile, setup)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve
@@ -13,7 +14,7 @@ from quietarm.ocp.planning.best_of_starts import (
     least_peaks_of,
     solve_from_starts,
 )
-from quietarm.ocp.planning.certify import OF_A_PLAN, Tolerances, certify_one
+from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify_one
 from quietarm.ocp.solvers.problem import (
     ENERGY,
     LEAST_ENERGY,
@@ -22,13 +23,6 @@ from quietarm.ocp.solvers.problem import (
     Solution,
     Transcription,
 )
-
-_ENERGY_WEIGHTS = (1.0, 0.1, 0.02, 2e-3)
-"""Weights of the energy beside the residual, one solve after the other, on the way to the end of
-least residual of an uncertain task. At the last one, reducing the residual by a further hundredth
-of the cheapest end's would cost five times the energy of the nominal plant's motion at rest."""
-_SAMPLING = 1e-4
-"""Share by which the residual between its samples may exceed that at them."""
 
 
 @dataclass(frozen=True)
@@ -65,11 +59,21 @@ def find_ends(curve: Curve) -> Ends:
     """
     if curve.task.uncertainty is not None:
         return _of_scenarios(curve)
-    at_rest = _at_rest(curve)  # first: it settles the number of steps
-    curve = curve if at_rest is None else at_rest[0]
+    end_at_rest = _at_rest(curve)  # first: it settles the number of steps
+    if end_at_rest is not None:
+        curve = end_at_rest.curve
     cheapest, _ = solve_from_starts(curve.problem(), curve.starts, curve.solver)
-    still, certificate = at_rest[1:] if at_rest else _least_residual(curve, cheapest)
-    return Ends(curve, still, cheapest, (certificate, _certify_cheapest(curve, cheapest)))
+    still = end_at_rest or _least_residual(curve, cheapest)
+    certificates = still.certificate, _certify_cheapest(curve, cheapest)
+    return Ends(curve, still.solution, cheapest, certificates)
+
+
+class _Still(NamedTuple):
+    """The end at rest, or of least residual, on a curve of the steps that it takes."""
+
+    curve: Curve
+    solution: Solution
+    certificate: Certificate
 
 
 def _certify_cheapest(curve: Curve, cheapest: Solution) -> Certificate:
@@ -77,65 +81,87 @@ def _certify_cheapest(curve: Curve, cheapest: Solution) -> Certificate:
     return end
 
 
-def _at_rest(curve: Curve) -> tuple[Curve, Solution, Certificate] | None:
-    """The motion at rest, on a curve of the steps that it takes; None where there is none."""
+def _at_rest(curve: Curve) -> _Still | None:
+    """The motion at rest; None where there is none."""
+    solver = curve.solver
     try:
-        first, _ = solve_from_starts(curve.problem(0.0), curve.starts, curve.solver)
-        found = certify_one(
-            curve.problem(0.0), first, curve.solver, Tolerances(curve.tolerances.energy)
-        )
-        curve = replace(curve, transcription=found.problem.transcription)
-        end = certify_one(curve.problem(0.0), found.solution, curve.solver)
+        problem = curve.problem(0.0)
+        first, _ = solve_from_starts(problem, curve.starts, solver)
+        rough = certify_one(problem, first, solver, Tolerances(curve.tolerances.energy))
+        curve = replace(curve, transcription=rough.problem.transcription)
+        end = certify_one(curve.problem(0.0), rough.solution, solver)
     except SolverFailedError:
         return None
-    return curve, found.solution, curve.point_of(end)
+    return _Still(curve, rough.solution, curve.point_of(end))
 
 
-def _least_residual(curve: Curve, cheapest: Solution) -> tuple[Solution, Certificate]:
+def _least_residual(curve: Curve, cheapest: Solution) -> _Still:
     """The motion of least residual, and of motions of that residual the cheapest.
 
     Limits are tightened while the residual is minimised: at the least residual there is no room to
     tighten them in.
     """
-    least = least_peaks_of(curve.problem(), curve.starts, curve.solver).get(RESIDUAL)
+    solver = curve.solver
+    least = least_peaks_of(curve.problem(), curve.starts, solver).get(RESIDUAL)
     if least is None:
-        return cheapest, _certify_cheapest(curve, cheapest)
-    transcription, asked = curve.problem(minimise={RESIDUAL: 1.0})
-    limits, solver = curve.problem().scalarization.limits, curve.solver
+        return _Still(curve, cheapest, _certify_cheapest(curve, cheapest))
+    limits = curve.problem().scalarization.limits
     try:
-        reached = certify_one(Problem(transcription, asked), least, solver, limits=limits)
-        transcription, asked = reached.problem
-        residual = Limit.of_residual(reached.solution.residual * (1 + _SAMPLING))
-        others = [limit for limit in asked.limits if limit.name != RESIDUAL]
-        asked = asked._replace(limits=(*others, residual), minimise=LEAST_ENERGY, offset=0.0)
-        problem = Problem(transcription, asked)
-        (found,) = solver.solve([problem], [reached.solution.coefficients], warm=True)
-        still = found if found.status.solved else reached.solution
+        reached = certify_one(
+            curve.problem(minimise={RESIDUAL: 1.0}),
+            least,
+            solver,
+            limits=limits,
+        )
+        problem = _cheapest_of_residual(reached)
+        (solution,) = solver.solve([problem], [reached.solution.coefficients], warm=True)
+        still = solution if solution.status.solved else reached.solution
         end = certify_one(problem, still, solver, OF_A_PLAN, limits)
     except SolverFailedError:
-        (end,) = curve.certify([(least, {RESIDUAL_LIMIT: least.residual})])
-        return least, end
-    point, iterations = curve.point_of(end)
-    return still, Certificate(point, least.iterations + iterations)
+        (failed,) = curve.certify([(least, {RESIDUAL_LIMIT: least.residual})])
+        return _Still(curve, least, failed)
+    certificate = curve.point_of(end)
+    iterations = least.iterations + certificate.iterations
+    return _Still(curve, still, certificate._replace(iterations=iterations))
 
 
-def _of_scenarios(curve: Curve) -> Ends:
+def _cheapest_of_residual(reached: Certified, between_samples: float = 1e-4) -> Problem:
+    """The problem of least energy within the residual that was reached.
+
+    By the share `between_samples` the residual may exceed there what it is at its samples.
+    """
+    transcription, scalarization = reached.problem
+    residual = Limit.of_residual(reached.solution.residual * (1 + between_samples))
+    limits = [limit for limit in scalarization.limits if limit.name != RESIDUAL]
+    cheapest = scalarization._replace(
+        limits=(*limits, residual),
+        minimise=LEAST_ENERGY,
+        offset=0.0,
+    )
+    return Problem(transcription, cheapest)
+
+
+def _of_scenarios(curve: Curve, energy_weights: tuple[float, ...] = (1.0, 0.1, 0.02, 2e-3)) -> Ends:
     """The ends of an uncertain task, from those of the nominal one.
 
     Its energy is that of the nominal plant, so the cheapest motion is the same. Neither rest in all
-    scenarios nor the least residual is asked for: both would cost any energy.
+    scenarios nor the least residual is asked for: both would cost any energy. On the way to the end
+    of least residual the energy is weighted beside the residual, one solve after the other. At the
+    last weight, reducing the residual by a further hundredth of the cheapest end's would cost five
+    times the energy of the nominal plant's motion at rest.
     """
-    nominal = find_ends(Curve.begin(curve.task.certain, curve.transcription.profile, curve.setup))
+    profile = curve.transcription.profile
+    nominal = find_ends(Curve.begin(curve.task.certain, profile, curve.setup))
     steps = nominal.curve.transcription.steps
-    curve = replace(curve, transcription=Transcription(
-        curve.task, curve.transcription.profile, steps))  # fmt: skip
+    curve = replace(curve, transcription=Transcription(curve.task, profile, steps))
     starts = [nominal.cheapest.coefficients, nominal.still.coefficients]
     (cheapest,) = best_of_starts([curve.problem()], [starts], curve.solver)
     still = cheapest
-    for weight in _ENERGY_WEIGHTS if cheapest.residual > STILL else ():
+    for weight in energy_weights if cheapest.residual > STILL else ():
         weights = {RESIDUAL: 1 / cheapest.residual, ENERGY: weight / nominal.still.energy}
         problem = curve.problem(minimise=weights)
-        (found,) = curve.solver.solve([problem], [still.coefficients])
-        still = found if found.status.solved else still
+        (solution,) = curve.solver.solve([problem], [still.coefficients])
+        if solution.status.solved:
+            still = solution
     (certificate,) = curve.certify([(still, {RESIDUAL_LIMIT: still.residual})])
     return Ends(curve, still, cheapest, (certificate, _certify_cheapest(curve, cheapest)))

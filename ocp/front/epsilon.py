@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import positive, several, takes
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Report, no_report
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Progress, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
@@ -25,15 +25,6 @@ from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
-_SCOUTS = 5
-"""Limits between the ends that are solved first, from both ends and a random start."""
-_AUDITED = 4
-"""One point in so many is also tried from random starts."""
-_ROUNDS = 3
-"""Most times that points are solved again from better neighbours."""
-_JUST_BELOW = 1 - 1e-4
-"""The residual limit is this share of the residual wanted: the verified one may be a little
-above."""
 
 Best = Mapping[float, Solution]
 """The best solution at each residual limit [m]."""
@@ -51,7 +42,7 @@ def epsilon_front(
     seed: int = 0,
     steps: int | None = None,
     solver: Solver = Sqp(),
-    report: Report = no_report,
+    report: Progress = no_report,
 ) -> Front:
     """Find the front of residual and energy by the gradient, with the epsilon-constraint method.
 
@@ -87,92 +78,117 @@ def epsilon_front(
     InfeasibleTaskError, SolverFailedError
         When no motion of this profile keeps the limits, or an end is not found for another reason.
     """
+    began = time.perf_counter()
     profile = choose_profile(task) if profile is None else profile
     points = number_of_points(points)
-    at = [positive("residual", one, "m") for one in several("at", at, "residuals")]
+    residuals = [positive("residual", residual, "m") for residual in several("at", at, "residuals")]
     setup = Setup(solver, bound, starts, seed, steps)
-    began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, setup))
-    wanted = _limits_at(ends, at)
-    total = points + len(wanted)
+    ends = find_ends(Curve.begin(task, profile, setup))
+    limits_at = _limits_at(ends, residuals)
+    total = points + len(limits_at)
     report(2, total)
     scouts = _scout(ends, points)
-    limits = sorted([*_spaced_limits(ends, list(scouts.values()), points), *wanted])
+    known = [ends.still, *scouts.values(), ends.cheapest]
+    limits = sorted([*_spaced_limits(ends, known, points), *limits_at])
     report(2 + len(limits) // 3, total)
-    best = _solve_between(ends, list(scouts.values()), limits)
+    best = _solve_between(ends.curve, known, limits)
     report(total, total)
-    between = [(one, {RESIDUAL_LIMIT: limit}) for limit, one in best.items()]
-    return ends.curve.to_front(
+    between = [(solution, {RESIDUAL_LIMIT: limit}) for limit, solution in best.items()]
+    front = ends.curve.to_front(
         "epsilon",
         [*ends.certificates, *ends.curve.certify(between)],
         points,
-        time.perf_counter() - began,
-        iterations=sum(one.iterations for one in scouts.values()),
-        also={"at": ", ".join(map(digits, at))} if at else {},
+        iterations=sum(solution.iterations for solution in scouts.values()),
+        settings={"at": ", ".join(map(digits, residuals))} if residuals else {},
     )
+    return front.restated(seconds=time.perf_counter() - began)
 
 
-def _scout(ends: Ends, points: int) -> Best:
+def _scout(ends: Ends, points: int, most: int = 5) -> Best:
     """Solutions at some limits between the ends, from both ends and a random start."""
     if ends.are_one or points == 2:
         return {}
-    count = max(2, min(_SCOUTS, points - 2))
+    count = max(2, min(most, points - 2))
     shares = (np.arange(1, count + 1) / (count + 1)) ** 1.5
     limits = (ends.still.residual + shares * ends.width).tolist()
     starts = [ends.still.coefficients, ends.cheapest.coefficients, *ends.curve.starts[1:2]]
     best, _ = _improve(ends.curve, {}, dict.fromkeys(limits, starts))
-    return {limit: one for limit, one in best.items() if one.status.solved}
+    return {limit: solution for limit, solution in best.items() if solution.status.solved}
 
 
-def _spaced_limits(ends: Ends, scouts: Sequence[Solution], points: int) -> list[float]:
+def _spaced_limits(ends: Ends, known: Sequence[Solution], points: int) -> list[float]:
     """Residual limits at which the points between the ends lie at even distances.
 
     Both objectives are scaled to the ends.
     """
     if ends.are_one or points == 2:
         return []
-    known = [ends.still, *scouts, ends.cheapest]
-    residuals = np.array([one.residual for one in known])
-    energies = np.array([one.energy for one in known])
-    along = np.hypot(np.diff(residuals) / ends.width, np.diff(energies) / ends.height).cumsum()
-    along = np.concatenate([[0.0], along])
-    return np.interp(np.linspace(0.0, along[-1], points)[1:-1], along, residuals).tolist()
+    residuals = np.array([solution.residual for solution in known])
+    energies = np.array([solution.energy for solution in known])
+    steps = np.hypot(np.diff(residuals) / ends.width, np.diff(energies) / ends.height)
+    along = np.concatenate([[0.0], steps.cumsum()])
+    places = np.linspace(0.0, along[-1], points)[1:-1]
+    return np.interp(places, along, residuals).tolist()
 
 
-def _limits_at(ends: Ends, at: Sequence[float]) -> list[float]:
-    """Residual limits for those of these residuals that lie between the ends."""
-    limits = [_JUST_BELOW * residual for residual in at]
-    return [one for one in limits if ends.still.residual < one < ends.cheapest.residual]
+def _limits_at(ends: Ends, residuals: Sequence[float], just_below: float = 1 - 1e-4) -> list[float]:
+    """Residual limits for those of these residuals that lie between the ends.
+
+    A limit is somewhat less than its residual: the verified one may be a little above.
+    """
+    limits = [just_below * residual for residual in residuals]
+    return [limit for limit in limits if ends.still.residual < limit < ends.cheapest.residual]
 
 
-def _solve_between(ends: Ends, scouts: Sequence[Solution], limits: Sequence[float]) -> Best:
+def _solve_between(
+    curve: Curve,
+    known: Sequence[Solution],
+    limits: Sequence[float],
+    *,
+    audited: int = 4,
+    rounds: int = 3,
+) -> Best:
     """The best solution at each limit, from the solutions on either side and between them.
 
-    One in so many is also tried from a random start. A point that is better for that, or was not
-    found, is passed on to its neighbours, and they to it, as long as that helps.
+    One in so many is `audited`, also tried from a random start. A point that is better for that, or
+    was not found, is passed on to its neighbours, and they to it, as long as that helps, but not
+    for more `rounds`.
     """
-    curve, known = ends.curve, [ends.still, *scouts, ends.cheapest]
     beside = {limit: _starts_beside(known, limit) for limit in limits}
     best, _ = _improve(curve, {}, beside, warm=True)
-    audited = limits[_AUDITED // 2 :: _AUDITED]
-    best, changed = _improve(curve, best, dict.fromkeys(audited, curve.starts[1:2]))
+    random = dict.fromkeys(limits[audited // 2 :: audited], curve.starts[1:2])
+    best, changed = _improve(curve, best, random)
     changed |= {limit for limit in limits if not best[limit].status.solved}
-    for _ in range(_ROUNDS):
-        starts: dict[float, list[Array]] = {}
-        for pair in pairwise(limits):
-            if changed & set(pair):
-                for to, of in (pair, pair[::-1]):
-                    if best[of].status.solved:
-                        starts.setdefault(to, []).append(best[of].coefficients)
+    for _ in range(rounds):
+        starts = _starts_from_neighbours(limits, best, changed)
         best, changed = _improve(curve, best, starts, warm=True)
         if not changed:
             break
     return best
 
 
+def _starts_from_neighbours(
+    limits: Sequence[float], best: Best, changed: set[float]
+) -> dict[float, list[Array]]:
+    """Starts of limits one of whose neighbours changed, and of those that changed themselves."""
+    starts: dict[float, list[Array]] = {}
+    for below, above in pairwise(limits):
+        if not changed & {below, above}:
+            continue
+        for limit, neighbour in ((below, above), (above, below)):
+            if best[neighbour].status.solved:
+                starts.setdefault(limit, []).append(best[neighbour].coefficients)
+    return starts
+
+
 def _starts_beside(known: Sequence[Solution], limit: float) -> list[Array]:
     """The known solutions on either side of a limit, and the motion between them."""
-    after = next(k for k, one in enumerate(known) if one.residual >= limit or one is known[-1])
-    low, high = known[max(after - 1, 0)], known[after]
+    after = next(
+        (k for k, solution in enumerate(known) if solution.residual >= limit),
+        len(known) - 1,
+    )
+    low = known[max(after - 1, 0)]
+    high = known[after]
     share = (limit - low.residual) / max(high.residual - low.residual, STILL)
     between = low.coefficients + np.clip(share, 0, 1) * (high.coefficients - low.coefficients)
     return [between, low.coefficients, high.coefficients]
@@ -182,20 +198,24 @@ def _improve(
     curve: Curve, best: Best, starts: Mapping[float, Sequence[Array]], warm: bool = False
 ) -> tuple[Best, set[float]]:
     """The best at each limit, known or from these starts; and where these are better."""
-    limits = [limit for limit, own in starts.items() if own]
+    limits = [limit for limit, guesses in starts.items() if guesses]
     if not limits:
         return best, set()
     problems = [curve.problem(limit) for limit in limits]
-    found = best_of_starts(
-        problems, [starts[limit] for limit in limits], curve.solver, warm=warm, leave=not warm
+    solutions = best_of_starts(
+        problems,
+        [starts[limit] for limit in limits],
+        curve.solver,
+        warm=warm,
+        leave=not warm,
     )
-    changed = {
-        limit
-        for limit, problem, one in zip(limits, problems, found)
-        if limit not in best or better(one, best[limit], problem.scalarization)
-    }
     improved = dict(best)
-    for limit, one in zip(limits, found):
-        spent = one.iterations + (best[limit].iterations if limit in best else 0)
-        improved[limit] = replace(one if limit in changed else best[limit], iterations=spent)
+    changed: set[float] = set()
+    for limit, problem, solution in zip(limits, problems, solutions):
+        known = best.get(limit)
+        if known is None or better(solution, known, problem.scalarization):
+            changed.add(limit)
+            improved[limit] = solution
+        iterations = solution.iterations + (0 if known is None else known.iterations)
+        improved[limit] = replace(improved[limit], iterations=iterations)
     return improved, changed

@@ -124,20 +124,20 @@ class Front(Answer):
 
         The last, ``residual_window_s``, is the task's residual window, the same for all.
         """
-        shape = len(self.points), self.profile.size
-        coefficients = np.array([point.coefficients for point in self.points]).reshape(shape)
-        named = {f"a_{i + 1}": column for i, column in enumerate(coefficients.T)}
+        named = {f"a_{i + 1}": column for i, column in enumerate(self.coefficients.T)}
         residual = f"residual_{self.task.plant.tip_unit}"
         window = {"residual_window_s": np.full(len(self.points), self.task.residual_window)}
         return {residual: self.residuals, "energy_J": self.energies, **named, **window}
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        unit, within = self.task.plant.tip_unit, f"within {self.task.residual_window:.4g} s"
+        unit = self.task.plant.tip_unit
         head = (
-            f"residual F1 {within} [{unit}]", "energy F2 [J]", f"shadow price [J/{unit}]",
+            f"residual F1 within {self.task.residual_window:.4g} s [{unit}]",
+            "energy F2 [J]",
+            f"shadow price [J/{unit}]",
             "coefficients",
-        )  # fmt: skip
+        )
         rows = [
             (
                 f"{point.residual:.3g}" if point.residual > REST else "0",
@@ -162,7 +162,8 @@ class Front(Answer):
         """
         columns = self.columns()
         rows = zip(*(column.tolist() for column in columns.values()))
-        lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
+        header = ",".join(columns)
+        lines = [header, *(",".join(map(repr, row)) for row in rows)]
         write_whole(path, "\n".join(lines) + "\n")
 
     @classmethod
@@ -210,22 +211,23 @@ class Front(Answer):
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile
         if evaluations is not None:
             evaluations = whole("evaluations", evaluations, len(table))
-        found = evaluated(task, profile, table, bound)
+        motions = evaluated(task, profile, table, bound)
+        record = Record(
+            method,
+            settings or {},
+            bound,
+            seed,
+            evaluations=len(table) if evaluations is None else evaluations,
+            seconds=time.perf_counter() - began,
+        )
         return cls(
             task=task,
             profile=profile,
-            points=found.points,
-            record=Record(
-                method,
-                settings or {},
-                bound,
-                seed,
-                evaluations=len(table) if evaluations is None else evaluations,
-                seconds=time.perf_counter() - began,
-            ),
+            points=motions.points,
+            record=record,
             reference=reference_corner(task),
-            failed=found.failed,
-            infeasible=found.infeasible,
+            failed=motions.failed,
+            infeasible=motions.infeasible,
         )
 
     def smallest_residual(self) -> FrontPoint:
@@ -237,7 +239,8 @@ class Front(Answer):
 
         ValueError when there is none, with the least residual there is.
         """
-        points, unit = self._nonempty(), self.task.plant.tip_unit
+        points = self._nonempty()
+        unit = self.task.plant.tip_unit
         if residual_limit is None:
             return points[-1]
         if not residual_limit >= 0:  # nor NaN; all of them are below infinity

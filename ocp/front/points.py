@@ -38,8 +38,9 @@ class FrontPoint:
 
     def __post_init__(self) -> None:
         prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
+        coefficients = tuple(map(float, self.coefficients))
         object.__setattr__(self, "shadow_prices", prices)
-        object.__setattr__(self, "coefficients", tuple(map(float, self.coefficients)))
+        object.__setattr__(self, "coefficients", coefficients)
         object.__setattr__(self, "residual", float(self.residual))
         object.__setattr__(self, "energy", float(self.energy))
 
@@ -156,19 +157,15 @@ def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
 
     Points that are not finite are dropped; of equal ones the first is kept.
     """
-    finite = [p for p in points if np.isfinite(p.residual) and np.isfinite(p.energy)]
-    kept: list[FrontPoint] = []
-    for point in sorted(finite, key=lambda p: (p.residual, p.energy)):
-        if not kept or point.energy < kept[-1].energy:
-            kept.append(point)
-    return tuple(kept)
-
-
-_KEPT = 1e-9
-"""Share of a limit within which a peak that CVODES gives counts as at it."""
-
-_ROUNDING = 1e-9
-"""Share of its size by which a coefficient may pass its box: what decimals in a file may lose."""
+    finite = [
+        point for point in points if np.isfinite(point.residual) and np.isfinite(point.energy)
+    ]
+    finite.sort(key=lambda point: (point.residual, point.energy))
+    front: list[FrontPoint] = []
+    for point in finite:
+        if not front or point.energy < front[-1].energy:
+            front.append(point)
+    return tuple(front)
 
 
 class Evaluated(NamedTuple):
@@ -179,10 +176,19 @@ class Evaluated(NamedTuple):
     infeasible: int
 
 
-def beyond(table: NDArray[np.float64], lower: ArrayLike, upper: ArrayLike) -> NDArray[np.int64]:
-    """Row and column of every coefficient that is not within a box, or is no number."""
+def beyond(
+    table: NDArray[np.float64],
+    lower: ArrayLike,
+    upper: ArrayLike,
+    rounding: float = 1e-9,
+) -> NDArray[np.int64]:
+    """Row and column of every coefficient that is not within a box, or is no number.
+
+    It may pass the box by a share of its size: what decimals in a file may lose.
+    """
     size = np.maximum(np.abs(lower), np.abs(upper))
-    return np.argwhere(~(np.abs(table - np.clip(table, lower, upper)) <= _ROUNDING * size))
+    excess = np.abs(table - np.clip(table, lower, upper))
+    return np.argwhere(~(excess <= rounding * size))
 
 
 def refuse_beyond_box(
@@ -207,20 +213,26 @@ def evaluated(
     profile: JointProfile,
     table: NDArray[np.float64],
     bound: float | None = None,
+    at_limit: float = 1e-9,
 ) -> Evaluated:
-    """The front of motions by CVODES; those that fail or break a limit of the task are counted."""
-    points, failed, infeasible = list[FrontPoint](), 0, 0
+    """The front of motions by CVODES; those that fail or break a limit of the task are counted.
+
+    A peak within the share `at_limit` of its limit counts as at it.
+    """
+    points: list[FrontPoint] = []
+    failed = 0
+    infeasible = 0
     rows = [profile.checked(row, task.duration) for row in table]
     refuse_beyond_box(profile, table, bound)
     for coefficients in rows:
         try:
             motion = Candidate.of_profile(task, profile, coefficients)
-            figures = motion.residual, motion.energy
+            point = FrontPoint(coefficients, motion.residual, motion.energy)
         except SolverFailedError:
             failed += 1
             continue
-        if not motion.exceeded(task.limits, _KEPT):
-            points.append(FrontPoint(coefficients, *figures))
-        else:
+        if motion.exceeded(task.limits, at_limit):
             infeasible += 1
+        else:
+            points.append(point)
     return Evaluated(non_dominated(points), failed, infeasible)

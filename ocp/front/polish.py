@@ -8,7 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quietarm.ocp.checks import takes
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report, curve_of, no_report
+from quietarm.ocp.front.curve import (
+    RESIDUAL_LIMIT,
+    Certificate,
+    Curve,
+    Progress,
+    curve_of,
+    no_report,
+)
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.record import Setting
@@ -41,10 +48,10 @@ class Polish:
     Attributes
     ----------
     front : Front
-        The improved points; of those that could not be improved the given ones, with the reason in
+        The improved points; of those that could not be improved the old ones, with the reason in
         its `failures`.
     gains : tuple of Gain
-        One for every point of the front that was given, in its order.
+        One for every point of the front that is polished, in its order.
     """
 
     front: Front
@@ -57,7 +64,7 @@ def polish_front(
     *,
     steps: int | None = None,
     solver: Solver = Sqp(),
-    report: Report = no_report,
+    report: Progress = no_report,
 ) -> Polish:
     """Start the gradient from every point of a front, with the point's residual as the limit.
 
@@ -85,24 +92,30 @@ def polish_front(
     curve = curve_of(front, starts=1, steps=steps, solver=solver)
     problems = [curve.problem(point.residual) for point in front.points]
     starts = [np.array(point.coefficients) for point in front.points]
-    tried = list[list[Certificate]]()
-    solved = solver.solve(problems, starts)
-    for point, solution in zip(front.points, solved):
-        tried.append(_improve(curve, point, solution))
-        report(len(tried), len(front.points))
-    found, record = [one for own in tried for one in own], front.record
-    polished = curve.to_front("polish", found, len(front.points), time.perf_counter() - began)
+    solutions = solver.solve(problems, starts)
+    improved: list[list[Certificate]] = []
+    for point, solution in zip(front.points, solutions):
+        improved.append(_improve(curve, point, solution))
+        report(len(improved), len(front.points))
+    certificates = [certificate for of_point in improved for certificate in of_point]
+    polished = curve.to_front("polish", certificates, len(front.points))
+    steps_taken = {"steps": curve.transcription.steps}
+    record = replace(
+        front.record,
+        method=f"{front.record.method}, polished",
+        settings={**front.record.settings, **_stated(solver), **steps_taken},
+        iterations=front.record.iterations + polished.record.iterations,
+        versions=polished.record.versions,
+        seconds=front.record.seconds + time.perf_counter() - began,
+    )
     polished = replace(
-        polished, reference=front.reference, history=front.history, entries=front.entries,
-        record=replace(
-            record, method=f"{record.method}, polished",
-            settings={**record.settings, **_stated(solver), "steps": curve.transcription.steps},
-            iterations=record.iterations + polished.record.iterations,
-            versions=polished.record.versions,
-            seconds=record.seconds + polished.record.seconds,
-        ),
-    )  # fmt: skip
-    return Polish(polished, tuple(map(_gain, front.points, tried)))
+        polished,
+        reference=front.reference,
+        history=front.history,
+        entries=front.entries,
+        record=record,
+    )
+    return Polish(polished, tuple(map(_gain, front.points, improved)))
 
 
 def _stated(solver: Solver) -> dict[str, Setting]:
@@ -112,16 +125,16 @@ def _stated(solver: Solver) -> dict[str, Setting]:
 
 def _improve(curve: Curve, point: FrontPoint, solution: Solution) -> list[Certificate]:
     """The point or a better one; after the former the reason, if there is one."""
-    kept, asked = Certificate(point, 0), {RESIDUAL_LIMIT: point.residual}
-    (found,) = curve.certify([(solution, asked)], point.residual)
-    if isinstance(found.point, FailedPoint):
-        return [kept, found]
-    return [
-        found if found.point.energy < point.energy else kept._replace(iterations=found.iterations)
-    ]
+    place = {RESIDUAL_LIMIT: point.residual}
+    (certificate,) = curve.certify([(solution, place)], point.residual)
+    if isinstance(certificate.point, FailedPoint):
+        return [Certificate(point, 0), certificate]
+    if certificate.point.energy < point.energy:
+        return [certificate]
+    return [Certificate(point, certificate.iterations)]
 
 
-def _gain(point: FrontPoint, found: list[Certificate]) -> Gain:
-    after = found[0].point
-    assert isinstance(after, FrontPoint)
-    return Gain(point.residual, point.energy, after.energy)
+def _gain(point: FrontPoint, certificates: list[Certificate]) -> Gain:
+    improved = certificates[0].point
+    assert isinstance(improved, FrontPoint)
+    return Gain(point.residual, point.energy, improved.energy)

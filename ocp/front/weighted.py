@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import not_negative, takes
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Asked, Curve, Report, no_report
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Place, Progress, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.planning.best_of_starts import best_of_starts, objective_of
+from quietarm.ocp.planning.best_of_starts import best_of_starts, minimum_of
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -24,11 +25,10 @@ from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
-_FLAT = 1e-5
-"""A minimum closer to the chord than this share of its length counts as one of the chord's ends."""
-_DIAGONAL = 2**0.5
 Array = NDArray[np.float64]
-Minimum = tuple[Solution, Asked]
+Minimum = tuple[Solution, Place]
+Gap = tuple[float, float]
+"""Residuals [m] between which no weight has a point."""
 
 
 @takes(task=PointToPoint, profile=JointProfile, solver=Solver)
@@ -43,7 +43,7 @@ def weighted_front(
     seed: int = 0,
     steps: int | None = None,
     solver: Solver = Sqp(),
-    report: Report = no_report,
+    report: Progress = no_report,
 ) -> Front:
     """Find points of the front by the gradient, as minima of weighted sums of both objectives.
 
@@ -74,29 +74,31 @@ def weighted_front(
     ValueError
         When a weight is negative, or both of a pair are zero; else as `epsilon_front`.
     """
+    began = time.perf_counter()
     profile = choose_profile(task) if profile is None else profile
     points = number_of_points(points)
-    chosen = None if weights is None else _pairs(weights)
+    chosen = [] if weights is None else _pairs(weights)
     setup = Setup(solver, bound, starts, seed, steps)
-    began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, setup))
-    found, gaps = list[Minimum](), list[tuple[float, float]]()
-    if chosen is None and not ends.are_one:
-        found, gaps = _along_chords(ends, points, report)
-    elif chosen is not None and not ends.are_one:
-        found = _at_weights(ends, chosen, report)
-    stated = ", ".join(f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen or ())
-    return ends.curve.to_front(
+    ends = find_ends(Curve.begin(task, profile, setup))
+    minima: list[Minimum] = []
+    gaps: list[Gap] = []
+    if chosen and not ends.are_one:
+        minima = _at_weights(ends, chosen, report)
+    elif not ends.are_one:
+        minima, gaps = _along_chords(ends, points, report)
+    pairs = [f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen]
+    front = ends.curve.to_front(
         "weighted",
-        [*ends.certificates, *ends.curve.certify(found)],
+        [*ends.certificates, *ends.curve.certify(minima)],
         points,
-        time.perf_counter() - began,
-        gaps=sorted(gaps),
-        also={"weights": stated} if stated else {},
+        settings={"weights": ", ".join(pairs)} if pairs else {},
     )
+    front = replace(front, gaps=tuple(sorted(gaps)))
+    return front.restated(seconds=time.perf_counter() - began)
 
 
 def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The weights that were given, each pair checked."""
+    """The weights that a user gives, each pair checked."""
     try:
         both = [(of_residual, of_energy) for of_residual, of_energy in weights]
     except (TypeError, ValueError):
@@ -116,54 +118,72 @@ def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
 
 def _minimise(ends: Ends, of_residual: float, of_energy: float, starts: Sequence[Array]) -> Minimum:
     """The best minimum of one weighted sum, weights of the scaled objectives."""
-    weights = {RESIDUAL: of_residual / ends.width, ENERGY: of_energy / ends.height}
-    problem, solver = ends.curve.problem(minimise=weights), ends.curve.solver
+    solver = ends.curve.solver
+    problem = ends.curve.problem(
+        minimise={RESIDUAL: of_residual / ends.width, ENERGY: of_energy / ends.height}
+    )
     # far starts lead past a dearer minimum, near ones keep to the minimum beside them
-    found = [best_of_starts([problem], [starts], solver, warm=warm)[0] for warm in (False, True)]
-    best = min(found, key=lambda one: objective_of(one, problem.scalarization))
-    best = replace(best, iterations=sum(one.iterations for one in found))
+    (from_far,) = best_of_starts([problem], [starts], solver)
+    (from_near,) = best_of_starts([problem], [starts], solver, warm=True)
+    best = min(
+        from_far,
+        from_near,
+        key=lambda solution: minimum_of(solution, problem.scalarization),
+    )
+    best = replace(best, iterations=from_far.iterations + from_near.iterations)
     if best.status.solved:  # if it is not certified, its place is known
         return best, {RESIDUAL_LIMIT: best.residual}
     return best, {"residual_weight": of_residual, "energy_weight": of_energy}
 
 
 def _along_chords(
-    ends: Ends, points: int, report: Report
-) -> tuple[list[Minimum], list[tuple[float, float]]]:
-    """Minima by the chords between neighbours, the longest first; and what no weight reaches."""
-    minima, gaps, chords = list[Minimum](), [], [(ends.still, ends.cheapest)]
+    ends: Ends, points: int, report: Progress, flat: float = 1e-5
+) -> tuple[list[Minimum], list[Gap]]:
+    """Minima by the chords between neighbours, the longest first; and what no weight reaches.
+
+    A minimum closer to the chord than the share `flat` of its length counts as one of its ends.
+    """
+    longest_gap = 2 * math.sqrt(2) / (points - 1)
+    minima: list[Minimum] = []
+    gaps: list[Gap] = []
+    chords = [(ends.still, ends.cheapest)]
     done = 2
     while chords and done < points:
         lengths = [np.hypot(*_sides(ends, *chord)) for chord in chords]
         still, cheap = chords.pop(int(np.argmax(lengths)))
         wide, high = _sides(ends, still, cheap)
         minimum = _minimise(ends, high, wide, [cheap.coefficients, still.coefficients])
-        found = minimum[0]
-        if not found.status.solved:
+        solution, _ = minimum
+        if not solution.status.solved:
             minima.append(minimum)
             continue
-        to_right, down = _sides(ends, still, found)
+        to_right, down = _sides(ends, still, solution)
         length = np.hypot(wide, high)
-        if (wide * down - high * to_right) / length > _FLAT * length and 0 < to_right < wide:
+        below_chord = (wide * down - high * to_right) / length
+        if below_chord > flat * length and 0 < to_right < wide:
             minima.append(minimum)
-            chords += [(still, found), (found, cheap)]
+            chords += [(still, solution), (solution, cheap)]
             done += 1
-        elif length > 2 * _DIAGONAL / (points - 1):
+        elif length > longest_gap:
             gaps.append((still.residual, cheap.residual))
         report(done, points)
     return minima, gaps
 
 
 def _at_weights(
-    ends: Ends, weights: Sequence[tuple[float, float]], report: Report
+    ends: Ends, weights: Sequence[tuple[float, float]], report: Progress
 ) -> list[Minimum]:
-    """Minima of given weights, from most weight on the energy to most on the residual."""
-    minima, beside = list[Minimum](), ends.cheapest.coefficients
-    for i, pair in enumerate(sorted(weights, key=lambda pair: pair[0] / sum(pair)), start=1):
+    """Minima of these weights, from most weight on the energy to most on the residual."""
+    by_share = sorted(weights, key=lambda pair: pair[0] / sum(pair))
+    minima: list[Minimum] = []
+    beside = ends.cheapest.coefficients
+    for i, pair in enumerate(by_share, start=1):
         if min(pair) > 0:  # with one weight 0 it is an end of the front
-            minima.append(_minimise(ends, *pair, [beside, ends.still.coefficients]))
-            found = minima[-1][0]
-            beside = found.coefficients if found.status.solved else beside
+            minimum = _minimise(ends, *pair, [beside, ends.still.coefficients])
+            minima.append(minimum)
+            solution, _ = minimum
+            if solution.status.solved:
+                beside = solution.coefficients
         report(i, len(weights))
     return minima
 

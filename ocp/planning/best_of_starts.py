@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.limits import Limit, Ranged
-from quietarm.ocp.planning.certify import certify_one, judge
+from quietarm.ocp.planning.certify import by_cvodes, certify_one
 from quietarm.ocp.solvers.choice import stand_in
 from quietarm.ocp.solvers.problem import ENERGY, STILL, Problem, Scalarization, Solution
 from quietarm.ocp.solvers.solver import Solver
@@ -24,18 +24,20 @@ _ROOM = 1.001
 """A least value is quoted with this margin, so that a user who asks for it gets a plan."""
 
 
-def objective_of(solution: Solution, scalarization: Scalarization) -> float:
+def minimum_of(solution: Solution, scalarization: Scalarization) -> float:
     """What was minimised; infinite where nothing was solved."""
     values = {**solution.peaks, ENERGY: solution.energy}
-    value = sum(weight * values[name] for name, weight in scalarization.minimise.items())
-    return value if solution.status.solved else np.inf
+    minimum = sum(weight * values[name] for name, weight in scalarization.minimise.items())
+    return minimum if solution.status.solved else np.inf
 
 
-def better(one: Solution, other: Solution, scalarization: Scalarization) -> bool:
-    """Whether one solution is lower than another by more than the solver's tolerance."""
-    values = objective_of(one, scalarization), objective_of(other, scalarization)
-    limit = np.inf if values[1] == np.inf else values[1] - SAME * abs(values[1])
-    return values[0] < limit
+def better(solution: Solution, known: Solution, scalarization: Scalarization) -> bool:
+    """Whether a solution is lower than a known one by more than the solver's tolerance."""
+    minimum = minimum_of(solution, scalarization)
+    known_minimum = minimum_of(known, scalarization)
+    if known_minimum == np.inf:
+        return minimum < np.inf
+    return minimum < known_minimum - SAME * abs(known_minimum)
 
 
 def best_of_starts(
@@ -46,20 +48,31 @@ def best_of_starts(
     warm: bool = False,
     leave: bool = True,
 ) -> list[Solution]:
-    """The best solution of each problem from starts of its own, all solved at once.
+    """The best solution of each problem from its starts, all solved at once.
 
     Iterations are those of all its starts. Starts are left where others agree, if that is wanted.
     """
-    groups = [i for i, own in enumerate(starts) for _ in own]
-    flat = [start for own in starts for start in own]
-    grouped = groups if leave and len(flat) > len(problems) else None
-    found = solver.solve([problems[i] for i in groups], flat, warm=warm, groups=grouped)
-    remaining, best = iter(found), list[Solution]()
+    problem_of_start = [i for i, guesses in enumerate(starts) for _ in guesses]
+    all_starts = [start for guesses in starts for start in guesses]
+    has_several = len(all_starts) > len(problems)
+    solutions = solver.solve(
+        [problems[i] for i in problem_of_start],
+        all_starts,
+        warm=warm,
+        groups=problem_of_start if leave and has_several else None,
+    )
+    remaining = iter(solutions)
+    best: list[Solution] = []
     for problem, guesses in zip(problems, starts):
-        own = list(islice(remaining, len(guesses)))
-        lowest = min(own, key=lambda one: objective_of(one, problem.scalarization))
-        best.append(replace(lowest, iterations=sum(one.iterations for one in own)))
+        of_problem = list(islice(remaining, len(guesses)))
+        best.append(_lowest(of_problem, problem.scalarization))
     return best
+
+
+def _lowest(solutions: Sequence[Solution], scalarization: Scalarization) -> Solution:
+    """The best of some solutions, with the iterations of all."""
+    lowest = min(solutions, key=lambda solution: minimum_of(solution, scalarization))
+    return replace(lowest, iterations=sum(solution.iterations for solution in solutions))
 
 
 def solve_from_starts(
@@ -72,7 +85,8 @@ def solve_from_starts(
     InfeasibleTaskError says what would be feasible; SolverFailedError has another reason. A quick
     solve ends with its starts, and says nothing of that.
     """
-    tried, least = list[Solution](), dict[str, Solution]()
+    tried: list[Solution] = []
+    least: dict[str, Solution] = {}
 
     def attempts() -> Iterator[tuple[Solver, Sequence[Array]]]:
         yield solver, starts
@@ -80,25 +94,26 @@ def solve_from_starts(
             return
         if problem.scalarization.limits:
             least.update(least_peaks_of(problem, starts[:2], solver))
-            yield solver, [one.coefficients for one in least.values()]
-        if (substitute := stand_in(solver)) is not None:
+            yield solver, [solution.coefficients for solution in least.values()]
+        substitute = stand_in(solver)
+        if substitute is not None:
             yield substitute, starts[:2]
 
-    for by, guesses in attempts():
+    for attempting, guesses in attempts():
         if not guesses:
             continue
-        tried += by.solve([problem] * len(guesses), guesses, groups=[0] * len(guesses))
-        if any(one.status.solved for one in tried):
+        count = len(guesses)
+        tried += attempting.solve([problem] * count, guesses, groups=[0] * count)
+        if any(solution.status.solved for solution in tried):
             break
-    solved = sorted(
-        (one for one in tried if one.status.solved),
-        key=lambda one: objective_of(one, problem.scalarization),
-    )
+    solved = [solution for solution in tried if solution.status.solved]
     if not solved and quick:
         raise InfeasibleTaskError(f"no start was solved: {tried[0].reason}")
     if not solved:
         raise explain(problem, tried, least, solver)
-    return replace(solved[0], iterations=sum(one.iterations for one in tried)), solved
+    solved.sort(key=lambda solution: minimum_of(solution, problem.scalarization))
+    iterations = sum(solution.iterations for solution in tried)
+    return replace(solved[0], iterations=iterations), solved
 
 
 class Attempt(Protocol):
@@ -115,19 +130,20 @@ class Attempt(Protocol):
         ...
 
 
-Found = TypeVar("Found", bound=Attempt)
+AnyAttempt = TypeVar("AnyAttempt", bound=Attempt)
 
 
 def least_peaks(
-    limits: Sequence[Limit], solve_least: Callable[[Sequence[Limit], str], Sequence[Found]]
-) -> dict[str, Found]:
+    limits: Sequence[Limit], solve_least: Callable[[Sequence[Limit], str], Sequence[AnyAttempt]]
+) -> dict[str, AnyAttempt]:
     """Make each limited quantity in turn as small as it can be while the other limits are kept."""
-    best: dict[str, Found] = {}
+    best: dict[str, AnyAttempt] = {}
     for name in (limit.name for limit in limits):
-        others = [other for other in limits if other.name != name]
-        solved = [one for one in solve_least(others, name) if one.status.solved]
+        remaining = [limit for limit in limits if limit.name != name]
+        attempts = solve_least(remaining, name)
+        solved = [attempt for attempt in attempts if attempt.status.solved]
         if solved:
-            best[name] = min(solved, key=lambda one, name=name: one.peaks[name])
+            best[name] = min(solved, key=lambda attempt, name=name: attempt.peaks[name])
     return best
 
 
@@ -135,27 +151,36 @@ def least_peaks_of(
     problem: Problem, starts: Sequence[Array], solver: Solver
 ) -> dict[str, Solution]:
     """The same of a problem, from several starts."""
-    transcription, asked = problem
 
-    def solve_least(others: Sequence[Limit], name: str) -> list[Solution]:
-        alone = Problem(transcription, asked._replace(limits=tuple(others), minimise={name: 1.0}))
-        return solver.solve([alone] * len(starts), starts)
+    def solve_least(limits: Sequence[Limit], name: str) -> list[Solution]:
+        relaxed = _with_scalarization(problem, limits=tuple(limits), minimise={name: 1.0})
+        return solver.solve([relaxed] * len(starts), starts)
 
-    return least_peaks(asked.limits, solve_least)
+    return least_peaks(problem.scalarization.limits, solve_least)
+
+
+def _with_scalarization(problem: Problem, **changes: object) -> Problem:
+    """The same task on the same steps, with other limits or another objective."""
+    return problem._replace(scalarization=problem.scalarization._replace(**changes))
 
 
 def true_peaks(
-    limits: Sequence[Limit], least: Mapping[str, Found], resimulated: Callable[[Found], Ranged]
+    limits: Sequence[Limit],
+    least: Mapping[str, AnyAttempt],
+    resimulated: Callable[[AnyAttempt], Ranged],
 ) -> dict[str, float]:
     """The least peaks as they are between the nodes as well, by what simulates a run's motion."""
 
-    def peak_of(limit: Limit, found: Found) -> float:
+    def peak_of(limit: Limit, attempt: AnyAttempt) -> float:
+        at_nodes = attempt.peaks[limit.name]
         try:
-            return max(found.peaks[limit.name], limit.peak_of(resimulated(found)))
+            return max(at_nodes, limit.peak_of(resimulated(attempt)))
         except SolverFailedError:
-            return found.peaks[limit.name]
+            return at_nodes
 
-    return {one.name: peak_of(one, least[one.name]) for one in limits if one.name in least}
+    return {
+        limit.name: peak_of(limit, least[limit.name]) for limit in limits if limit.name in least
+    }
 
 
 def explain(
@@ -165,33 +190,45 @@ def explain(
     solver: Solver,
 ) -> SolverFailedError:
     """The error for a problem that no start solved; other arguments as for `unmet`."""
-    transcription, asked = problem
-    peaks = true_peaks(asked.limits, least, lambda one: judge(transcription, one.coefficients))
-    confirmed = {
-        limit.name: peaks[limit.name]
-        for limit in asked.limits
-        if limit.name in peaks
-        and _has_a_plan(problem, limit, peaks[limit.name], least[limit.name].coefficients, solver)
-    }
+    profile = problem.transcription.profile
+    limits = problem.scalarization.limits
+    bound = problem.scalarization.bound
+
+    def resimulated(solution: Solution) -> Ranged:
+        return by_cvodes(problem.transcription, solution.coefficients)
+
+    peaks = true_peaks(limits, least, resimulated)
+    confirmed: dict[str, float] = {}
+    for limit in limits:
+        peak = peaks.get(limit.name)
+        if peak is None:
+            continue
+        start = least[limit.name].coefficients
+        if _has_a_plan(_widened(problem, limit, peak), start, solver):
+            confirmed[limit.name] = peak
     sought = Sought(
-        f"motion of {transcription.profile.amount}",
-        f"more {transcription.profile.term}s or a longer duration",
-        box="" if asked.bound is None else f", coefficients within +-{asked.bound:g}",
+        f"motion of {profile.amount}",
+        f"more {profile.term}s or a longer duration",
+        box="" if bound is None else f", coefficients within +-{bound:g}",
     )
-    return unmet(sought, asked.limits, tried, confirmed)
+    return unmet(sought, limits, tried, confirmed)
 
 
-def _has_a_plan(problem: Problem, limit: Limit, peak: float, start: Array, solver: Solver) -> bool:
-    """Whether a plan exists with a limit that is as wide as would be offered."""
-    transcription, asked = problem
+def _widened(problem: Problem, limit: Limit, peak: float) -> Problem:
+    """The problem with a limit that is as wide as would be offered."""
     offered = limit.widened_to(peak * _ROOM)
-    limits = tuple(offered if other is limit else other for other in asked.limits)
-    relaxed = Problem(transcription, asked._replace(limits=limits))
-    (solution,) = solver.solve([relaxed], [start])
+    limits = problem.scalarization.limits
+    replaced = tuple(offered if known is limit else known for known in limits)
+    return _with_scalarization(problem, limits=replaced)
+
+
+def _has_a_plan(problem: Problem, start: Array, solver: Solver) -> bool:
+    """Whether a plan is found from one start, and CVODES confirms it."""
+    (solution,) = solver.solve([problem], [start])
     if not solution.status.solved:
         return False
     try:
-        certify_one(relaxed, solution, solver)
+        certify_one(problem, solution, solver)
     except SolverFailedError:
         return False
     return True
@@ -230,11 +267,9 @@ def unmet(
         for limit in limits
         if limit.name in least and not limit.keeps(least[limit.name], at_rest=STILL)
     ]
-    feasible = (
-        f"feasible with all else unchanged: {' or '.join(remedies)}"
-        if remedies
-        else "removing any single one of these limits does not help, so widen several"
-    )
+    feasible = "removing any single one of these limits does not help, so widen several"
+    if remedies:
+        feasible = f"feasible with all else unchanged: {' or '.join(remedies)}"
     return InfeasibleTaskError(
         f"found no {sought.motion} with {bounds}{sought.box}; {feasible}",
         f"{sought.remedy} may also do",

@@ -32,17 +32,13 @@ from quietarm.ocp.solvers.problem import (
 from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
-_RESIDUAL_AGREEMENT, _AT_REST = 5e-3, 0.3
-"""Of a limit, and of rest: by these shares may the two integrators' residuals differ."""
-_ROUNDS = 12
 _BELOW = 1 + 2e-8
 """A limit that is passed is tightened by this share beyond the excess: the solver's own tolerance,
 else the next peak passes the limit by as little again."""
 OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
-_EVERY, _AGREEMENT, _FINER = 10, 1e-6, 3
-"""CVODES checks one motion in so many, and its figures may differ by this share from those of so
-many times the solver's steps."""
+_EVERY = 10
+"""CVODES checks one motion in so many of those that finer steps judge."""
 
 
 @dataclass(frozen=True)
@@ -76,21 +72,31 @@ class FinerFigures(Ranged):
         return -self.residual, self.residual
 
 
-Figures = Candidate | FinerFigures
+Judgement = Candidate | FinerFigures
+"""What another integrator says of a motion."""
 
 
 @dataclass(frozen=True)
 class Certified:
-    """A solution with the figures of another integrator, and the problem, tightened, it solves."""
+    """A solution with what another integrator says, and the problem, tightened, that it solves."""
 
     solution: Solution
-    checked: Figures
+    checked: Judgement
     problem: Problem
 
     @property
     def steps(self) -> int:
         """The solver's steps."""
         return self.problem.transcription.steps
+
+    @property
+    def energy(self) -> float:
+        """F2 [J] by the other integrator."""
+        return self.checked.energy
+
+    def keeps(self, limits: Sequence[Limit], still: float) -> bool:
+        """Whether no limit is passed; a residual up to `still` [m] counts as rest."""
+        return all(limit.keeps(limit.peak_of(self.checked), 0.0, still) for limit in limits)
 
 
 Outcome = Certified | SolverFailedError
@@ -111,20 +117,24 @@ def certify(
     profile; what has to hold by CVODES are their own limits by default. An error stands for a
     motion that exceeds a limit all the same.
     """
-    pairs = zip(problems, solutions)
-    rows = [_Row(*pair, tolerances, limits) for pair in pairs]
-    found = dict[int, Outcome]()
-    many = [
-        i for i, row in enumerate(rows)
-        if not row.transcription.task.limits and row.transcription.task.uncertainty is None
-    ]  # fmt: skip
-    if len(many) >= _EVERY:
-        own = _confirm(_settle([rows[i] for i in many], solver, _judge_by_finer_steps))
-        found = dict(zip(many, own))
-    others = [i for i in range(len(rows)) if not isinstance(found.get(i), Certified)]
-    anew = [_Row(problems[i], solutions[i], tolerances, limits) for i in others]
-    found |= dict(zip(others, _settle(anew, solver, _judge_by_cvodes)))
-    return [found[i] for i in range(len(rows))]
+
+    def rows_of(numbers: Iterable[int]) -> list[_Row]:
+        return [_Row(problems[i], solutions[i], tolerances, limits) for i in numbers]
+
+    outcomes: dict[int, Outcome] = {}
+    without_limits = [i for i, problem in enumerate(problems) if _is_without_limits(problem)]
+    if len(without_limits) >= _EVERY:
+        settled = _settle(rows_of(without_limits), solver, _judge_by_finer_steps)
+        outcomes = dict(zip(without_limits, _confirm(settled)))
+    uncertified = [i for i in range(len(problems)) if not isinstance(outcomes.get(i), Certified)]
+    settled = _settle(rows_of(uncertified), solver, _judge_by_cvodes)
+    outcomes |= dict(zip(uncertified, settled))
+    return [outcomes[i] for i in range(len(problems))]
+
+
+def _is_without_limits(problem: Problem) -> bool:
+    task = problem.transcription.task
+    return not task.limits and task.uncertainty is None
 
 
 def certify_one(
@@ -135,10 +145,10 @@ def certify_one(
     limits: Sequence[Limit] | None = None,
 ) -> Certified:
     """The same of one solution; its error is raised."""
-    (found,) = certify([problem], [solution], solver, tolerances, limits)
-    if isinstance(found, SolverFailedError):
-        raise found
-    return found
+    (outcome,) = certify([problem], [solution], solver, tolerances, limits)
+    if isinstance(outcome, SolverFailedError):
+        raise outcome
+    return outcome
 
 
 class _Row:
@@ -151,11 +161,14 @@ class _Row:
         tolerances: Tolerances,
         limits: Sequence[Limit] | None,
     ) -> None:
-        self.problem, self.best, self.asked = problem, solution, problem.scalarization
-        self.tolerances, self.tightened = tolerances, self.asked.limits
-        self.limits = self.asked.limits if limits is None else limits
-        self.still = max(STILL, STILL_SHARE * self.transcription.plain_residual)
-        self.tried = list[Certified]()
+        self.problem = problem
+        self.solution = solution
+        self.tolerances = tolerances
+        self.scalarization = problem.scalarization
+        self.tightened = problem.scalarization.limits
+        self.limits = problem.scalarization.limits if limits is None else limits
+        self.still = max(STILL, STILL_SHARE * problem.transcription.plain_residual)
+        self.tried: list[Certified] = []
         self.failure: SolverFailedError | None = None
 
     @property
@@ -164,62 +177,69 @@ class _Row:
         return self.problem.transcription
 
     @property
-    def figures(self) -> Figures:
+    def judgement(self) -> Judgement:
         """Of the last motion."""
         return self.tried[-1].checked
 
-    def judged(self, figures: Figures | SolverFailedError) -> None:
+    def note(self, judgement: Judgement) -> None:
         """Note what another integrator says of the last solution."""
-        if isinstance(figures, SolverFailedError):
-            self.failure = figures
-        else:
-            self.tried.append(Certified(self.best, figures, self.problem))
-            self.tightened = tighten(self.tightened, figures, self.limits)
+        self.tried.append(Certified(self.solution, judgement, self.problem))
+        self.tightened = tighten(self.tightened, judgement, self.limits)
+
+    def go_on_from(self, solution: Solution, problem: Problem) -> None:
+        """Take another solution, whose iterations count as well."""
+        iterations = self.solution.iterations + solution.iterations
+        self.solution = replace(solution, iterations=iterations)
+        self.problem = problem
 
     @property
     def is_rough(self) -> bool:
         """Whether the solver's steps are too few for the energy."""
-        energy = self.figures.energy
+        energy = self.judgement.energy
         share = max(self.tolerances.energy, self.transcription.profile.energy_agreement)
-        return abs(self.best.energy - energy) > share * energy
+        return abs(self.solution.energy - energy) > share * energy
 
     @property
     def differs(self) -> bool:
-        """Whether the residuals differ, or a limit is exceeded."""
-        tolerated = max(_AT_REST * self.still, _RESIDUAL_AGREEMENT * self.asked.residual_limit)
-        missed = abs(self.best.residual - self.figures.residual) > tolerated
-        return missed or bool(self.figures.exceeded(self.limits))
+        """Whether the residuals differ, or a limit is exceeded.
+
+        They may differ by a share of rest, or of the limit.
+        """
+        tolerated = max(0.3 * self.still, 5e-3 * self.scalarization.residual_limit)
+        difference = abs(self.solution.residual - self.judgement.residual)
+        return difference > tolerated or bool(self.judgement.exceeded(self.limits))
 
     def outcome(self) -> Outcome:
         """The cheapest of the motions that keep every limit; else the last, or what it exceeds."""
         if self.failure is not None:
             return self.failure
         keeping = [
-            one
-            for one in self.tried
-            if all(
-                limit.keeps(limit.peak_of(one.checked), 0.0, self.still) for limit in self.limits
-            )
+            certified for certified in self.tried if certified.keeps(self.limits, self.still)
         ]
         if keeping:
-            return min(keeping, key=lambda one: one.checked.energy)
+            return min(keeping, key=lambda certified: certified.energy)
         remedy = (
             "the solver's steps are too coarse for this motion; bound the coefficients, use fewer "
             "terms, or give a longer duration"
         )
-        return excess_error(self.figures, self.limits, remedy, self.still) or self.tried[-1]
+        return excess_error(self.judgement, self.limits, remedy, self.still) or self.tried[-1]
 
 
-def _settle(rows: Sequence[_Row], solver: Solver, judge_all: Judge) -> list[Outcome]:
+JudgeAll = Callable[[Sequence[_Row]], None]
+
+
+def _settle(
+    rows: Sequence[_Row], solver: Solver, judge_all: JudgeAll, rounds: int = 12
+) -> list[Outcome]:
     """Judge and solve again until nothing differs, or no solution is nearer."""
     judge_all(rows)
     going = rows
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         going = [row for row in going if row.failure is None]
         rough = [row for row in going if row.is_rough]
-        differ = [row for row in going if not row.is_rough and row.differs]
-        corrected = _correct(differ, solver)
-        rough += [row for row in differ if row not in corrected]
+        differing = [row for row in going if not row.is_rough and row.differs]
+        corrected = _correct(differing, solver)
+        rough += [row for row in differing if row not in corrected]
         going = [*corrected, *_refine(rough, solver)]
         if not going:
             break
@@ -229,125 +249,140 @@ def _settle(rows: Sequence[_Row], solver: Solver, judge_all: Judge) -> list[Outc
 
 def _correct(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
     """Solve rows with tighter limits, and with what the steps miss of their states on arrival."""
-    solved = list[_Row]()
-    for own in _alike(rows):
-        by_steps = evaluate([row.transcription for row in own], _table(own))
-        problems = [
-            Problem(row.transcription, row.asked._replace(
-                limits=row.tightened, offset=row.figures.arrival - motion.arrival))
-            for row, motion in zip(own, by_steps)
-        ]  # fmt: skip
-        solved += _solve_again(own, problems, solver)
+    solved: list[_Row] = []
+    for alike in _alike(rows):
+        by_steps = evaluate([row.transcription for row in alike], _table(alike))
+        problems = []
+        for row, motion in zip(alike, by_steps):
+            corrected = row.scalarization._replace(
+                limits=row.tightened,
+                offset=row.judgement.arrival - motion.arrival,
+            )
+            problems.append(Problem(row.transcription, corrected))
+        solved += _solve_again(alike, problems, solver)
     return solved
 
 
 def _refine(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
     """Solve rows on twice the steps, if they may have as many."""
-    solved = list[_Row]()
-    rows = [row for row in rows if 2 * row.transcription.steps <= row.tolerances.most_steps]
-    for own in _alike(rows):
-        one, tasks = own[0].transcription, [row.transcription.task for row in own]
-        finer = transcribe(tasks, one.profile, 2 * one.steps)
-        for row in own:
-            row.tightened = row.asked.limits
-        pairs = zip(finer, own)
-        solved += _solve_again(own, [Problem(each, row.asked) for each, row in pairs], solver)
+    solved: list[_Row] = []
+    refinable = [row for row in rows if 2 * row.transcription.steps <= row.tolerances.most_steps]
+    for alike in _alike(refinable):
+        coarse = alike[0].transcription
+        tasks = [row.transcription.task for row in alike]
+        finer = transcribe(tasks, coarse.profile, 2 * coarse.steps)
+        problems = []
+        for row, transcription in zip(alike, finer):
+            row.tightened = row.scalarization.limits
+            problems.append(Problem(transcription, row.scalarization))
+        solved += _solve_again(alike, problems, solver)
     return solved
 
 
 def _solve_again(
     rows: Sequence[_Row], problems: Sequence[Problem], solver: Solver
 ) -> Iterable[_Row]:
-    """The rows that are solved from their solutions, whose iterations count as well."""
-    found = solver.solve(problems, [row.best.coefficients for row in rows], warm=True)
-    for row, problem, new in zip(rows, problems, found):
-        if new.status.solved:
-            row.best = replace(new, iterations=row.best.iterations + new.iterations)
-            row.problem = problem
+    """The rows that are solved from their solutions."""
+    starts = [row.solution.coefficients for row in rows]
+    solutions = solver.solve(problems, starts, warm=True)
+    for row, problem, solution in zip(rows, problems, solutions):
+        if solution.status.solved:
+            row.go_on_from(solution, problem)
             yield row
-
-
-Judge = Callable[[Sequence[_Row]], None]
 
 
 def _judge_by_cvodes(rows: Sequence[_Row]) -> None:
     for row in rows:
-        candidate = judge(row.transcription, row.best.coefficients)
+        candidate = by_cvodes(row.transcription, row.solution.coefficients)
         try:
-            _ = candidate.energy, candidate.residual  # in all scenarios
+            _ = candidate.energy
+            _ = candidate.residual  # in all scenarios
         except SolverFailedError as error:
-            row.judged(error)
+            row.failure = error
         else:
-            row.judged(candidate)
+            row.note(candidate)
 
 
 def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
-    for own in _alike(rows):
-        of = [row.transcription for row in own]
-        finer = _by_finer_steps(of, _table(own))
-        figures = zip(finer.energy[:, 0], finer.residual[:, 0], finer.arrival)
-        for row, (energy, residual, arrival) in zip(own, figures):
-            check_motion(of[0].profile, row.best.coefficients, *row.transcription.task.move)
-            row.judged(FinerFigures(float(energy), float(residual), arrival))
+    for alike in _alike(rows):
+        transcriptions = [row.transcription for row in alike]
+        evaluation = _evaluate_finely(transcriptions, _table(alike))
+        for i, row in enumerate(alike):
+            task = row.transcription.task
+            check_motion(row.transcription.profile, row.solution.coefficients, *task.move)
+            figures = FinerFigures(
+                float(evaluation.energy[i, 0]),
+                float(evaluation.residual[i, 0]),
+                evaluation.arrival[i],
+            )
+            row.note(figures)
 
 
-def _confirm(found: Sequence[Outcome]) -> Sequence[Outcome]:
-    """Figures by finer steps with CVODES' word at every tenth; none where that is another."""
-    confirmed = list(found)
-    for i, one in enumerate(found):
-        if i % _EVERY or isinstance(one, SolverFailedError):
+def _confirm(outcomes: Sequence[Outcome], agreement: float = 1e-6) -> Sequence[Outcome]:
+    """Figures by finer steps with CVODES' word at every tenth; none where that is another.
+
+    The two may differ by a share, the `agreement`.
+    """
+    confirmed = list(outcomes)
+    for i in range(0, len(outcomes), _EVERY):
+        outcome = outcomes[i]
+        if isinstance(outcome, SolverFailedError):
             continue
-        exact, figures = judge(one.problem.transcription, one.solution.coefficients), one.checked
+        figures = outcome.checked
         assert isinstance(figures, FinerFigures)
-        energy_differs = abs(exact.energy - figures.energy) > _AGREEMENT * exact.energy
-        room = _AGREEMENT * exact.residual + STILL
-        if energy_differs or abs(exact.residual - figures.residual) > room:
+        exact = by_cvodes(outcome.problem.transcription, outcome.solution.coefficients)
+        energy_differs = abs(exact.energy - figures.energy) > agreement * exact.energy
+        tolerated = agreement * exact.residual + STILL
+        if energy_differs or abs(exact.residual - figures.residual) > tolerated:
             return []
-        confirmed[i] = replace(one, checked=replace(figures, by_cvodes=True))
+        confirmed[i] = replace(outcome, checked=replace(figures, by_cvodes=True))
     return confirmed
 
 
 def _alike(rows: Sequence[_Row]) -> list[list[_Row]]:
     """The rows of the same steps."""
 
-    def key(row: _Row) -> int:
+    def steps(row: _Row) -> int:
         return row.transcription.steps
 
-    return [list(own) for _, own in groupby(sorted(rows, key=key), key)]
+    return [list(alike) for _, alike in groupby(sorted(rows, key=steps), steps)]
 
 
 def _table(rows: Sequence[_Row]) -> Array:
-    return np.array([row.best.coefficients for row in rows])
+    return np.array([row.solution.coefficients for row in rows])
 
 
-def finer_peaks(of: Sequence[Transcription], coefficients: Array) -> dict[str, Array]:
+def finer_peaks(transcriptions: Sequence[Transcription], coefficients: Array) -> dict[str, Array]:
     """Peaks of every quantity of one motion of each task, at the nodes of finer steps."""
-    finer = _by_finer_steps(of, coefficients, tuple(QUANTITIES.values()))
-    return {name: finer.largest(name)[:, 0] for name in QUANTITIES}
+    evaluation = _evaluate_finely(transcriptions, coefficients, tuple(QUANTITIES.values()))
+    return {name: evaluation.largest(name)[:, 0] for name in QUANTITIES}
 
 
-def _by_finer_steps(
-    of: Sequence[Transcription], coefficients: Array, quantities: Sequence[Quantity] = ()
+def _evaluate_finely(
+    transcriptions: Sequence[Transcription],
+    coefficients: Array,
+    quantities: Sequence[Quantity] = (),
+    finer: int = 3,
 ) -> Evaluation:
-    """A motion of each task, on its nominal plant."""
-    first = of[0]
-    steps = max(default_steps(first.task), _FINER * first.steps)
-    tasks = [transcription.task.certain for transcription in of]
+    """A motion of each task, on its nominal plant, by so many times the solver's steps."""
+    first = transcriptions[0]
+    steps = max(default_steps(first.task), finer * first.steps)
+    tasks = [transcription.task.certain for transcription in transcriptions]
     evaluator = Evaluator(tasks, first.profile, steps, quantities=quantities)
     return evaluator(coefficients)
 
 
-def judge(transcription: Transcription, coefficients: Array) -> Candidate:
+def by_cvodes(transcription: Transcription, coefficients: Array) -> Candidate:
     """The motion of coefficients, for CVODES."""
     return Candidate.of_profile(transcription.task, transcription.profile, coefficients)
 
 
-def tighten(limits: Sequence[Limit], motion: Ranged, kept: Sequence[Limit]) -> tuple[Limit, ...]:
+def tighten(limits: Sequence[Limit], motion: Ranged, to_keep: Sequence[Limit]) -> tuple[Limit, ...]:
     """The limits to give the solver, each less by as much as the verified motion exceeds it."""
-    exceeded = motion.exceeded(kept)
+    exceeded = motion.exceeded(to_keep)
     return tuple(
-        one.tightened(_BELOW * exceeded[one.name]) if one.name in exceeded else one
-        for one in limits
+        limit.tightened(_BELOW * exceeded[limit.name]) if limit.name in exceeded else limit
+        for limit in limits
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from quietarm.ocp.checks import positive, takes
@@ -16,6 +17,7 @@ from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.least_time import LeastTime, least_time
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.request import PlanRequest
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.rigid_motion import (
     assumed_bounds,
@@ -31,18 +33,9 @@ from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
-_SHORTER = (0.97, 0.9, 0.8)
-"""Shares of the duration that failed which are tried as well: what is feasible may have gaps."""
 _GROWTH = 1.5
 """By which a duration along a given profile grows where it fails."""
-_LONGEST, _SWINGS = 3, 20
-"""So many times what a rigid joint takes, and so many swings of the slowest mode, are tried."""
 _RIGID = "within its limits of speed, acceleration and jerk a joint takes longer"
-_LONGER = (5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2)
-"""Shares by which the least time grows until there is a plan: in the least time itself limits could
-not be narrowed by what passes them between the solver's nodes."""
-_LONGER_IF_UNCERTAIN = 2e-3
-"""The least of them for an uncertain plant, whose worst case may lie between the scenarios."""
 
 
 @dataclass(frozen=True)
@@ -117,15 +110,15 @@ def fastest_move(
         raise ValueError(f"nothing limits how fast the move may be; give a limit of {names}")
     if task.uncertainty is not None and residual_limit is None:
         residual_limit = fastest_residual_limit(task)
-    begin = time.perf_counter()
+    began = time.perf_counter()
     limit = ResidualLimit.of(task, residual_limit)
     if profile is None:
         fastest = _fastest_on_spline(task, setup, limit, duration_tolerance)
     else:
         profile.refuse_no_choice()
-        search = _Search(task, profile, setup, limit)
-        fastest = _fastest_along(search, duration_tolerance)
-    plan = fastest.plan.restated(seconds=time.perf_counter() - begin)
+        request = PlanRequest(task, profile, setup, limit)
+        fastest = _fastest_along(request, duration_tolerance)
+    plan = fastest.plan.restated(seconds=time.perf_counter() - began)
     return Fastest(plan, fastest.failed)
 
 
@@ -157,25 +150,29 @@ def _fastest_on_spline(
         raise InfeasibleTaskError(f"no duration was found: {error}") from None
     failed = {least.too_short: _why_too_short(task, least)}
     from_least = replace(setup, guess=tuple(least.coefficients.tolist()))
-    shortest = _LONGER[0] if task.uncertainty is None else _LONGER_IF_UNCERTAIN
-    for longer in (share for share in _LONGER if share >= shortest):
-        duration = (1 + longer) * least.duration
+    request = PlanRequest(task, least.profile, from_least, residual_limit, quick=True)
+    for margin in _margins(task):
+        duration = (1 + margin) * least.duration
         try:
-            plan = plan_along(
-                replace(task, duration=duration),
-                least.profile,
-                from_least,
-                residual_limit,
-                quick=True,
-            )
+            plan = plan_along(request.on(replace(task, duration=duration)))
         except SolverFailedError as error:
             failed[duration] = str(error)
             continue
-        stated = {name: value for name, value in plan.record.settings.items() if name != "guess"}
-        shorter = tuple(sorted(failed.items(), reverse=True))
-        return Fastest(plan.restated(settings=stated), shorter)
+        settings = dict(plan.record.settings)
+        settings.pop("guess", None)
+        return Fastest(plan.restated(settings=settings), _longest_first(failed))
     longest, why = max(failed.items())
     raise InfeasibleTaskError(f"no duration up to {longest:.3g} s will do: {why}")
+
+
+def _margins(task: PointToPoint) -> tuple[float, ...]:
+    """Shares by which the least time grows until there is a plan.
+
+    In the least time itself limits could not be narrowed by what passes them between the solver's
+    nodes. The worst case of an uncertain plant may lie between the scenarios as well.
+    """
+    wide = (2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2)
+    return (5e-4, 1e-3, *wide) if task.uncertainty is None else wide
 
 
 def _why_too_short(task: PointToPoint, least: LeastTime) -> str:
@@ -185,75 +182,71 @@ def _why_too_short(task: PointToPoint, least: LeastTime) -> str:
     return f"every motion found exceeds a limit by {max(least.excess, 1e-6):.1g} of it or more"
 
 
-def _fastest_along(search: _Search, tolerance: float) -> Fastest:
+def _longest_first(failed: Mapping[float, str]) -> tuple[tuple[float, str], ...]:
+    return tuple(sorted(failed.items(), reverse=True))
+
+
+def _fastest_along(request: PlanRequest, tolerance: float) -> Fastest:
     """The plan in the shortest duration along a profile."""
-    _narrow(search, tolerance)
-    assert search.best is not None  # the bracket found one
-    shorter = [
-        failure for failure in search.failed.items() if failure[0] < search.best.task.duration
-    ]
-    return Fastest(search.best, tuple(sorted(shorter, reverse=True)))
+    tried = _Tried(request)
+    _narrow(tried, tolerance)
+    assert tried.best is not None  # the bracket found one
+    duration = tried.best.task.duration
+    shorter = {failed: why for failed, why in tried.failed.items() if failed < duration}
+    return Fastest(tried.best, _longest_first(shorter))
 
 
-def _narrow(search: _Search, tolerance: float) -> None:
-    """Bisect, and again below what failed as long as something there succeeds."""
-    least = rigid_duration(search.task)
-    low, high = search.bracket(least)
+def _narrow(tried: _Tried, tolerance: float, shares: tuple[float, ...] = (0.97, 0.9, 0.8)) -> None:
+    """Bisect, and again below what failed as long as something there succeeds.
+
+    Shares of the duration that failed are tried, since what is feasible may have gaps.
+    """
+    least = rigid_duration(tried.request.task)
+    low, high = tried.bracket(least)
     while True:
         while high / low > 1 + tolerance:
             middle = math.sqrt(low * high)
-            if search.succeeds(middle):
+            if tried.succeeds(middle):
                 high = middle
             else:
                 low = middle
-        below = (share * low for share in _SHORTER if share * low > least)
-        shorter = next((one for one in below if search.succeeds(one)), None)
+        below = (share * low for share in shares if share * low > least)
+        shorter = next((duration for duration in below if tried.succeeds(duration)), None)
         if shorter is None:
             return
-        low, high = least or shorter / _GROWTH, shorter
+        low = least or shorter / _GROWTH
+        high = shorter
 
 
-class _Search:
-    """Durations that were tried along a profile."""
+class _Tried:
+    """Durations that were tried for a request."""
 
-    def __init__(
-        self,
-        task: PointToPoint,
-        profile: JointProfile,
-        setup: Setup,
-        residual_limit: ResidualLimit,
-    ) -> None:
-        self.task = task
-        self.profile = profile
-        self.setup = setup
-        self.residual_limit = residual_limit
+    def __init__(self, request: PlanRequest) -> None:
+        self.request = request
         self.best: Plan | None = None
         self.failed: dict[float, str] = {}
 
     def succeeds(self, duration: float) -> bool:
         """Whether there is a plan for a duration."""
-        task = replace(self.task, duration=duration)
+        task = replace(self.request.task, duration=duration)
         guess = None if self.best is None else self.best.coefficients
         try:
-            from_best = replace(self.setup, guess=guess)
-            plan = plan_along(task, self.profile, from_best, self.residual_limit)
+            self.best = plan_along(self.request.on(task).along(self.request.profile, guess))
         except SolverFailedError as error:
             self.failed[duration] = str(error)
             return False
-        self.best = plan
         return True
 
     def bracket(self, least: float) -> tuple[float, float]:
         """Two durations, of which the longer one succeeds and the shorter one does not."""
         if least > 0:
             self.failed[least] = _RIGID
-        low, high = max(least, LEAST_DURATION), max(self.task.duration, 1.01 * least)
-        modes = FreeVibration(self.task.plant, self.task.target).modes
-        slowest = 2 * math.pi / modes[0][0] if modes else 1.0
-        rigid = rigid_motion(abs(self.task.span), assumed_bounds(self.task))
-        longest = max(self.task.duration, _LONGEST * rigid.duration + _SWINGS * slowest)
+        low = max(least, LEAST_DURATION)
+        high = max(self.request.task.duration, 1.01 * least)
+        longest = self._longest()
         while not self.succeeds(high):
-            low, high = high, _GROWTH * high
+            low = high
+            high = _GROWTH * high
             if high > longest:
                 raise InfeasibleTaskError(
                     f"no duration up to {low:.3g} s will do: {self.failed[low]}"
@@ -261,3 +254,14 @@ class _Search:
         while low < high / _GROWTH and self.succeeds(high / _GROWTH):
             high /= _GROWTH
         return max(low, high / _GROWTH), high
+
+    def _longest(self, rigid_times: int = 3, swings: int = 20) -> float:
+        """The longest duration that is tried [s].
+
+        So many times what a rigid joint takes, and so many swings of the slowest mode.
+        """
+        task = self.request.task
+        modes = FreeVibration(task.plant, task.target).modes
+        slowest = 2 * math.pi / modes[0][0] if modes else 1.0
+        rigid = rigid_motion(abs(task.span), assumed_bounds(task))
+        return max(task.duration, rigid_times * rigid.duration + swings * slowest)

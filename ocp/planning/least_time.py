@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import product
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,29 +29,14 @@ from quietarm.ocp.solvers.problem import Problem, Transcription, first_steps
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 Array = NDArray[np.float64]
-_KNOTS = 32
-"""With 24 the least time is up to 1 % longer, with 40 a plan takes twice as long."""
-_EVEN_SHARE = 0.35
-"""Share of the knots that are spread evenly; the others stand where the acceleration changes."""
-_RAMP = 4e-3
-"""Share of the move on either side of a switch in which the acceleration may change."""
-_GAP = 1e-3
-"""Share of the move that two knots are apart at least."""
-_SPEED = "speed"
 _SAMPLES = 4001
 """Of the acceleration, for the knots."""
 _ROUNDS = 3
+"""Of knots."""
 _GAIN = 5e-3
-"""Rounds of knots; one that shortens the move by a smaller share is the last."""
-_MARGIN, _OF_SPEED = 2e-3, 2e-4
-"""Shares by which limits are narrowed, for what passes them between the solver's nodes: the speed,
-smoother than all else, by less, since it settles how long a cruise takes."""
-_ROOM = 1.2
-"""Where CVODES finds more above a limit, this multiple of it is the margin."""
+"""A round that shortens the move by a smaller share is the last."""
 _GROWTH = 1.3
 """By which a duration that is too short grows."""
-_FAR = 1.0
-"""An excess of more counts as this one: how far it is says nothing."""
 
 
 class LeastTime(NamedTuple):
@@ -84,7 +69,8 @@ def least_time(
         shorter = following.least(max(low, best.duration / _GROWTH), best.duration, tolerance)
         gain = best.duration / shorter.duration - 1
         if gain > 0:
-            best, durations = shorter, following
+            best = shorter
+            durations = following
         if gain < _GAIN:
             break
     if durations.widen_margins(best):
@@ -114,17 +100,23 @@ def _shaped_rigid_motion(task: PointToPoint) -> RigidMotion:
     half_periods = [
         math.pi / (frequency * math.sqrt(1 - damping**2)) for frequency, damping in modes
     ]
-    delays = [sum(delay) for delay in product(*((0.0, half) for half in half_periods))]
+    impulses = product(*((0.0, half_period) for half_period in half_periods))
+    delays = [sum(impulse) for impulse in impulses]
     switches = {switch + delay for switch in rigid.switches for delay in delays}
-    return RigidMotion(rigid.duration + sum(half_periods), tuple(sorted(switches)))
+    duration = rigid.duration + sum(half_periods)
+    return RigidMotion(duration, tuple(sorted(switches)))
 
 
-def _knots_at(motion: RigidMotion) -> tuple[float, ...]:
-    """Knots about the switches of a motion."""
+def _knots_at(motion: RigidMotion, ramp: float = 4e-3) -> tuple[float, ...]:
+    """Knots about the switches of a motion.
+
+    The acceleration may change within the share `ramp` of the move on either side of a switch.
+    """
     fractions = np.linspace(0.0, 1.0, _SAMPLES)
     switches = np.array(motion.switches) / motion.duration
-    ramps = (fractions[:, None] - switches + _RAMP) / (2 * _RAMP)
-    return _knots_by(fractions, np.clip(ramps, 0.0, 1.0).sum(axis=1))
+    ramps = (fractions[:, None] - switches + ramp) / (2 * ramp)
+    changed = np.clip(ramps, 0.0, 1.0).sum(axis=1)
+    return _knots_by(fractions, changed)
 
 
 def _knots_along(profile: JointSpline, coefficients: Array) -> tuple[float, ...]:
@@ -135,20 +127,42 @@ def _knots_along(profile: JointSpline, coefficients: Array) -> tuple[float, ...]
     return _knots_by(fractions, np.cumsum(changes))
 
 
-def _knots_by(fractions: Array, changed: Array) -> tuple[float, ...]:
-    """Knots between which a rising quantity changes alike, blended with even ones."""
-    changed = (changed - changed[0]) / (changed[-1] - changed[0])
-    blend = _EVEN_SHARE * fractions + (1 - _EVEN_SHARE) * changed
-    places = np.interp(np.linspace(0.0, 1.0, _KNOTS + 2)[1:-1], blend, fractions)
-    knots = list[float]()
+def _knots_by(
+    fractions: Array,
+    changed: Array,
+    *,
+    count: int = 32,
+    even_share: float = 0.35,
+    gap: float = 1e-3,
+) -> tuple[float, ...]:
+    """Knots between which a rising quantity changes alike, blended with even ones.
+
+    With 24 of them the least time is up to 1 % longer, with 40 a plan takes twice as long. A share
+    of them is spread evenly; all are a `gap` apart at least, a share of the move.
+    """
+    risen = (changed - changed[0]) / (changed[-1] - changed[0])
+    blend = even_share * fractions + (1 - even_share) * risen
+    levels = np.linspace(0.0, 1.0, count + 2)[1:-1]
+    places = np.interp(levels, blend, fractions)
+    knots: list[float] = []
     for place in places.tolist():
-        if place - (knots[-1] if knots else 0.0) >= _GAP and place <= 1 - _GAP:
+        last = knots[-1] if knots else 0.0
+        if place - last >= gap and place <= 1 - gap:
             knots.append(place)
     return tuple(knots)
 
 
 class _Durations:
     """Durations of one task and profile, with the least excess of each."""
+
+    margin: ClassVar[float] = 2e-3
+    """Share by which limits are narrowed, for what passes them between the solver's nodes."""
+    margin_of_speed: ClassVar[float] = 2e-4
+    """The speed, smoother than all else, by less, since it settles how long a cruise takes."""
+    room: ClassVar[float] = 1.2
+    """Where CVODES finds more above a limit, this multiple of it is the margin."""
+    far: ClassVar[float] = 1.0
+    """An excess of more counts as this one: how far it is says nothing."""
 
     def __init__(
         self,
@@ -162,12 +176,12 @@ class _Durations:
         self._residual_limit = residual_limit
         self._bound = bound
         self._steps = 0
-        self._margins = {limit.name: _MARGIN for limit in task.limits}
-        if _SPEED in self._margins:
-            self._margins[_SPEED] = _OF_SPEED
+        self._margins = {limit.name: self.margin for limit in task.limits}
+        if "speed" in self._margins:
+            self._margins["speed"] = self.margin_of_speed
         self._start = profile.plain
         self._shortest: tuple[float, Array] | None = None
-        self._too_short: tuple[float, float] = 0.0, math.inf
+        self._too_short = _Probe(0.0, math.inf)
 
     def excess(self, duration: float) -> Excess:
         """The least excess of a duration, from the motion of the last one."""
@@ -190,7 +204,8 @@ class _Durations:
             limit.tightened(1 + self._margins.get(limit.name, 0.0))
             for limit in problem.scalarization.limits
         ]
-        return problem._replace(scalarization=problem.scalarization._replace(limits=tuple(limits)))
+        narrowed = problem.scalarization._replace(limits=tuple(limits))
+        return problem._replace(scalarization=narrowed)
 
     def widen_margins(self, least: LeastTime) -> bool:
         """Whether a motion passes limits by more than their margins, which are wider then."""
@@ -198,7 +213,7 @@ class _Durations:
         motion = Candidate.of_profile(task, self._profile, least.coefficients)
         exceeded = motion.exceeded(task.limits)
         for name, ratio in exceeded.items():
-            self._margins[name] += _ROOM * (ratio - 1)
+            self._margins[name] += self.room * (ratio - 1)
         self._shortest = None
         return bool(exceeded)
 
@@ -221,17 +236,28 @@ class _Durations:
                 above = between
             weights.moved(up=between.share > 0)
         assert self._shortest is not None  # the upper end
-        return LeastTime(*self._shortest, self._profile, *self._too_short)
+        duration, coefficients = self._shortest
+        return LeastTime(
+            duration,
+            coefficients,
+            self._profile,
+            too_short=self._too_short.duration,
+            excess=self._too_short.share,
+        )
 
     def _probe(self, duration: float) -> _Probe:
-        """The excess of a duration as far as it matters; what was found is noted."""
+        """The excess of a duration as far as it matters; the shortest that does is noted.
+
+        And the longest that does not.
+        """
         excess = self.excess(duration)
-        share = min(excess.share, _FAR) if excess.holds else _FAR
+        share = min(excess.share, self.far) if excess.holds else self.far
+        probe = _Probe(duration, share)
         if share <= 0:
-            self._shortest = duration, excess.coefficients
-        elif duration > self._too_short[0]:
-            self._too_short = duration, share
-        return _Probe(duration, share)
+            self._shortest = (duration, excess.coefficients)
+        elif duration > self._too_short.duration:
+            self._too_short = probe
+        return probe
 
 
 class _Probe(NamedTuple):
@@ -245,7 +271,8 @@ class _Weights:
     """Regula falsi (Illinois): an end that stays counts for half as much each time."""
 
     def __init__(self) -> None:
-        self._of_below = self._of_above = 1.0
+        self._of_below = 1.0
+        self._of_above = 1.0
         self._went_up: bool | None = None
 
     def between(self, below: _Probe, above: _Probe, tolerance: float) -> float:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.candidate import Candidate
+from quietarm.models import Plant
 from quietarm.ocp.checks import takes
+from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.planning.best_of_starts import best_of_starts
-from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
+from quietarm.ocp.planning.certify import Certified, FinerFigures, certify, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
@@ -26,8 +28,6 @@ from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
-_PILOTS, _SAME_MOVE = 8, 1e-9
-"""One move in so many is solved first; moves that differ by no more than this share are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,51 +108,67 @@ def plan_moves(
     setup = Setup(solver, bound, starts, seed)
     _check(tasks, profile)
     limit = ResidualLimit.of(tasks[0], residual_limit).size
-    problems = [
-        Problem.of(transcription, limit, setup.bound)
-        for transcription in transcribe(tasks, profile, _steps(tasks, profile))
-    ]
-    plain, *random = guesses = setup.start_coefficients(profile)
+    transcriptions = transcribe(tasks, profile, _steps(tasks, profile))
+    problems = [Problem.of(transcription, limit, setup.bound) for transcription in transcriptions]
+    guesses = setup.start_coefficients(profile)
+    plain = guesses[:1]
+    random = guesses[1:]
+    attempts: list[tuple[Solver, Sequence[Array]]] = []
     if neighbours:
-        best = _from_neighbours(problems, plain, setup)
-        attempts = [(solver, [plain]), (solver, random)]
+        solutions = _from_neighbours(problems, guesses[0], setup)
+        attempts += [(solver, plain), (solver, random)]
     else:
-        best = best_of_starts(problems, [guesses] * len(problems), solver)
-        attempts = []
-    if (substitute := stand_in(solver)) is not None:
-        attempts.append((substitute, [plain]))
-    for solves, own_starts in attempts:
-        _solve_the_unsolved(problems, best, own_starts, solves)
-    return _moves_of(problems, best, solver, guesses)
+        solutions = best_of_starts(problems, [guesses] * len(problems), solver)
+    substitute = stand_in(solver)
+    if substitute is not None:
+        attempts.append((substitute, plain))
+    for attempting, starts_of_all in attempts:
+        _solve_the_unsolved(problems, solutions, starts_of_all, attempting)
+    moves = _Table(problems, solutions)
+    moves.certify(solver, guesses)
+    return moves.to_moves()
 
 
 def _solve_the_unsolved(
-    problems: Sequence[Problem], best: list[Solution], starts: Sequence[Array], solver: Solver
+    problems: Sequence[Problem],
+    solutions: list[Solution],
+    starts: Sequence[Array],
+    solver: Solver,
 ) -> None:
     """Solve what has no solution yet from these starts."""
-    unsolved = [i for i, solution in enumerate(best) if not solution.status.solved]
+    unsolved = [i for i, solution in enumerate(solutions) if not solution.status.solved]
     if not unsolved or not starts:
         return
     again = [problems[i] for i in unsolved]
     for i, solution in zip(unsolved, best_of_starts(again, [starts] * len(again), solver)):
         if solution.status.solved:
-            best[i] = solution
+            solutions[i] = solution
 
 
-def _from_neighbours(problems: Sequence[Problem], start: Array, setup: Setup) -> list[Solution]:
-    """Solve a share of the moves from one start, then all of them from the nearest of these."""
+def _from_neighbours(
+    problems: Sequence[Problem],
+    start: Array,
+    setup: Setup,
+    share: int = 8,
+    same: float = 1e-9,
+) -> list[Solution]:
+    """Solve one move in so many from one start, then all of them from the nearest of these.
+
+    Moves that differ by less than `same` of the spread of all are one.
+    """
     solver = setup.solver
     count = len(problems)
-    pilots = np.random.default_rng(setup.seed).permutation(count)[: -(-count // _PILOTS)].tolist()
-    found = solver.solve([problems[i] for i in pilots], [start] * len(pilots))
-    solved = [k for k, one in enumerate(found) if one.status.solved]
+    shuffled = np.random.default_rng(setup.seed).permutation(count)
+    pilots = shuffled[: math.ceil(count / share)].tolist()
+    solutions = solver.solve([problems[i] for i in pilots], [start] * len(pilots))
+    solved = [k for k, solution in enumerate(solutions) if solution.status.solved]
     if not solved:
         return solver.solve(problems, [start] * count)
     moves = np.array([problem.transcription.task.row for problem in problems])
-    moves /= np.ptp(moves, axis=0) + _SAME_MOVE
+    moves /= np.ptp(moves, axis=0) + same
     known = moves[[pilots[k] for k in solved]]
     nearest = [int(np.argmin(np.abs(known - move).sum(axis=1))) for move in moves]
-    starts = [found[solved[k]].coefficients for k in nearest]
+    starts = [solutions[solved[k]].coefficients for k in nearest]
     return solver.solve(problems, starts, warm=True)
 
 
@@ -160,7 +176,95 @@ def _steps(tasks: Sequence[PointToPoint], profile: JointProfile) -> int:
     """Steps that do for all: those of the move that takes the most periods."""
     starts, targets, durations = np.array([task.move for task in tasks]).T
     radians = durations * fastest_of_moves(tasks[0].plant, starts, targets)
-    return first_steps(tasks[int(np.argmax(radians))], profile)
+    longest = tasks[int(np.argmax(radians))]
+    return first_steps(longest, profile)
+
+
+class _Table:
+    """The columns of `Moves`, empty until a solution is certified."""
+
+    def __init__(self, problems: Sequence[Problem], solutions: Sequence[Solution]) -> None:
+        count = len(problems)
+        self._problems = problems
+        self._solutions = list(solutions)
+        self._profile = problems[0].transcription.profile
+        self._coefficients = np.full((count, self._profile.size), np.nan)
+        self._energy = np.full(count, np.nan)
+        self._residual = np.full(count, np.nan)
+        self._peaks = {name: np.full(count, np.nan) for name in QUANTITIES}
+        self._by_cvodes = np.zeros(count, dtype=bool)
+        self._by_finer_steps: list[int] = []
+
+    def certify(self, solver: Solver, starts: Sequence[Array]) -> None:
+        """Fill in all that CVODES confirms, of the solutions or from other starts."""
+        solved = [i for i, solution in enumerate(self._solutions) if solution.status.solved]
+        outcomes = certify(
+            [self._problems[i] for i in solved],
+            [self._solutions[i] for i in solved],
+            solver,
+        )
+        for i, outcome in zip(solved, outcomes):
+            certified = outcome
+            if isinstance(outcome, SolverFailedError):
+                from_start = _certify_from_another_start(self._problems[i], starts, solver)
+                certified = from_start or outcome
+            if isinstance(certified, SolverFailedError):
+                self._note_failure(i, certified)
+            else:
+                self._note(i, certified)
+        self._add_finer_peaks()
+
+    def _note_failure(self, i: int, error: SolverFailedError) -> None:
+        """A move without a verified motion: it has no values."""
+        self._solutions[i] = replace(
+            self._solutions[i],
+            status=SolveStatus.NOT_CERTIFIED,
+            reason=str(error),
+            shadow_prices={},
+        )
+
+    def _note(self, i: int, certified: Certified) -> None:
+        """The values of a move; its peaks only if it was judged by CVODES alone."""
+        judgement = certified.checked
+        self._solutions[i] = certified.solution
+        self._coefficients[i] = certified.solution.coefficients
+        self._energy[i] = judgement.energy
+        self._residual[i] = judgement.residual
+        if isinstance(judgement, FinerFigures):
+            self._by_cvodes[i] = judgement.by_cvodes
+            self._by_finer_steps.append(i)
+            return
+        self._by_cvodes[i] = True
+        for name, values in self._peaks.items():
+            values[i] = judgement.motion.peak(name)
+
+    def _add_finer_peaks(self) -> None:
+        """The peaks of moves that finer steps judged, all at once."""
+        rows = self._by_finer_steps
+        if not rows:
+            return
+        transcriptions = [self._problems[i].transcription for i in rows]
+        for name, values in finer_peaks(transcriptions, self._coefficients[rows]).items():
+            self._peaks[name][rows] = values
+
+    def to_moves(self) -> Moves:
+        """The plans."""
+        solutions = self._solutions
+        return Moves(
+            tasks=tuple(problem.transcription.task for problem in self._problems),
+            profile=self._profile,
+            coefficients=self._coefficients,
+            energy=self._energy,
+            residual=self._residual,
+            peaks=self._peaks,
+            status=tuple(solution.status for solution in solutions),
+            reasons=tuple(solution.reason for solution in solutions),
+            iterations=np.array([solution.iterations for solution in solutions]),
+            shadow_prices=tuple(
+                solution.shadow_prices if solution.status.solved else {} for solution in solutions
+            ),
+            by_cvodes=self._by_cvodes,
+        )
 
 
 def _certify_from_another_start(
@@ -177,77 +281,21 @@ def _certify_from_another_start(
     return None
 
 
-def _moves_of(
-    problems: Sequence[Problem],
-    found: Sequence[Solution],
-    solver: Solver,
-    starts: Sequence[Array],
-) -> Moves:
-    """The solutions certified, as arrays; without figures where there is none.
-
-    Those that are not confirmed are looked for again from other starts.
-    """
-    count, profile = len(found), problems[0].transcription.profile
-    solved = [i for i, one in enumerate(found) if one.status.solved]
-    outcomes = certify([problems[i] for i in solved], [found[i] for i in solved], solver)
-    outcomes = [
-        _certify_from_another_start(problems[i], starts, solver) or outcome
-        if isinstance(outcome, SolverFailedError)
-        else outcome
-        for i, outcome in zip(solved, outcomes)
-    ]
-    ended, figures, of_moves = list(found), np.full((count, 2), np.nan), np.zeros(count, dtype=bool)
-    coefficients = np.full((count, profile.size), np.nan)
-    peaks = {name: np.full(count, np.nan) for name in QUANTITIES}
-    finer = list[int]()
-    for i, outcome in zip(solved, outcomes):
-        if isinstance(outcome, SolverFailedError):
-            ended[i] = replace(
-                found[i], status=SolveStatus.NOT_CERTIFIED, reason=str(outcome), shadow_prices={}
-            )
-            continue
-        ended[i], checked = outcome.solution, outcome.checked
-        coefficients[i] = ended[i].coefficients
-        figures[i] = checked.energy, checked.residual
-        if isinstance(checked, Candidate):
-            of_moves[i] = True
-            for name, values in peaks.items():
-                values[i] = checked.motion.peak(name)
-        else:
-            of_moves[i] = checked.by_cvodes
-            finer.append(i)
-    if finer:
-        transcriptions = [problems[i].transcription for i in finer]
-        for name, values in finer_peaks(transcriptions, coefficients[finer]).items():
-            peaks[name][finer] = values
-    return Moves(
-        tasks=tuple(problem.transcription.task for problem in problems),
-        profile=profile,
-        coefficients=coefficients,
-        energy=figures[:, 0],
-        residual=figures[:, 1],
-        peaks=peaks,
-        status=tuple(one.status for one in ended),
-        reasons=tuple(one.reason for one in ended),
-        iterations=np.array([one.iterations for one in ended]),
-        shadow_prices=tuple(one.shadow_prices if one.status.solved else {} for one in ended),
-        by_cvodes=of_moves,
-    )
-
-
 def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
     if not tasks:
         raise ValueError("no moves are given; give one task or more")
+    first = _common(tasks[0])
     for i, task in enumerate(tasks, start=1):
         if task.uncertainty is not None:
             raise ValueError(f"the plant of move {i} is uncertain; plan such moves by plan_move")
-        mine, first = (
-            (one.plant, one.energy, {limit.quantity for limit in one.limits})
-            for one in (task, tasks[0])
-        )
-        if mine != first:
+        if _common(task) != first:
             raise ValueError(
                 f"move {i} has another plant or energy, or other limits, than move 1; plan them "
                 "apart"
             )
     profile.refuse_no_choice()
+
+
+def _common(task: PointToPoint) -> tuple[Plant, Energy, set[Quantity]]:
+    """What all moves have in common."""
+    return task.plant, task.energy, {limit.quantity for limit in task.limits}

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,124 +20,123 @@ from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import best_of_starts, solve_from_starts
 from quietarm.ocp.planning.certify import OVERRUN, certify_one
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.residual_limit import ResidualLimit
-from quietarm.ocp.planning.setup import Setup
-from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.planning.request import PlanRequest
 from quietarm.ocp.record import REST, Verification
 from quietarm.ocp.robustness import Worst, peaks_between
-from quietarm.ocp.solvers.problem import Problem, Transcription
 from quietarm.ocp.task import PointToPoint
 
 EXCESS = 0.05
 """Share of the limit by which the residual between scenarios may exceed it before more are added;
 and the room above the least worst case, where no lower limit can be reached."""
-_ROUNDS, _ADDED, _KEPT = 6, 4, 4
-"""Most rounds of added scenarios; most that one adds; most motions to go on from."""
-_SAME = 1e-6
-"""Errors that differ by less than this share of their range are one scenario."""
+_ROUNDS = 6
+"""Most rounds of added scenarios."""
 _TIGHTENINGS = 4
 """Most times that the limit is tightened by the remaining excess."""
 
 Array = NDArray[np.float64]
 
 
-def plan_along(
-    task: PointToPoint,
-    profile: JointProfile,
-    setup: Setup,
-    residual_limit: ResidualLimit,
-    *,
-    quick: bool = False,
-) -> Plan:
-    """The plan along a profile within a residual limit.
-
-    A quick one fails without saying what would be feasible.
-    """
+def plan_along(request: PlanRequest) -> Plan:
+    """The plan along the profile of a request, within its residual limit."""
     began = time.perf_counter()
-    starts = setup.start_coefficients(profile)
-    if residual_limit.adapts:
-        plan = _adapt_limit(task, profile, setup, residual_limit.size, starts)
-    else:
-        plan = _hold(task, profile, setup, residual_limit.size, starts, quick=quick)
-        if plan.worst is not None and (plan.excess or 0.0) > OVERRUN:
-            unit = task.plant.tip_unit
-            raise SolverFailedError(
-                f"the residual is {plan.worst.residual:.4g} {unit} in the worst case, above its "
-                f"limit of {residual_limit.size:g} {unit}: give a larger residual limit, more "
-                f"{profile.term}s or a smaller uncertainty"
-            )
+    plan = _adapt_limit(request) if request.residual_limit.adapts else _keep_limit(request)
     return plan.restated(seconds=time.perf_counter() - began)
 
 
-def _adapt_limit(
-    task: PointToPoint, profile: JointProfile, setup: Setup, limit: float, starts: list[Array]
-) -> Plan:
+def _keep_limit(request: PlanRequest) -> Plan:
+    """The plan within a residual limit that is stated, between the scenarios as well.
+
+    SolverFailedError where the worst case exceeds it.
+    """
+    plan = _hold(request, request.starts)
+    if plan.worst is None or (plan.excess or 0.0) <= OVERRUN:
+        return plan
+    unit = request.task.plant.tip_unit
+    raise SolverFailedError(
+        f"the residual is {plan.worst.residual:.4g} {unit} in the worst case, above its "
+        f"limit of {request.residual_limit.size:g} {unit}: give a larger residual limit, more "
+        f"{request.profile.term}s or a smaller uncertainty"
+    )
+
+
+def _adapt_limit(request: PlanRequest) -> Plan:
     """The plan within the default limit, at most the worst case of the nominal plant's plan.
 
     If neither is feasible, the limit is near the least residual over the scenarios; if that does
     not hold between them, it is the worst case of the plan.
     """
-    try:
-        nominal = _hold(task.certain, profile, setup, 0.0, starts).on(task)
-    except SolverFailedError:  # only other motions may keep the limits
-        nominal = None
-    reached = np.inf
+    request = replace(request, quick=False)
+    starts = request.starts
+    nominal = _nominal_plan(request)
+    nominal_worst = np.inf
     if nominal is not None and nominal.worst is not None:
-        reached = nominal.worst.residual
+        nominal_worst = nominal.worst.residual
         starts = [np.array(nominal.coefficients), *starts]
-    most = max(reached, REST)
+    most = max(nominal_worst, REST)
+    limit = min(request.residual_limit.size, most)
     try:
-        plan = _hold(task, profile, setup, min(limit, most), starts)
+        plan = _hold(request.within(limit), starts)
     except InfeasibleTaskError:
-        least = _least_residual(task, profile, setup, starts)
+        least = _least_residual(request, starts)
         if least is None:
             raise
-        plan = _hold(task, profile, setup, min((1 + EXCESS) * least, most), starts)
+        limit = min((1 + EXCESS) * least, most)
+        plan = _hold(request.within(limit), starts)
     assert plan.worst is not None
     if plan.excess is None or plan.excess <= OVERRUN:
         return plan
-    if nominal is not None and plan.worst.residual > reached:
+    if nominal is not None and plan.worst.residual > nominal_worst:
         plan = nominal
     assert plan.worst is not None
     return replace(plan, residual_limit=plan.worst.residual)
 
 
-def _least_residual(
-    task: PointToPoint, profile: JointProfile, setup: Setup, starts: list[Array]
-) -> float | None:
+def _nominal_plan(request: PlanRequest) -> Plan | None:
+    """The plan at rest of the nominal plant, for the uncertain task; None where there is none."""
+    nominal = request.on(request.task.certain).within(0.0)
+    try:
+        plan = _hold(nominal, request.starts)
+    except SolverFailedError:  # only other motions may keep the limits
+        return None
+    return plan.on(request.task)
+
+
+def _least_residual(request: PlanRequest, starts: list[Array]) -> float | None:
     """The least residual over the scenarios [m]; None where no start was solved."""
-    transcription = Transcription.of(task, profile, setup.steps)
-    problem = Problem.of(transcription, bound=setup.bound, minimise={RESIDUAL: 1.0})
-    (stillest,) = best_of_starts([problem], [starts], setup.solver)
+    problem = request.within(np.inf).problem(minimise={RESIDUAL: 1.0})
+    (stillest,) = best_of_starts([problem], [starts], request.setup.solver)
     return stillest.residual if stillest.status.solved else None
 
 
-def _hold(
-    task: PointToPoint,
-    profile: JointProfile,
-    setup: Setup,
-    limit: float,
-    starts: list[Array],
-    *,
-    quick: bool = False,
-) -> Plan:
+class _Attempt(NamedTuple):
+    """A plan; all motions that were solved, cheapest first; peaks between the scenarios."""
+
+    plan: Plan
+    solved: list[Array]
+    peaks: list[Worst]
+
+
+def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Plan:
     """The plan whose residual limit holds between the scenarios as well, if that can be had.
 
     Where its residual exceeds the limit between them by more than `EXCESS`, those peaks become
-    scenarios, and the motions that were found are the next starts. The remaining excess is
-    then subtracted from the limit; where that does not settle it, they become scenarios as well.
+    scenarios, and of the motions that were found so many are the next starts. The remaining excess
+    is then subtracted from the limit; where that does not settle it, they become scenarios as well.
     """
-    plan, others, peaks = _solve_and_look_between(task, profile, setup, limit, starts, quick=quick)
+    limit = request.residual_limit.size
+    attempt = _solve_and_look_between(request, starts)
+    plan = attempt.plan
     tightened = limit
-    rounds = tightenings = 0
-    while peaks:
-        plan = replace(plan, worst=peaks[0])
-        excess = peaks[0].residual / limit - 1
-        more = _new_scenarios(task, [peak for peak in peaks if peak.residual > limit])
-        can_add = bool(more) and rounds < _ROUNDS
+    rounds = 0
+    tightenings = 0
+    while attempt.peaks:
+        worst = attempt.peaks[0]
+        plan = replace(attempt.plan, worst=worst)
+        excess = worst.residual / limit - 1
+        above = [peak for peak in attempt.peaks if peak.residual > limit]
+        scenarios = _new_scenarios(request.task, above)
+        can_add = bool(scenarios) and rounds < _ROUNDS
         can_tighten = excess > 0 and tightenings < _TIGHTENINGS
-        next_setup = setup
-        next_limit = limit
         starts = [np.array(plan.coefficients)]
         if can_add and (
             (excess > EXCESS and not tightenings) or (excess > OVERRUN and not can_tighten)
@@ -144,19 +144,20 @@ def _hold(
             rounds += 1
             tightenings = 0
             tightened = limit
-            task = task.with_samples([*task.scenarios[1:], *more])
-            starts += others[:_KEPT]
+            known = request.task.scenarios[1:]
+            request = request.on(request.task.with_samples([*known, *scenarios]))
+            following = request
+            starts += attempt.solved[:most_starts]
         elif can_tighten:
             tightenings += 1
             tightened /= (1 + excess) * (1 + OVERRUN)
-            next_limit = tightened
-            next_setup = replace(setup, steps=plan.verification.steps)
+            setup = replace(request.setup, steps=plan.verification.steps)
+            following = replace(request, setup=setup, quick=True).within(tightened)
         else:
             break
         try:
-            plan, others, peaks = _solve_and_look_between(
-                task, profile, next_setup, next_limit, starts, quick=quick or tightenings > 0
-            )
+            attempt = _solve_and_look_between(following, starts)
+            plan = attempt.plan
         except SolverFailedError:
             if not tightenings:
                 raise
@@ -165,62 +166,54 @@ def _hold(
 
 
 def _solve_and_look_between(
-    task: PointToPoint,
-    profile: JointProfile,
-    setup: Setup,
-    limit: float,
-    starts: list[Array],
-    *,
-    quick: bool,
-) -> tuple[Plan, list[Array], list[Worst]]:
+    request: PlanRequest, starts: list[Array], most_peaks: int = 4
+) -> _Attempt:
     """As `plan_from_starts`, and the peaks of the residual between the scenarios, if it has any."""
-    plan, others = plan_from_starts(task, profile, setup, limit, starts, quick=quick)
-    if task.uncertainty is None:
-        return plan, others, []
-    return plan, others, peaks_between(plan.candidate, _ADDED)
+    plan, solved = plan_from_starts(request, starts)
+    if request.task.uncertainty is None:
+        return _Attempt(plan, solved, [])
+    return _Attempt(plan, solved, peaks_between(plan.candidate, most_peaks))
 
 
-def plan_from_starts(
-    task: PointToPoint,
-    profile: JointProfile,
-    setup: Setup,
-    residual_limit: float,
-    starts: Sequence[Array],
-    *,
-    quick: bool = False,
-) -> tuple[Plan, list[Array]]:
+def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
     """The plan from starts, whose limit holds in all scenarios.
 
     And the coefficients of all that were solved, cheapest first. Errors are those of
     `solve_from_starts` and `certify`.
     """
     began = time.perf_counter()
-    transcription = Transcription.of(task, profile, setup.steps)
-    problem = Problem.of(transcription, residual_limit, setup.bound)
-    best, solved = solve_from_starts(problem, starts, setup.solver, quick=quick)
+    setup = request.setup
+    problem = request.problem()
+    best, solved = solve_from_starts(problem, starts, setup.solver, quick=request.quick)
     certified = certify_one(problem, best, setup.solver)
-    assert isinstance(certified.checked, Candidate)  # one alone is judged by CVODES
+    assert isinstance(certified.checked, Candidate)  # a single motion is judged by CVODES
     solution = certified.solution
     motion = certified.checked.motion
     plan = Plan(
-        task=task,
-        profile=profile,
-        coefficients=profile.checked(solution.coefficients),
+        task=request.task,
+        profile=request.profile,
+        coefficients=certified.checked.coefficients,
         motion=motion,
         status=solution.status,
         verification=Verification.between(
-            certified.steps, solution.energy, solution.residual, motion
+            certified.steps,
+            solution.energy,
+            solution.residual,
+            motion,
         ),
         record=setup.record(setup.solver.name, solution.iterations, time.perf_counter() - began),
-        residual_limit=residual_limit,
+        residual_limit=request.residual_limit.size,
         shadow_prices=solution.shadow_prices,
     )
     return plan, [solution.coefficients for solution in solved]
 
 
-def _new_scenarios(task: PointToPoint, peaks: list[Worst]) -> list[list[float]]:
-    """The errors of those peaks that are no scenario of the task yet."""
+def _new_scenarios(task: PointToPoint, peaks: list[Worst], same: float = 1e-6) -> list[list[float]]:
+    """The errors of those peaks that are no scenario of the task yet.
+
+    Errors that differ by less than the share `same` of their range are one scenario.
+    """
     known = np.array(task.scenarios[1:])
-    near = _SAME * np.array(list(task.ranges.values()))
-    errors = [list(one.errors.values()) for one in peaks]
-    return [one for one in errors if (np.abs(known - one) > near).any(axis=1).all()]
+    near = same * np.array(list(task.ranges.values()))
+    errors = [list(peak.errors.values()) for peak in peaks]
+    return [error for error in errors if (np.abs(known - error) > near).any(axis=1).all()]

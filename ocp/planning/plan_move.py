@@ -1,20 +1,20 @@
 """`plan_move`: the move of least energy, from a task to a certified plan.
 
-The way of a task: the profile that is named, or that it takes (`choose_profile`); the plan along it
-(`plan_along`); solutions from several starts (`best_of_starts`); CVODES's word (`certify`).
+The way of a task: with the profile that is named, or that it takes (`choose_profile`), and all else
+that a plan depends on it becomes one value (`request`). Of this the plan is made (`plan_along`):
+solutions from several starts (`best_of_starts`), of which CVODES has the last word (`certify`).
 """
 
 from __future__ import annotations
-
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.ocp.checks import takes
-from quietarm.ocp.planning.choose_profile import plan_on_chosen_profile
+from quietarm.ocp.planning.choose_profile import choose_profile, plan_on_chosen_profile
 from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.request import PlanRequest
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -90,13 +90,15 @@ def plan_move(
         optimum for another reason.
     """
     setup = Setup(solver, bound, starts, seed, steps)
-    if profile is None and guess is not None:
-        profile = CycloidPolynomial.of_size(np.size(guess))
-    if profile is not None and profile.size == 0:
+    takes_its_profile = profile is None and guess is None
+    if profile is None:
+        profile = (
+            choose_profile(task) if guess is None else CycloidPolynomial.of_size(np.size(guess))
+        )
+    if profile.size == 0:
         return only_motion(task, profile, residual_limit)
     limit = ResidualLimit.of(task, residual_limit)
-    if profile is None:
-        return plan_on_chosen_profile(task, setup, limit)
+    request = PlanRequest(task, profile, setup, limit)
     if guess is not None:
-        setup = replace(setup, guess=profile.checked(guess))
-    return plan_along(task, profile, setup, limit)
+        request = request.from_guess(guess)
+    return plan_on_chosen_profile(request) if takes_its_profile else plan_along(request)

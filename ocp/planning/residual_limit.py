@@ -1,11 +1,13 @@
-"""The residual limit of a task: what is given, or the default."""
+"""The residual limit of a task: the one that is stated, or the default."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import not_negative
-from quietarm.ocp.robustness import quiet_residual
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.task import PointToPoint
 
 
@@ -19,19 +21,19 @@ class ResidualLimit(NamedTuple):
     adapts: bool = False
 
     @classmethod
-    def of(cls, task: PointToPoint, given: float | None) -> ResidualLimit:
-        """The limit that is given, or the default: rest, or `quiet_residual` of an uncertain task.
+    def of(cls, task: PointToPoint, stated: float | None) -> ResidualLimit:
+        """The limit that is stated, or the default: rest, or `quiet_residual` of an uncertain task.
 
         ValueError where it is negative, or that of an uncertain task is 0.
         """
-        if given is not None:
-            given = not_negative("residual limit", given, "m")
+        if stated is not None:
+            stated = not_negative("residual limit", stated, "m")
         if task.uncertainty is None:
-            return cls(given or 0.0)
-        size = quiet_residual(task) if given is None else given
+            return cls(stated or 0.0)
+        size = quiet_residual(task) if stated is None else stated
         if size > 0:
-            return cls(size, adapts=given is None)
-        if given is None:
+            return cls(size, adapts=stated is None)
+        if stated is None:
             raise ValueError(
                 "the plain cycloid does not bend this plant, so that 5 % of that is no limit; give "
                 "a residual limit above 0"
@@ -40,3 +42,12 @@ class ResidualLimit(NamedTuple):
             "residual limit is 0, but no motion arrives at rest in all scenarios; omit it "
             "(default: 5 % of the plain cycloid's largest deflection) or give one above 0"
         )
+
+
+def quiet_residual(task: PointToPoint) -> float:
+    """The plain cycloid's peak deflection on the nominal plant [m], times `TOLERATED`.
+
+    Over durations this has no zeros, unlike its residual.
+    """
+    cycloid = Candidate.of_profile(task.certain, CycloidPolynomial(0), [])
+    return TOLERATED * cycloid.motion.peak_deflection

@@ -20,10 +20,6 @@ from quietarm.ocp.task import PointToPoint
 
 _ANGLES = 9
 """Of the joint, at which a plant is asked what an acceleration takes."""
-_LEAST_SLOPE = 1e-9
-"""Of a joint that stands still while the path goes on, so that nothing is divided by 0."""
-_HALVINGS = 200
-"""Of the largest speed; each settles another bit."""
 
 
 class RigidBounds(NamedTuple):
@@ -88,17 +84,20 @@ def rigid_motion(span: float, bounds: RigidBounds) -> RigidMotion:
     return RigidMotion(duration, tuple(sorted(set(switches))))
 
 
-def _largest_speed(remaining: Callable[[float], float], most: float) -> float:
-    """The speed at which both ramps take all of the way."""
+def _largest_speed(remaining: Callable[[float], float], most: float, halvings: int = 200) -> float:
+    """The speed at which both ramps take all of the way; each halving settles another bit."""
     high = most if math.isfinite(most) else 1.0
     while remaining(high) > 0:
         high *= 2
     low = 0.0
-    for _ in range(_HALVINGS):
+    for _ in range(halvings):
         middle = (low + high) / 2
         if not low < middle < high:
             break
-        low, high = (middle, high) if remaining(middle) > 0 else (low, middle)
+        if remaining(middle) > 0:
+            low = middle
+        else:
+            high = middle
     return high
 
 
@@ -188,8 +187,10 @@ def _sides(limit: Limit | None, joint: int) -> tuple[float, float]:
     shares = limit.quantity.values
     if not isinstance(shares, Shares):
         return limit.lower, limit.upper
-    own = (bound for bound in shares.bounds if bound.place == joint)
-    return next(((bound.lower, bound.upper) for bound in own), (-math.inf, math.inf))
+    for bound in shares.bounds:
+        if bound.place == joint:
+            return bound.lower, bound.upper
+    return -math.inf, math.inf
 
 
 def _ways(task: PointToPoint) -> list[float]:
@@ -204,29 +205,36 @@ def _distances(task: PointToPoint) -> list[float]:
     return [abs(way) for way in _ways(task)]
 
 
-def _slopes(task: PointToPoint) -> np.ndarray:
-    """How far every joint goes for each unit of the path, at most along the way."""
+def _slopes(task: PointToPoint, least: float = 1e-9) -> np.ndarray:
+    """How far every joint goes for each unit of the path, at most along the way.
+
+    Not less than `least`, where a joint stands still while the path goes on: nothing is divided by
+    0.
+    """
     places = np.linspace(task.start, task.target, _ANGLES).tolist()
     slopes = [
         [abs(float(joint.speed)) for joint in task.plant.joints(JointMotion(place, 1.0, 0.0))]
         for place in places
     ]
-    return np.maximum(np.max(slopes, axis=0), _LEAST_SLOPE)
+    return np.maximum(np.max(slopes, axis=0), least)
 
 
 def assumed_bounds(task: PointToPoint) -> RigidBounds:
     """The same, and what limits of torque and deflection come to where nothing swings."""
     declared = declared_bounds(task)
     needed = _Needed.along(task)
-    accelerations, speeds = list[float](), list[float]()
+    accelerations: list[float] = []
+    speeds: list[float] = []
     for joint, torques in enumerate(_torque_limits(task.limits, len(needed.torques))):
-        if needed.torques[joint] > 0:
-            accelerations += (torque / needed.torques[joint] for torque in torques)
-        if needed.frictions[joint] > 0:
-            speeds += (torque / needed.frictions[joint] for torque in torques)
-    deflection = next((one.size for one in task.limits if one.name == "deflection"), math.inf)
-    if needed.deflection > 0:
-        accelerations.append(deflection / needed.deflection)
+        inertia = needed.torques[joint]
+        friction = needed.frictions[joint]
+        if inertia > 0:
+            accelerations += (torque / inertia for torque in torques)
+        if friction > 0:
+            speeds += (torque / friction for torque in torques)
+    sizes = {limit.name: limit.size for limit in task.limits}
+    if "deflection" in sizes and needed.deflection > 0:
+        accelerations.append(sizes["deflection"] / needed.deflection)
     largest = min(accelerations, default=math.inf)
     return declared._replace(
         speed=min(declared.speed, *speeds, math.inf),
@@ -242,15 +250,15 @@ def largest_deflection(task: PointToPoint) -> float:
 
 def _torque_limits(limits: Iterable[Limit], joints: int) -> list[list[float]]:
     """What limits the torque of every joint."""
-    found = [list[float]() for _ in range(joints)]
+    torques: list[list[float]] = [[] for _ in range(joints)]
     for limit in limits:
         for joint in range(joints):
             if limit.name == "torque":
                 lower, upper = _sides(limit, joint)
-                found[joint].append(min(-lower, upper))
+                torques[joint].append(min(-lower, upper))
             if isinstance(limit.quantity.values, TorqueSpeedLine):
-                found[joint].append(limit.quantity.values.points[0][0])
-    return found
+                torques[joint].append(limit.quantity.values.points[0][0])
+    return torques
 
 
 class _Needed(NamedTuple):
@@ -284,7 +292,7 @@ class _Needed(NamedTuple):
 
         def torques(path: JointMotion, W: list[float]) -> list[float]:
             moving = plant.torques(path, W, still, still)
-            return [abs(float(torque) - float(held)) for torque, held in zip(moving, holding)]
+            return [abs(float(torque) - float(rest)) for torque, rest in zip(moving, holding)]
 
         return (
             torques(accelerating, bent),

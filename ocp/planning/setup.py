@@ -58,23 +58,29 @@ class Setup:
             finer = "finer ones differ by rounding alone"
             checked["steps"] = whole("steps", self.steps, 2, MOST_STEPS, finer)
         if self.guess is not None:
-            checked["guess"] = tuple(finite("guess", a) for a in self.guess)
+            checked["guess"] = tuple(finite("guess", value) for value in self.guess)
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
     def start_coefficients(self, profile: JointProfile) -> list[NDArray[np.float64]]:
         """Coefficients to start from: the guess or the plain cycloid, then random ones."""
+        first = profile.plain if self.guess is None else np.array(self.guess)
         random = np.random.default_rng(self.seed)
         box = profile.start_box(self.bound)
         count = (self.starts - 1) * profile.random_starts
-        others = [random.uniform(*box) for _ in range(count)]
-        first = profile.plain if self.guess is None else np.array(self.guess)
-        return [first, *others]
+        return [first, *(random.uniform(*box) for _ in range(count))]
 
     def record(self, method: str, iterations: int, seconds: float, **also: Setting) -> Record:
         """What found an answer so, with other settings of the method's own."""
-        stated: dict[str, Setting] = {"starts": self.starts, "steps": self.steps}
-        stated |= self.solver.stated | also
+        settings: dict[str, Setting] = {"starts": self.starts, "steps": self.steps}
+        settings |= self.solver.stated | also
         if self.guess is not None:
-            stated["guess"] = ", ".join(map(digits, self.guess))
-        return Record(method, stated, self.bound, self.seed, iterations=iterations, seconds=seconds)
+            settings["guess"] = ", ".join(map(digits, self.guess))
+        return Record(
+            method,
+            settings,
+            self.bound,
+            self.seed,
+            iterations=iterations,
+            seconds=seconds,
+        )

@@ -12,9 +12,6 @@ from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import PointToPoint
 
-_SAMPLES = 200
-"""Joint angles along the plain cycloid, at even times, over which `average` is taken."""
-
 
 @takes(task=PointToPoint)
 def shaped_cycloid(
@@ -48,7 +45,8 @@ def shaped_cycloid(
         raise ValueError(f"at is {at!r}; give 'target' or 'average'")
     angles = [task.target] if at == "target" else _along(task)
     modes = [FreeVibration(task.plant, angle).modes for angle in angles]
-    if not modes[0] or len({len(each) for each in modes}) > 1:
+    counts = {len(modes_there) for modes_there in modes}
+    if not modes[0] or len(counts) > 1:
         raise ValueError(
             f"plant {task.plant.name!r} has modes that do not vibrate, for which there is "
             "no shaper; take another profile"
@@ -59,6 +57,8 @@ def shaped_cycloid(
     return profile
 
 
-def _along(task: PointToPoint) -> list[float]:
-    times = (np.arange(_SAMPLES) + 0.5) / _SAMPLES * task.duration
-    return CycloidPolynomial(0).path([], *task.move)(times).tolist()
+def _along(task: PointToPoint, samples: int = 200) -> list[float]:
+    """Joint angles along the plain cycloid, at even times."""
+    fractions = (np.arange(samples) + 0.5) / samples
+    cycloid = CycloidPolynomial(0).path([], *task.move)
+    return cycloid(fractions * task.duration).tolist()

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import Front, Plan, PointToPoint, epsilon_front, evaluate_coefficients, plan_move
-from quietarm.ocp.front.curve import Report, no_report
+from quietarm.ocp.front.curve import Progress, no_report
 from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.window import default_window
 from quietarm.studies.export.formats import export_plan
@@ -183,7 +183,7 @@ class Explored:
         asked: dict[str, Any] = {"residual_limit": self.residual_limit, "bound": self.bound}
         return replace(self, plan=plan_move(self.task, self.plan.profile, **asked))
 
-    def find_front(self, report: Report = no_report) -> Explored:
+    def find_front(self, report: Progress = no_report) -> Explored:
         """The same with the front of this move; it raises what `epsilon_front` does."""
         asked: dict[str, Any] = {"bound": self.bound, "points": FRONT_POINTS, "report": report}
         return replace(self, front=epsilon_front(self.task, self.plan.profile, **asked))
