@@ -49,8 +49,10 @@ class ArmOnFlexibleLink(Plant):
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W'' from eq (13) [m/s^2]."""
-        (w,), (dw,) = W, dW
-        sine, cosine = ca.sin(joint.angle), ca.cos(joint.angle)
+        (w,) = W
+        (dw,) = dW
+        sine = ca.sin(joint.angle)
+        cosine = ca.cos(joint.angle)
         force = (
             2 * self.zeta * self.omega * dw
             + self.omega**2 * w

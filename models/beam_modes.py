@@ -73,10 +73,13 @@ def _wave_number(index: int, ratio: Expression) -> Expression:
     if index == 0:  # Rayleigh's estimate, within 2 % for any mass
         k: Expression = ca.sqrt(ca.sqrt(3 / (ratio + 33 / 140)))
     else:
-        free, pinned = (index + 0.5) * pi, (index + 0.25) * pi
+        free = (index + 0.5) * pi
+        pinned = (index + 0.25) * pi
         k = pinned + (free - pinned) / (1 + 4 * index * ratio)
     for _ in range(_NEWTON):  # the equation over cosh k, which keeps its numbers small
-        sine, cosine, tangent = ca.sin(k), ca.cos(k), ca.tanh(k)
+        sine = ca.sin(k)
+        cosine = ca.cos(k)
+        tangent = ca.tanh(k)
         of_mass = cosine * tangent - sine
         value = 1 / ca.cosh(k) + cosine + ratio * k * of_mass
         by_mass = ratio * of_mass - ratio * k * tangent * (sine + cosine * tangent)

@@ -114,7 +114,8 @@ class FlexibleBeam(Plant):
 
     @property
     def _modes(self) -> BeamModes:
-        ratio, radius = self.tip_mass / self._mass, self.hub_radius / self.length
+        ratio = self.tip_mass / self._mass
+        radius = self.hub_radius / self.length
         are_numbers = isinstance(ratio, float) and isinstance(radius, float)
         return (_modes_of_numbers if are_numbers else beam_modes)(self.modes, ratio, radius)
 
@@ -132,7 +133,8 @@ class FlexibleBeam(Plant):
 
     def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque [N m]."""
-        radius, end = self.hub_radius, self.hub_radius + self.length
+        radius = self.hub_radius
+        end = self.hub_radius + self.length
         of_beam = self.mass_per_length * (end**3 - radius**3) / 3
         inertia = self.hub_inertia + of_beam + self.tip_mass * end**2
         bending = self._mass * self.length * sum(map(mul, self._modes.pushes, ddW))

@@ -57,7 +57,8 @@ _EITHER = {"torque": "torques", "tip_displacements": "tips_at"}
 
 def check_contract(plant: Plant) -> None:
     """Refuse a plant that breaks the contract of `Plant`; ValueError with what is wrong."""
-    kind, modes = type(plant), getattr(plant, "modes", None)
+    kind = type(plant)
+    modes = getattr(plant, "modes", None)
     bare = any(isinstance(entry, Field) for entry in vars(kind).values())
     is_frozen = is_dataclass(plant) and not bare and kind.__hash__ is not None
     if not (is_frozen and isinstance(modes, int) and modes > 0):
@@ -110,7 +111,9 @@ def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
     # an angle at which no motion has a value is none to move to
     defined = np.any(np.isfinite(values).all(axis=2), axis=1)
     if defined.any():
-        motions, values, slopes = motions[defined], values[defined], slopes[defined]
+        motions = motions[defined]
+        values = values[defined]
+        slopes = slopes[defined]
     _check_finite(plant, motions, np.concatenate([values, slopes], axis=2))
     _check_side_by_side(plant, motions, values)
     _check_rest(plant, motions, values)
@@ -188,8 +191,10 @@ def outputs_of(plant: Plant, arguments: Sequence[Expression]) -> list[Expression
 
     ValueError where a method fails or gives something else than it should.
     """
-    joint, modes = JointMotion(*arguments[:3]), plant.modes
-    W, dW = list(arguments[3 : 3 + modes]), list(arguments[3 + modes :])
+    joint = JointMotion(*arguments[:3])
+    modes = plant.modes
+    W = list(arguments[3 : 3 + modes])
+    dW = list(arguments[3 + modes :])
     ddW = _call(plant, "modal_accelerations", joint, W, dW)
     return [*ddW, _torque(plant, joint, W, dW, ddW), *_tips(plant, joint, W)]
 
@@ -265,7 +270,9 @@ def _check_rates(plant: Plant) -> None:
     """
     size = 4 + 2 * plant.modes
     x = ca.SX.sym("x", size)
-    path, W, dW = JointMotion(*ca.vertsplit(x[:4])), x[4 : 4 + plant.modes], x[4 + plant.modes :]
+    path = JointMotion(*ca.vertsplit(x[:4]))
+    W = x[4 : 4 + plant.modes]
+    dW = x[4 + plant.modes :]
     moving = ca.vertcat(path.angle, path.speed, path.acceleration, W)
     rates = ca.vertcat(path.speed, path.acceleration, path.jerk, dW)
     pairs = list[tuple[str, Expression, Expression]]()
@@ -276,7 +283,8 @@ def _check_rates(plant: Plant) -> None:
                     raise _wrong(plant, "joints", "gives no jerk where the path has one", "give it")
                 pairs.append(("joints", value, rate))
     if _gives(plant, "tips_at") or _gives(plant, "tip_speeds"):
-        amplitudes, speeds = ca.vertsplit(W), ca.vertsplit(dW)
+        amplitudes = ca.vertsplit(W)
+        speeds = ca.vertsplit(dW)
         tips = _tips(plant, path, amplitudes)
         tip_speeds = _call(plant, "tip_speeds", path, amplitudes, speeds)
         if len(tips) != len(tip_speeds):
@@ -301,7 +309,8 @@ def _check_rates(plant: Plant) -> None:
 
 def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
     """Values, and slopes after them, are finite in every motion."""
-    finite, methods = np.isfinite(table), _methods(plant)
+    finite = np.isfinite(table)
+    methods = _methods(plant)
     if not finite.all():
         angle, kind, _ = np.argwhere(~finite)[-1]  # the simplest motion: at rest, if it fails there
         column = finite[angle, kind].argmin()
@@ -316,7 +325,8 @@ def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
 
 def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
     """At rest the structure stays at rest, and there are motions that move every tip."""
-    still, moving = values[:, -1], np.abs(values).max(axis=1)
+    still = values[:, -1]
+    moving = np.abs(values).max(axis=1)
     wrong = np.abs(still) > _TINY * moving
     wrong[:, plant.modes] = False  # the torque may hold the joint
     for row, column in np.argwhere(wrong):

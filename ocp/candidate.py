@@ -32,7 +32,8 @@ from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
-_STEPS, _SMOOTH_STEPS = 500, 250
+_STEPS = 500
+_SMOOTH_STEPS = 250
 """Least number of steps of the quadrature, in all and where nothing breaks: its nodes are at most a
 thousandth of the move apart, or two. On the paper's conditions energies with 250 are those with
 2000 within 1e-10."""
@@ -138,7 +139,8 @@ class Candidate(Ranged):
     @cached_property
     def motion(self) -> Motion:
         """All values; peaks include those between the samples."""
-        task, joint = self.task, self._samples.motion
+        task = self.task
+        joint = self._samples.motion
         past_target = (self._largest(joint.angle[None]) - task.target) * np.sign(task.span)
         known = {
             quantity.name: self._range(quantity)
@@ -188,7 +190,8 @@ class Candidate(Ranged):
     @property
     def trajectory(self) -> Trajectory:
         """The move and the residual window; where two pieces meet, two samples of one time."""
-        lengths, fractions = self.path.given[-1], self._grid.samples
+        lengths = self.path.given[-1]
+        fractions = self._grid.samples
         begins = np.append(0.0, np.cumsum(lengths[:-1]))
         times = (begins[:, None] + np.outer(lengths, fractions)).ravel()
         times = np.minimum(times, self.task.duration)  # beyond it by rounding
@@ -212,7 +215,8 @@ class Candidate(Ranged):
         ValueError
             When the times do not increase from 0 or later, or the motion is a free one.
         """
-        at, duration = np.atleast_1d(np.asarray(times, dtype=float)), self.task.duration
+        at = np.atleast_1d(np.asarray(times, dtype=float))
+        duration = self.task.duration
         ordered = at.ndim == 1 and at.size and at[0] >= 0 and np.all(np.diff(at) > 0)
         if not (ordered and np.all(np.isfinite(at))):
             raise ValueError(
@@ -221,9 +225,11 @@ class Candidate(Ranged):
             )
         if self.path.given.shape[1] > 1:
             raise ValueError("a free motion has samples of its own; take its trajectory")
-        moving, later = at[at <= duration], at[at > duration] - duration
+        moving = at[at <= duration]
+        later = at[at > duration] - duration
         fractions, places = np.unique(np.append(moving / duration, [0.0, 1.0]), return_inverse=True)
-        plant, initial = self.task.plant, self.task.initial_state
+        plant = self.task.plant
+        initial = self.task.initial_state
         outputs = integrate_to(plant, self.errors, self.path, initial, fractions)
         outputs = np.hstack([outputs[:, places[:-2]], self._after(later)])
         return Trajectory.from_outputs(plant, at, outputs)

@@ -146,7 +146,8 @@ def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
     }
 
 
-RESIDUAL, TORQUE_SPEED = "residual", "torque_speed"
+RESIDUAL = "residual"
+TORQUE_SPEED = "torque_speed"
 JERK = 3
 """The derivative of the angle that no plant needs, and that is nowhere where the acceleration
 jumps."""

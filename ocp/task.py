@@ -67,7 +67,8 @@ class ModalState:
             )
 
 
-_SAME, _NONE = 1e-9, 1e-15
+_SAME = 1e-9
+_NONE = 1e-15
 """Relative and absolute difference below which numbers are one: 30deg and pi/6."""
 _APART = "plant", "initial", "final", "energy", "uncertainty"
 """Fields that are told in another way."""
@@ -79,7 +80,8 @@ _CLASSES = {"initial": ModalState, "final": ModalState, "uncertainty": Uncertain
 """What fields hold that may be None."""
 _MOST = 1e6
 """Beyond this [rad, m, s] no joint moves, and double precision does not follow."""
-LEAST_DURATION, LEAST_MOVE = 1e-6, 1e-6
+LEAST_DURATION = 1e-6
+LEAST_MOVE = 1e-6
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
 
 
@@ -340,7 +342,8 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
     """
     if one.plant.name != other.plant.name:
         return f"plant is {one.plant.name}, not {other.plant.name}"
-    mine, theirs = dict(_entries(_stated(one))), dict(_entries(_stated(other)))
+    mine = dict(_entries(_stated(one)))
+    theirs = dict(_entries(_stated(other)))
     joint = one.plant.joint
     return ", ".join(
         f"{name} is {_words(name, mine.get(name), joint)}, "

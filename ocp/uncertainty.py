@@ -19,7 +19,8 @@ from quietarm.models.joint_motion import Modes
 from quietarm.models.validation import check_contract, outputs_of
 from quietarm.ocp.checks import has_no, positive, takes
 
-FREQUENCY, DAMPING = "frequency", "damping"
+FREQUENCY = "frequency"
+DAMPING = "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
 _SAME = 1e-9
 """How far, as a share, equations may differ between two ways to change a parameter."""
@@ -48,7 +49,8 @@ class ScaledModes(Plant):
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """The plant's own, and what its other stiffness and damping add [m/s^2]."""
-        at_rest, still = JointMotion(joint.angle, 0.0, 0.0), [0.0] * len(W)
+        at_rest = JointMotion(joint.angle, 0.0, 0.0)
+        still = [0.0] * len(W)
         terms = zip(
             self.plant.modal_accelerations(joint, W, dW),
             self.plant.modal_accelerations(at_rest, W, still),

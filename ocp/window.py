@@ -36,7 +36,8 @@ def default_window(moves: Iterable[tuple[Plant, float]]) -> DefaultWindow:
     at the target, where these are longer. A plant that has a far faster mode as well has fewer, as
     many as can be resolved.
     """
-    longest, most = EQ_11, math.inf
+    longest = EQ_11
+    most = math.inf
     for plant, target in moves:
         modes = eigenvalues_at_rest(plant, target)
         swinging = [abs(mode) for mode in modes if mode.imag > 0]

@@ -23,7 +23,8 @@ NODES = 3
 
 # Plain floats: a numpy number on the left of a casadi symbol would try to make an array of it.
 _points, _weights = np.polynomial.legendre.leggauss(NODES)
-_nodes, _powers = (_points[:, None] + 1) / 2, np.arange(NODES)
+_nodes = (_points[:, None] + 1) / 2
+_powers = np.arange(NODES)
 _to_quadratic = np.linalg.inv(_nodes**_powers)
 _once = np.vstack([_nodes ** (_powers + 1) / (_powers + 1) @ _to_quadratic, _weights / 2])
 GAUSS_NODES: list[float] = _nodes.ravel().tolist()
@@ -47,7 +48,9 @@ class ModalSystem(NamedTuple):
 
 def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
     """The modes' coefficients along a joint motion, by the plant's equations at unit vectors."""
-    modes, zero, acts = range(plant.modes), [0.0] * plant.modes, _acting(plant, joint)
+    modes = range(plant.modes)
+    zero = [0.0] * plant.modes
+    acts = _acting(plant, joint)
     units = [[float(other == mode) for other in modes] for mode in modes]
     g = list(plant.modal_accelerations(joint, zero, zero))
 
@@ -63,7 +66,8 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
 
 def _acting(plant: Plant, joint: JointMotion) -> list[list[bool]]:
     """Whether mode j is in the equation of mode i at all: else there is no term to compute with."""
-    modes, kind = range(plant.modes), _kind_of(plant)
+    modes = range(plant.modes)
+    kind = _kind_of(plant)
     if isinstance(joint.angle, ca.DM):  # numbers tell by themselves
         return [[True for _ in modes] for _ in modes]
     joint = JointMotion(*(kind.sym("joint") for _ in range(3)))
@@ -116,7 +120,8 @@ class Step:
 
     def end(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> tuple[Modes, Modes]:
         """State after the step, from the state before it and W'' at its nodes."""
-        times, by_mode = [self.h, self.h * self.h], list(zip(*ddW))
+        times = [self.h, self.h * self.h]
+        by_mode = list(zip(*ddW))
         ends = [(dot(_ONCE[NODES], own), dot(_TWICE[NODES], own)) for own in by_mode]
         return (
             [w + dot(times, (v, twice)) for w, v, (_, twice) in zip(W, dW, ends)],
@@ -136,7 +141,9 @@ class Step:
 
     def nodes(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> list[NodeState]:
         """The modes at the nodes, from the state before the step and W'' at its nodes."""
-        h, square, by_mode = self.h, self.h * self.h, list(zip(*ddW))
+        h = self.h
+        square = self.h * self.h
+        by_mode = list(zip(*ddW))
         return [
             NodeState(
                 [w + c * h * v + square * dot(_TWICE[j], own)
@@ -168,14 +175,16 @@ def collocate(system: ModalSystem, h: Expression, forced: bool = False) -> Step:
     right: list[list[Expression]] = []
     for j in range(NODES):
         for i in modes:
-            own, terms = len(matrix), [(k[j], d[j]) for k, d in zip(K[i], D[i])]
+            own = len(matrix)
+            terms = [(k[j], d[j]) for k, d in zip(K[i], D[i])]
             weights = zip(_ONCE[j], _TWICE[j])
             implicit = [_held(h, k, d, once, twice) for once, twice in weights for k, d in terms]
             matrix.append([float(own == at) + entry for at, entry in enumerate(implicit)])
             by_rate = [_negative(d, GAUSS_NODES[j] * h, k) for k, d in terms]
             unit = [float(own == at) for at in range(count)] if forced else []
             right.append([g[i][j], *(-k for k, _ in terms), *by_rate, *unit])
-    rows, size = eliminate(matrix, right), 1 + 2 * len(modes)
+    rows = eliminate(matrix, right)
+    size = 1 + 2 * len(modes)
     return Step(h, [row[:size] for row in rows], len(modes), [row[size:] for row in rows])
 
 

@@ -35,7 +35,8 @@ CVODES = {
     "abstol": 1e-13,
 }
 """Options of every run, but for its steps: see `_options`."""
-_MOST_STEPS, _LEAST_A_SAMPLE = 3_000_000, 1_000
+_MOST_STEPS = 3_000_000
+_LEAST_A_SAMPLE = 1_000
 """Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of 1000,
 five hundred times those of any plan, take 700 from one of 3500 samples to the next."""
 
@@ -75,7 +76,8 @@ def integrate_to(
 ) -> Array:
     """`outputs_of` at these fractions of a motion in one piece, 0 the first of them."""
     with _refusing(path.remedy):
-        shape, names = path.given.shape, tuple(errors)
+        shape = path.given.shape
+        names = tuple(errors)
         along = Compiled(lambda: _along(plant, path.law, shape, fractions, names), silent=True)
         return along(path.given, list(errors.values()), initial)[1]
 
@@ -111,8 +113,10 @@ def _build_figures(
     names: tuple[str, ...],
     definition: Energy,
 ) -> ca.Function:
-    given, grid = ca.MX.sym("p", *shape), Grid(steps)
-    errors, initial = ca.MX.sym("e", len(names)), ca.MX.sym("x", 2 * plant.modes)
+    given = ca.MX.sym("p", *shape)
+    grid = Grid(steps)
+    errors = ca.MX.sym("e", len(names))
+    initial = ca.MX.sym("x", 2 * plant.modes)
     states, outputs = _along(plant, law, shape, grid.samples, names)(given, errors, initial)
     pieces = [ca.reshape(row, -1, shape[1]) for row in ca.vertsplit(outputs)]
     layout = symbolic_sample(plant)
@@ -132,8 +136,10 @@ def _along(
     plant: Plant, law: Law, shape: tuple[int, int], fractions: Array, names: tuple[str, ...]
 ) -> ca.Function:
     """(given, errors, state before) -> states and outputs at these fractions of every piece."""
-    (numbers, pieces), count = shape, len(fractions)
-    given, errors = ca.MX.sym("p", numbers, pieces), ca.MX.sym("e", len(names))
+    numbers, pieces = shape
+    count = len(fractions)
+    given = ca.MX.sym("p", numbers, pieces)
+    errors = ca.MX.sym("e", len(names))
     initial = ca.MX.sym("x", 2 * plant.modes)
     piece = _over_a_piece(plant, law, numbers, fractions, names)
     _, states = piece.mapaccum(pieces)(initial, ca.vertcat(given, ca.repmat(errors, 1, pieces)))
@@ -149,13 +155,18 @@ def _over_a_piece(
     plant: Plant, law: Law, numbers: int, fractions: Array, names: tuple[str, ...]
 ) -> ca.Function:
     """CVODES: (state before, given and errors) -> state after a piece, states along it."""
-    count, state, fraction = numbers + len(names), ca.SX.sym("x", 2 * plant.modes), ca.SX.sym("t")
+    count = numbers + len(names)
+    state = ca.SX.sym("x", 2 * plant.modes)
+    fraction = ca.SX.sym("t")
     both = ca.SX.sym("p", count)
-    given, perturbed = ca.vertsplit(both[:numbers]), _perturbed(plant, names, both[numbers:])
+    given = ca.vertsplit(both[:numbers])
+    perturbed = _perturbed(plant, names, both[numbers:])
     rates = given[-1] * rates_of(perturbed, law(given, fraction, jerk=False), state)
-    problem, times = {"t": fraction, "x": state, "p": both, "ode": rates}, fractions[1:]
+    problem = {"t": fraction, "x": state, "p": both, "ode": rates}
+    times = fractions[1:]
     run = ca.integrator("piece", "cvodes", problem, 0.0, times.tolist(), _options(times))
-    before, both = ca.MX.sym("x", state.numel()), ca.MX.sym("p", count)
+    before = ca.MX.sym("x", state.numel())
+    both = ca.MX.sym("p", count)
     states = ca.horzcat(before, run(x0=before, p=both)["xf"])
     return ca.Function("over", [before, both], [states[:, -1], states])
 

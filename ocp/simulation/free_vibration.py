@@ -22,10 +22,12 @@ _RADIANS_OF_ROWS = 0.02
 """Phase of the fastest mode between the rows: these miss at most 5e-5 of a peak."""
 _RADIANS_OF_PEAKS = 0.06
 """The same between samples of a peak: the cubic between two of them misses 3e-8 of it."""
-_STRIDE, _STRIDES_AT_ONCE = 16, 64
+_STRIDE = 16
+_STRIDES_AT_ONCE = 64
 """Samples of a peak: products of so many rows, and as many states at once."""
 _TIMES_AT_ONCE = 4096
-_SMALL, _TERMS = 0.1, 10
+_SMALL = 0.1
+_TERMS = 10
 """Up to this phase the exponential is its Taylor series of so many terms, to 1e-18."""
 _ANGLES = 49
 """Of the joint, at which the fastest mode of a move is looked for: both ends and between them."""
@@ -65,7 +67,8 @@ class FreeVibration:
     @takes(plant=Plant)
     def __init__(self, plant: Plant, angle: ArrayLike, window: ArrayLike = 0.0) -> None:
         self.window: Array = np.asarray(window, dtype=float)
-        angles, modes = np.atleast_1d(np.asarray(angle, dtype=float)), plant.modes
+        angles = np.atleast_1d(np.asarray(angle, dtype=float))
+        modes = plant.modes
         of_rates = np.zeros((len(angles), 2 * modes, 2 * modes))
         of_rates[:, :modes, modes:] = np.eye(modes)
         at_rest = JointMotion(ca.DM(angles), 0.0, 0.0)
@@ -125,7 +128,8 @@ class FreeVibration:
         outputs = np.concatenate([tips, between[..., None, None] * tips @ matrix], axis=1)
         rows = powers(outputs, step, _STRIDE + 1)
         stride = np.linalg.matrix_power(step, _STRIDE).swapaxes(1, 2)
-        starts, round_ = powers(state, stride, columns), np.linalg.matrix_power(stride, columns)
+        starts = powers(state, stride, columns)
+        round_ = np.linalg.matrix_power(stride, columns)
         most = np.zeros(len(state))
         for _ in range(rounds):
             moved = rows @ starts.swapaxes(1, 2)
@@ -136,7 +140,8 @@ class FreeVibration:
 
     def states(self, state: ArrayLike, times: ArrayLike) -> Array:
         """The states at times since arrival [s], shape (times, 2 * modes), of one vibration."""
-        at, first = np.atleast_1d(np.asarray(times, dtype=float)), np.asarray(state, dtype=float)
+        at = np.atleast_1d(np.asarray(times, dtype=float))
+        first = np.asarray(state, dtype=float)
         parts = np.split(at, range(_TIMES_AT_ONCE, len(at), _TIMES_AT_ONCE))
         return np.concatenate(
             [exponential(self.matrix, part, self._most) @ first for part in parts]
@@ -145,7 +150,8 @@ class FreeVibration:
 
 def after_arrival(task: PointToPoint) -> list[FreeVibration]:
     """The vibration at a task's target, in each of its scenarios."""
-    plants, window = task.perturbed_plants, task.residual_window
+    plants = task.perturbed_plants
+    window = task.residual_window
     return [vibration_of(plant, task.target, window) for plant in plants]
 
 
@@ -172,7 +178,8 @@ def exponential(matrix: Array, times: ArrayLike, fastest: float) -> Array:
     at = matrix * np.asarray(times, dtype=float)[..., None, None]
     radians = fastest * float(np.max(times, initial=0.0))
     halvings = max(0, math.ceil(math.log2(max(radians, _SMALL) / _SMALL)))
-    small, unit = at / 2**halvings, np.eye(matrix.shape[-1])
+    small = at / 2**halvings
+    unit = np.eye(matrix.shape[-1])
     found = np.broadcast_to(unit, small.shape)
     for term in range(_TERMS, 0, -1):
         found = unit + small @ found / term
@@ -185,7 +192,8 @@ def powers(rows: Array, step: Array, count: int) -> Array:
     """The products of rows with the first `count` powers of a matrix, one after another."""
     most = count * rows.shape[-2]
     while rows.shape[-2] < most:
-        rows, step = np.concatenate([rows, rows @ step], axis=-2), step @ step
+        rows = np.concatenate([rows, rows @ step], axis=-2)
+        step = step @ step
     return rows[..., :most, :]
 
 
@@ -202,8 +210,10 @@ def _largest(tips: Array, rates: Array) -> Array:
     most = np.abs(tips).max(axis=(1, 2))
     turns = np.nonzero(rates[:, :-1] * rates[:, 1:] < 0)
     (w, after), (v, v_after) = ((one[:, :-1][turns], one[:, 1:][turns]) for one in (tips, rates))
-    at, rise = v / (v - v_after), after - w  # where the rate, nearly a line, is zero
-    second, third = 3 * rise - 2 * v - v_after, v + v_after - 2 * rise
+    at = v / (v - v_after)
+    rise = after - w  # where the rate, nearly a line, is zero
+    second = 3 * rise - 2 * v - v_after
+    third = v + v_after - 2 * rise
     np.maximum.at(most, turns[0], np.abs(w + at * (v + at * (second + at * third))))
     return most
 
@@ -232,7 +242,8 @@ def _corners(x: Array, y: Array) -> list[int]:
     corners: list[int] = []
     for i, (u, v) in enumerate(points):
         while len(corners) > 1:
-            (a, b), (c, d) = points[corners[-2]], points[corners[-1]]
+            a, b = points[corners[-2]]
+            c, d = points[corners[-1]]
             if (c - a) * (v - b) > (d - b) * (u - a):
                 break
             corners.pop()

@@ -86,7 +86,8 @@ def _parted_energy(
     """Mean of |power| on a step whose work is counted separately between two breaks."""
     work = []
     for x in breaks:
-        u, bump = x - 0.5, x * (1 - x)
+        u = x - 0.5
+        bump = x * (1 - x)
         beyond = bump * (cubic * (bump - 0.2) / 4 - quartic * (u * u * u) / 5)
         work.append(x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3))) + beyond)
     whole = c[0] + c[1] / 2 + c[2] / 3
@@ -110,7 +111,8 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
     to_quartic = np.linalg.inv(x[:, :, None] ** np.arange(5))
     # lists: casadi takes twenty times as long over arrays here
     at = (five % NODES * steps + five // NODES).ravel().tolist(), np.repeat(step, 5).tolist()
-    cubic, quartic = to_quartic[:, 3] + 2 * to_quartic[:, 4], to_quartic[:, 4]
+    cubic = to_quartic[:, 3] + 2 * to_quartic[:, 4]
+    quartic = to_quartic[:, 4]
     return (
         ca.DM.triplet(*at, cubic.ravel().tolist(), len(nodes), steps),
         ca.DM.triplet(*at, quartic.ravel().tolist(), len(nodes), steps),

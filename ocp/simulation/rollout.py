@@ -212,7 +212,8 @@ def march(
     Only this recursion is sequential: everything else is computed for all steps at once. With a
     `width` above 1 a row has as many states side by side, and the constant as many columns a step.
     """
-    (rows, steps), size = shape, len(constant)
+    rows, steps = shape
+    size = len(constant)
     acting = tuple((i, k) for k in range(size) for i in range(size) if not is_zero(columns[k][i]))
     given = [ca.horzsplit(ca.DM.zeros(rows, steps * width) + x, width) for x in constant]
     given += [ca.horzsplit(ca.DM.zeros(rows, steps) + columns[k][i], 1) for i, k in acting]
@@ -231,7 +232,8 @@ def _affine_step(
 ) -> ca.Function:
     """(states, constants, entries of the matrix that are not zero) -> states after."""
     before, given = ([ca.MX.sym("x", rows, width) for _ in range(size)] for _ in range(2))
-    gains, after = [ca.MX.sym("a", rows) for _ in acting], [*given]
+    gains = [ca.MX.sym("a", rows) for _ in acting]
+    after = [*given]
     for (i, k), gain in zip(acting, gains):
         after[i] = after[i] + ca.repmat(gain, 1, width) * before[k]
     return ca.Function("step", [*before, *given, *gains], after)

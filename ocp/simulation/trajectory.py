@@ -105,7 +105,8 @@ def rates_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression
 
 def _modes(plant: Plant, joint: JointMotion, states: Expression) -> tuple[Modes, Modes, Modes]:
     rows = ca.vertsplit(states)
-    W, dW = rows[: plant.modes], rows[plant.modes :]
+    W = rows[: plant.modes]
+    dW = rows[plant.modes :]
     return W, dW, plant.modal_accelerations(joint, W, dW)
 
 

@@ -112,11 +112,13 @@ class Batch:
     @cached_property
     def _speeds(self) -> Array | None:
         """The path's speed at the nodes by each coefficient; None if it is not linear in them."""
-        size, grid = self.simulation.profile.size, self.simulation.grid
+        size = self.simulation.profile.size
+        grid = self.simulation.grid
         path = path_of(self.simulation.profile, grid, False, 1)
         if not path.linear:
             return None
-        table, weights = path.jacobian([0.0] * size, []), np.sqrt(np.tile(grid.lengths, NODES))
+        table = path.jacobian([0.0] * size, [])
+        weights = np.sqrt(np.tile(grid.lengths, NODES))
         speeds = [table.get((1, n), ca.DM.zeros(1, len(weights))).full()[0] for n in range(size)]
         return (weights * np.array(speeds)).T
 
@@ -134,7 +136,8 @@ class Batch:
         errors of its plant, and the power [W] over which |power| is rounded off; the multipliers
         are those of the sum whose Hessian is asked for.
         """
-        rows, states = len(coefficients), 2 * self.simulation.plant.modes
+        rows = len(coefficients)
+        states = 2 * self.simulation.plant.modes
         COST.gradients += rows
         COST.hessians += rows if multipliers is not None else 0
         width = np.zeros(rows) if width is None else width

@@ -71,13 +71,15 @@ def differentiate_energy(
 
     Where the width is positive, |p| is rounded off: the root of p^2 + width^2, at the nodes.
     """
-    steps, share = h.shape[1], energy.absolute
+    steps = h.shape[1]
+    share = energy.absolute
     of_nodes = ca.horzcat(*(w * h for w in GAUSS_WEIGHTS))
     rms = ca.sqrt(ca.sum2(power * power) / power.shape[1]) + _TINY
     of_sharp, zeros = differentiate_absolute(
         ca.horzsplit(power, steps), _LEAST_SLOPE * ca.repmat(rms, 1, steps) * length
     )
-    rounded, is_rounded = ca.sqrt(power * power + width * width), width > 0
+    rounded = ca.sqrt(power * power + width * width)
+    is_rounded = width > 0
     sharp_slope = ca.repmat(h, 1, NODES) * ca.horzcat(*of_sharp)
     slope = ca.if_else(is_rounded, of_nodes * power / (rounded + _TINY), sharp_slope)
     # of |p| itself Euler's theorem: it is homogeneous
@@ -102,7 +104,8 @@ def differentiate_absolute(
     meet, that curvature is without bound, though only there: the slope counts as `least_slope` at
     least.
     """
-    c, basis = quadratic(power), list(zip(*TO_QUADRATIC))
+    c = quadratic(power)
+    basis = list(zip(*TO_QUADRATIC))
     places = quadratic_zeros(c)
     integrals = [[x * (a + x * (b / 2 + x * (d / 3))) for a, b, d in basis] for x in places]
     gradient: list[Expression] = [0.0] * NODES
@@ -140,7 +143,9 @@ class _Differentiated:
         grid = simulation.grid
         steps = len(grid.lengths)
         nodes = NODES * steps
-        self.size, self.modes, self.shape = profile.size, plant.modes, (rows, steps)
+        self.size = profile.size
+        self.modes = plant.modes
+        self.shape = (rows, steps)
         self.path = path_of(profile, grid, ask_for_jerk(quantities), rows)
         self.node = Node(plant, self.path, quantities, names, self.definition, (rows, nodes))
         limited = (self.node.count - self.node.own) * nodes
@@ -149,7 +154,8 @@ class _Differentiated:
         self.a, row, errors, (self.width,), (self.of_energy,) = (
             widen(one, nodes) for one in self.inputs[:5]
         )
-        self.move, self.initial = row[:3], ca.horzsplit(self.inputs[1], 1)[3:]
+        self.move = row[:3]
+        self.initial = ca.horzsplit(self.inputs[1], 1)[3:]
         _, self.length = grid.columns(rows)
         self.h = self.move[2][:, :steps] * self.length
         self.simulate(perturb_plant(plant, dict(zip(names, errors))), errors)
@@ -163,12 +169,15 @@ class _Differentiated:
         constant, self.columns = self.step.transition()
         W, dW, self.arrival = march(constant, self.columns, self.shape, self.initial)
         v = [*y, *_modes_at_nodes(self.step, W, dW)]
-        self.count, self.point = len(v), [*v, *self.move, *errors]
+        self.count = len(v)
+        self.point = [*v, *self.move, *errors]
         self.outputs, self.f_y, self.o_v = self.node.evaluate(self.point)
 
     def differentiate(self) -> None:
         """Forward sensitivities: the same steps for each coefficient, driven by f_y y_a."""
-        y_a, f_y, o_v = self.path_sensitivity(), self.along(self.f_y), self.along(self.o_v)
+        y_a = self.path_sensitivity()
+        f_y = self.along(self.f_y)
+        o_v = self.along(self.o_v)
         along = self.steps_along_coefficients().driven_by(
             [force for j in range(NODES) for force in product(f_y[j], y_a[j], self.modes)]
         )
@@ -179,7 +188,8 @@ class _Differentiated:
 
     def path_sensitivity(self) -> list[list[ca.MX]]:
         """Derivatives of y by one coefficient beside another, of each node a value each."""
-        table, zero = self.path.jacobian(self.a, self.move), ca.DM.zeros(*self.width.shape)
+        table = self.path.jacobian(self.a, self.move)
+        zero = ca.DM.zeros(*self.width.shape)
         by_node = [
             [ca.horzsplit(table.get((k, n), zero), self.shape[1]) for n in range(self.size)]
             for k in range(self.path.count)
@@ -221,7 +231,8 @@ class _Differentiated:
         What a step changes of the Lagrangian is linear in its state and forcing, so that CasADi's
         gradients are coefficients; that by the state drives the multipliers backwards.
         """
-        (rows, steps), m = self.shape, self.modes
+        rows, steps = self.shape
+        m = self.modes
         state = ca.MX.sym("z", rows * 2 * m, steps)
         forcing = ca.MX.sym("f", rows, NODES * m * steps)
         z = ca.vertsplit(state, rows)
@@ -253,7 +264,8 @@ class _Differentiated:
         of_forcing: list[ca.MX],
     ) -> tuple[list[ca.MX], list[ca.MX]]:
         """Sensitivities, and what second derivatives make of them: their product is the Hessian."""
-        steps, pairs = self.shape[1], list[tuple[Any, Any]]()
+        steps = self.shape[1]
+        pairs = list[tuple[Any, Any]]()
         l_vv = self.node.hessian(self.point, [*of_forcing, *of_outputs])
         for v_a, table in zip(self.v_a, self.along(l_vv)):
             turned = product(table, v_a, self.count)
@@ -277,13 +289,15 @@ class _Differentiated:
         by_outputs = self.point_multipliers(of_outputs)[:count]
         by_forcing = product(transpose(self.f_y), of_forcing, count)
         of_y = [x + y for x, y in zip(by_outputs, by_forcing)]
-        y_aa, zero = self.path.hessian(self.a, self.move, of_y), ca.MX.zeros(self.shape[0], 1)
+        y_aa = self.path.hessian(self.a, self.move, of_y)
+        zero = ca.MX.zeros(self.shape[0], 1)
         every = range(self.size)
         return [ca.sum2(y_aa[i, k]) if (i, k) in y_aa else zero for i in every for k in every]
 
     def compile(self) -> ca.Function:
         """All of it as a function."""
-        (rows, steps), own = self.shape, self.node.own
+        rows, steps = self.shape
+        own = self.node.own
         powers = self.outputs[: self.node.powers]
         smooth = self.outputs[self.node.powers : own]
         energies = [  # the smooth part, of all joints, counts with the first

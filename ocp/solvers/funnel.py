@@ -44,12 +44,17 @@ FEASIBLE = 1e-7
 """A row that ends otherwise is feasible with no larger violation."""
 _NEAR = 1e-3
 """A stage ends with no larger violation."""
-_FUNNEL, _DESCENT, _SWITCH = 0.9, 1e-4, 0.1
+_FUNNEL = 0.9
+_DESCENT = 1e-4
+_SWITCH = 0.1
 """Share of the funnel's width to stay within, of the promised descent to reach, and of the squared
 violation that a promise has to exceed for the descent to count."""
-_SMALLEST, _SHRINK, _GROW = 1e-9, (0.1, 0.5), 2.5
+_SMALLEST = 1e-9
+_SHRINK = (0.1, 0.5)
+_GROW = 2.5
 """Least radius of a trust region; limits of the factor by which it shrinks; by which it grows."""
-_PATIENCE, _CREEP = 40, 1e-5
+_PATIENCE = 40
+_CREEP = 1e-5
 """A row creeps where in so many iterations f falls by less than this share."""
 _ALIKE = 1e-6
 """Rows whose f differ by no more than this share agree."""
@@ -151,13 +156,17 @@ class _Run:
         groups: Index | None,
         course: Course,
     ) -> None:
-        self.evaluate, self.x, self.lower, self.upper = evaluate, x.copy(), lower, upper
+        self.evaluate = evaluate
+        self.x = x.copy()
+        self.lower = lower
+        self.upper = upper
         self.linear = linear
         self.groups = groups
         self.widths = np.array(course.widths)
         self.tolerance = course.tolerance
         rows, k = lower.shape
-        self.going, self.stage = np.arange(rows), np.zeros(rows, dtype=int)
+        self.going = np.arange(rows)
+        self.stage = np.zeros(rows, dtype=int)
         self.ends: list[End | None] = [None] * rows
         self.iterations = np.zeros(rows, dtype=int)
         self.count = np.ones(rows, dtype=int)  # of the starts that lead here
@@ -167,7 +176,8 @@ class _Run:
         self.violation = self._violation(self.going, self.model)
         self.funnel = np.maximum(0.1, 1.1 * self.violation)
         self.radius = np.full(rows, course.reach)
-        self.mark, self.marked = self.f.copy(), np.zeros(rows, dtype=int)
+        self.mark = self.f.copy()
+        self.marked = np.zeros(rows, dtype=int)
 
     def width(self, rows: Index) -> Array:
         return self.widths[self.stage[rows]]
@@ -180,7 +190,8 @@ class _Run:
 
     def iterate(self) -> None:
         """One iteration of all rows that are going."""
-        rows, model = self.going, self.model
+        rows = self.going
+        model = self.model
         self.iterations[rows] += 1
         hessian = convexify(model)
         every = np.arange(len(rows))
@@ -219,8 +230,10 @@ class _Run:
         self, which: Index, step: Steps, d: Array, promised: Array, trial: Model
     ) -> Flags:
         """Whether the rows at these places of the model accept their steps d."""
-        rows, model = self.going[which], self.model.take(which)
-        before, after = self.violation[rows], self._violation(rows, trial)
+        rows = self.going[which]
+        model = self.model.take(which)
+        before = self.violation[rows]
+        after = self._violation(rows, trial)
         with np.errstate(invalid="ignore"):
             size = np.abs(model.objective)
             descends = model.objective - trial.objective >= _DESCENT * promised - 1e-13 * size
@@ -248,7 +261,9 @@ class _Run:
         again = np.flatnonzero(~good & missed & np.isfinite(trial.objective))
         if not again.size:
             return
-        rows, d, model = self.going[again], step.d[again], self.model.take(again)
+        rows = self.going[again]
+        d = step.d[again]
+        model = self.model.take(again)
         bent = model._replace(
             equality=trial.equality[again] - _times(model.equality_jacobian, d),
             bounded=trial.bounded[again] - _times(model.bounded_jacobian, d),
@@ -304,7 +319,8 @@ class _Run:
             self._leave(bool(solved.any()))
         stays = np.array([self.ends[row] is None for row in rows])
         if not stays.all():
-            self.going, self.model = rows[stays], self.model.take(stays)
+            self.going = rows[stays]
+            self.model = self.model.take(stays)
 
     def _leave(self, anew: bool) -> None:
         """Leave rows that have met another of their group, or whose others agree."""

@@ -128,15 +128,22 @@ def compile_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bo
 
 def _build_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bool) -> _Program:
     """The program in symbols; whatever else differs between problems is a parameter of it."""
-    modes, quantities = 2 * simulation.plant.modes, simulation.quantities
-    a, p = ca.MX.sym("a", simulation.profile.size), ca.MX.sym("p", form.peak is not None)
-    row, wanted = ca.MX.sym("row", 3 + modes), ca.MX.sym("wanted", modes, len(form.scenarios))
+    modes = 2 * simulation.plant.modes
+    quantities = simulation.quantities
+    a = ca.MX.sym("a", simulation.profile.size)
+    p = ca.MX.sym("p", form.peak is not None)
+    row = ca.MX.sym("row", 3 + modes)
+    wanted = ca.MX.sym("wanted", modes, len(form.scenarios))
     tips = [ca.MX.sym("tips", rows, modes) for rows in form.tip_rows]
-    scale, scales = ca.MX.sym("scale", modes), ca.MX.sym("scales", 1 + len(quantities))
-    sides, weights, width = ca.MX.sym("sides", 2), ca.MX.sym("weights", 2), ca.MX.sym("width")
+    scale = ca.MX.sym("scale", modes)
+    scales = ca.MX.sym("scales", 1 + len(quantities))
+    sides = ca.MX.sym("sides", 2)
+    weights = ca.MX.sym("weights", 2)
+    width = ca.MX.sym("width")
 
     rollouts = [simulation.rollout(a, ca.vertsplit(row), errors) for errors in form.scenarios]
-    nominal, arrival = rollouts[0], ca.horzcat(*(one.arrival.T for one in rollouts))
+    nominal = rollouts[0]
+    arrival = ca.horzcat(*(one.arrival.T for one in rollouts))
     missed = arrival - wanted
     energy = ca.if_else(width > 0, _round_off(simulation.energy, nominal, width), nominal.energy)
     values = {RESIDUAL: ca.vertcat(*(rows @ missed[:, i] for i, rows in enumerate(tips)))}
@@ -186,8 +193,10 @@ class _Run:
     """A problem's numbers: parameters and bounds of its program, and what its solution means."""
 
     def __init__(self, problem: Problem, warm: bool, solver: Ipopt) -> None:
-        self.problem, self.widths = problem, _WIDTHS[-1:] if warm else _WIDTHS
-        (transcription, asked), task = problem, problem.transcription.task
+        self.problem = problem
+        self.widths = _WIDTHS[-1:] if warm else _WIDTHS
+        transcription, asked = problem
+        task = problem.transcription.task
         tips = transcription.tip_rows
         simulation = transcription.batch.simulation
         self.program = compile_program(simulation, _Form.of(problem), solver, warm)
@@ -196,7 +205,8 @@ class _Run:
         self.given = [task.row, wanted.T, *tips]
         energy, missed, peaks = self.figures(transcription.profile.plain)
         swing = np.abs(missed).max(axis=0)
-        self.scale, self.energy = np.where(swing > 0, swing, 1.0), energy or 1.0
+        self.scale = np.where(swing > 0, swing, 1.0)
+        self.energy = energy or 1.0
         self.scales = {name: peak or 1.0 for name, peak in peaks.items()}
         of_energy, of_peak = asked.weights(self.energy, self.scales.get(asked.peak or "", 0.0))
         self.of_energy = of_energy / self.energy
@@ -219,16 +229,21 @@ class _Run:
         """Run IPOPT for one width after another."""
         transcription, asked = self.problem
         box = transcription.profile.box(asked.bound)
-        x, (lower, upper), iterations, stop = np.clip(start, *box), box, 0, None
+        x = np.clip(start, *box)
+        lower, upper = box
+        iterations = 0
+        stop = None
         if asked.peak is not None:
             x = np.append(x, self.figures(x)[-1][asked.peak] / self.scales[asked.peak])
-            lower, upper = np.append(lower, -np.inf), np.append(upper, np.inf)
+            lower = np.append(lower, -np.inf)
+            upper = np.append(upper, np.inf)
         for width in self.widths:
             given = [*self.parameters, [width * self.energy / transcription.task.duration]]
             parameters = np.concatenate([np.ravel(one, order="F") for one in given])
             bounds = (lower, upper), self.bounds()
             stop = run_ipopt(self.program.solver, x, *bounds, parameters)
-            x, iterations = stop.unknowns, iterations + stop.iterations
+            x = stop.unknowns
+            iterations = iterations + stop.iterations
         assert stop is not None
         coefficients = np.clip(x[: transcription.profile.size], *box)
         energy, missed, peaks = self.figures(coefficients)
@@ -253,14 +268,16 @@ class _Run:
             **{one.name: (one.lower / self.scales[one.name], one.upper / self.scales[one.name])
                for one in self.problem.scalarization.limits},
         }  # fmt: skip
-        counts, free = self.program.counts, (-np.inf, np.inf)
+        counts = self.program.counts
+        free = (-np.inf, np.inf)
         each = np.array([bounds.get(name, free) for name in counts])
         lower, upper = np.repeat(each, list(counts.values()), axis=0).T
         return lower, upper
 
     def prices(self, multipliers: Array) -> dict[str, float]:
         """What the least energy falls by if a limit is widened [J by its unit]."""
-        counts, (transcription, asked) = self.program.counts, self.problem
+        counts = self.program.counts
+        transcription, asked = self.problem
         parts = np.split(multipliers, np.cumsum(list(counts.values()))[:-1])
         own = dict(zip(counts, parts))
         bounded = {name: own[name] / self.scales[name] for name in own.keys() & self.scales.keys()}

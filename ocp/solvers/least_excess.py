@@ -87,7 +87,10 @@ class _Linearised:
 
     def _limit_rows(self, problem: Problem, motions: Derivatives) -> None:
         """Values and their Jacobian as shares of the limits' sizes, and both bounds."""
-        values, tables, uppers, lowers = [], [], [], []
+        values = []
+        tables = []
+        uppers = []
+        lowers = []
         for limit in problem.scalarization.limits:
             if limit.name == RESIDUAL or not np.isfinite(limit.size):
                 continue

@@ -35,7 +35,8 @@ def symbols(count: int, shape: Shape) -> list[ca.MX]:
 
 def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
     """First derivatives of a column of expressions, entry by entry."""
-    one, none = ca.MX.ones(*column[0].shape), ca.MX(*column[0].shape)
+    one = ca.MX.ones(*column[0].shape)
+    none = ca.MX(*column[0].shape)
     seeds = [[one if k == other else none for other in range(len(by))] for k in range(len(by))]
     found = ca.forward([*column], [*by], seeds)
     return {
@@ -96,18 +97,25 @@ class Path:
 
     def __init__(self, profile: JointProfile, grid: Grid, jerk: bool, rows: int) -> None:
         times, _ = grid.columns(rows)
-        self._profile, self._jerk, self._times = profile, jerk, ca.horzcat(*times)
+        self._profile = profile
+        self._jerk = jerk
+        self._times = ca.horzcat(*times)
         shape = self._times.shape
-        a, move, at = symbols(profile.size, shape), symbols(3, shape), ca.MX.sym("t", *shape)
+        a = symbols(profile.size, shape)
+        move = symbols(3, shape)
+        at = ca.MX.sym("t", *shape)
         derivatives = profile.at_duration(move[2]).derivatives(a, at)
         y = [ca.MX.zeros(*shape) + value for value in derivatives]
         self._own = len(y)
         if jerk:
             rates = product(jacobian(y, [at]), [ca.MX.ones(*shape)], len(y))
             y += ca.substitute([*y, *rates], [at], [grid.stretch(at)])
-        self.count, inputs, y_a = len(y), [*a, at, *move], jacobian(y, a)
+        self.count = len(y)
+        inputs = [*a, at, *move]
+        y_a = jacobian(y, a)
         self.linear = not ca.depends_on(ca.veccat(*y_a.values()), ca.veccat(*a, *move))
-        self._value, self._jacobian = ca.Function("y", inputs, y), Tables(inputs, y_a)
+        self._value = ca.Function("y", inputs, y)
+        self._jacobian = Tables(inputs, y_a)
         if not self.linear:
             multipliers = symbols(self.count, shape)
             lagrangian = sum(w * x for w, x in zip(multipliers, y))
@@ -141,7 +149,8 @@ class Path:
         joint = self.motion(y, move)
         if not self._jerk:
             return joint
-        there, rates = y[self._own : 2 * self._own], y[2 * self._own :]
+        there = y[self._own : 2 * self._own]
+        rates = y[2 * self._own :]
         (jerk,) = product(jacobian([self.motion(there, move).acceleration], there), rates, 1)
         return joint._replace(jerk=jerk / move[2])
 
@@ -166,19 +175,28 @@ class Node:
         energy: Energy,
         shape: Shape,
     ) -> None:
-        m, zero = plant.modes, ca.MX.zeros(*shape)
-        y, modes, move = symbols(path.count, shape), symbols(3 * m, shape), symbols(3, shape)
+        m = plant.modes
+        zero = ca.MX.zeros(*shape)
+        y = symbols(path.count, shape)
+        modes = symbols(3 * m, shape)
+        move = symbols(3, shape)
         errors = symbols(len(names), shape)
-        W, dW, ddW = modes[:m], modes[m : 2 * m], modes[2 * m :]
-        joint, v = path.motion_with_jerk(y, move), [*y, *modes]
+        W = modes[:m]
+        dW = modes[m : 2 * m]
+        ddW = modes[2 * m :]
+        joint = path.motion_with_jerk(y, move)
+        v = [*y, *modes]
         perturbed = perturb_plant(plant, dict(zip(names, errors)))
         f = [zero + x for x in perturbed.modal_accelerations(joint, W, dW)]
         sample = sample_plant(perturbed, joint, W, dW, ddW)
         smooth = smooth_power(energy, sample)
         own = [*sample.powers, *([] if is_zero(smooth) else [smooth])]
         limited = [x for quantity in quantities for x in quantity.values(sample)]
-        o, inputs = [zero + x for x in (*own, *limited)], [*v, *move, *errors]
-        self.powers, self.own, self.count = len(sample.powers), len(own), len(o)
+        o = [zero + x for x in (*own, *limited)]
+        inputs = [*v, *move, *errors]
+        self.powers = len(sample.powers)
+        self.own = len(own)
+        self.count = len(o)
         self._first = Tables(
             inputs, {(i, 0): x for i, x in enumerate(o)}, jacobian(f, y), jacobian(o, v)
         )

@@ -22,12 +22,15 @@ from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 ENERGY = "energy"
-_LEAST_STEPS, _LIMITED_STEPS, _STEPS_A_TERM = 48, 80, 8
+_LEAST_STEPS = 48
+_LIMITED_STEPS = 80
+_STEPS_A_TERM = 8
 """Steps that resolve a profile: more with more terms, since the power changes sign more often, but
 within the first two; with limits the second, since limits hold only at the nodes."""
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
-STILL, STILL_SHARE = 1e-8, 1e-7
+STILL = 1e-8
+STILL_SHARE = 1e-7
 """A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
 the plain cycloid's residual, whichever is larger."""
 
@@ -50,7 +53,9 @@ class Transcription:
     """
 
     def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
-        self.task, self.profile, self.steps = task, profile, steps
+        self.task = task
+        self.profile = profile
+        self.steps = steps
         self.wanted = np.array(task.final_state)
         self.evaluator = Evaluator(task, profile, steps)
         self.errors = self.evaluator.scenarios
@@ -297,7 +302,9 @@ def price_of_rest(multipliers: NDArray[np.float64], rows: NDArray[np.float64]) -
     for the solver of quadratic ones.
     """
     scale = np.abs(rows).max(axis=0)
-    slope, table = multipliers / scale, rows / scale
-    limit, steepest = np.ones(len(table)), np.abs(slope).max() or 1.0
+    slope = multipliers / scale
+    table = rows / scale
+    limit = np.ones(len(table))
+    steepest = np.abs(slope).max() or 1.0
     state, *_ = daqp.solve(_LITTLE * np.eye(len(slope)), -slope / steepest, table, limit, -limit)
     return float(slope @ np.asarray(state))

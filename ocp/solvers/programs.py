@@ -59,7 +59,9 @@ class _ResidualLimit(_Constraint):
         self.lower = -self.upper
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
-        tips, count, n = self._tips[rows], len(rows), x.shape[1]
+        tips = self._tips[rows]
+        count = len(rows)
+        n = x.shape[1]
         values = np.einsum("rstk,rsk->rst", tips, motions.arrival).reshape(count, self.count)
         return values, (tips @ motions.arrival_jacobian).reshape(count, self.count, n)
 
@@ -73,7 +75,9 @@ class _QuantityLimit(_Constraint):
 
     def __init__(self, place: slice, scenarios: int, bounds: Array, scale: Array) -> None:
         """Where it stands among the limited; bounds (problems, 2) and scales (problems,)."""
-        self._scenarios, self._place, self._scale = slice(0, scenarios), place, scale[:, None]
+        self._scenarios = slice(0, scenarios)
+        self._place = place
+        self._scale = scale[:, None]
         values = scenarios * (place.stop - place.start)
         self.lower, self.upper = (
             np.repeat(side[:, None], values, axis=1) for side in (bounds / self._scale).T
@@ -81,7 +85,8 @@ class _QuantityLimit(_Constraint):
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
         del x
-        count, scale = len(rows), self._scale[rows]
+        count = len(rows)
+        scale = self._scale[rows]
         values = motions.limited[:, self._scenarios, self._place].reshape(count, self.count) / scale
         jacobian = motions.limited_jacobian[:, self._scenarios, self._place]
         return values, jacobian.reshape(*values.shape, jacobian.shape[-1]) / scale[:, :, None]
@@ -95,13 +100,18 @@ class _Peak(_Constraint):
     """A constraint whose peak p is the last unknown: v - p <= 0 <= v + p, as of `Limit.peak`."""
 
     def __init__(self, of: _Constraint, limit: Limit) -> None:
-        self._of, self._limit = of, limit
-        zero, free = np.zeros(of.upper.shape), np.full(of.upper.shape, np.inf)
-        self.upper, self.lower = np.hstack([zero, free]), np.hstack([-free, zero])
+        self._of = of
+        self._limit = limit
+        zero = np.zeros(of.upper.shape)
+        free = np.full(of.upper.shape, np.inf)
+        self.upper = np.hstack([zero, free])
+        self.lower = np.hstack([-free, zero])
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
         values, jacobian = self._of.evaluate(rows, motions, x)
-        one, peak, (below, above) = np.ones((*values.shape, 1)), x[:, -1:], self._limit.sides
+        one = np.ones((*values.shape, 1))
+        peak = x[:, -1:]
+        below, above = self._limit.sides
         by_peak = [
             np.concatenate([jacobian[:, :, :-1], -side * one], axis=2) for side in (above, below)
         ]
@@ -124,7 +134,9 @@ class _Box(_Constraint):
     def __init__(self, lower: Array, upper: Array, axes: Array) -> None:
         """Bounds have shape (problems, profile.size); coefficients are axes @ unknowns."""
         bounded = np.isfinite(np.stack([lower, upper])).any(axis=(0, 1))
-        self.lower, self.upper, self._axes = lower[:, bounded], upper[:, bounded], axes[bounded]
+        self.lower = lower[:, bounded]
+        self.upper = upper[:, bounded]
+        self._axes = axes[bounded]
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
         jacobian = np.repeat(self._axes[None], len(rows), axis=0)
@@ -146,8 +158,11 @@ class Programs:
         self._transcriptions = [problem.transcription for problem in problems]
         self._scalarizations = [problem.scalarization for problem in problems]
         one, asked = problems[0]
-        self._batch, self._size, self._scenarios = one.batch, one.profile.size, len(one.errors)
-        self._peak, self._at_rest = asked.peak, asked.at_rest
+        self._batch = one.batch
+        self._size = one.profile.size
+        self._scenarios = len(one.errors)
+        self._peak = asked.peak
+        self._at_rest = asked.at_rest
         self.unknowns = self._size + (self._peak is not None)
         self.equalities = one.wanted.size if self._at_rest else 0
         self._move = np.array([each.task.row for each in self._transcriptions])
@@ -184,7 +199,8 @@ class Programs:
         # the coefficients by all unknowns
         self._along = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
         box = _Box(self._box[0], self._box[1], self._along)
-        self.linear, self.constraints = box.count, {**constraints, "box": box}
+        self.linear = box.count
+        self.constraints = {**constraints, "box": box}
         stops = np.cumsum([each.count for each in self.constraints.values()]).tolist()
         ends = pairwise([0, *stops])
         self._places = dict(zip(self.constraints, (slice(*one) for one in ends)))
@@ -217,7 +233,8 @@ class Programs:
         """Unknowns of given coefficients, one row each."""
         x: Any = np.linalg.solve(self._axes, coefficients.T).T
         if self._peak is not None:
-            rows, peak = np.arange(len(x)), self.constraints[self._peak]
+            rows = np.arange(len(x))
+            peak = self.constraints[self._peak]
             x = np.column_stack([x, np.zeros(len(x))])
             assert isinstance(peak, _Peak)
             x[:, -1] = peak.largest(rows, self._simulate(rows, x, None, np.zeros(len(x))), x)
@@ -234,8 +251,10 @@ class Programs:
     def evaluate(self, rows: Index, x: Array, multipliers: Multipliers, width: Array) -> Model:
         """The model of rows at their unknowns, as `funnel.Evaluate`."""
         motions = self._simulate(rows, x, multipliers, width)
-        scale, weights = self._arrival[rows], self.weights[rows]
-        of_energy, at = weights[:, 0] / self._energy[rows], slice(0, int(self._at_rest))
+        scale = self._arrival[rows]
+        weights = self.weights[rows]
+        of_energy = weights[:, 0] / self._energy[rows]
+        at = slice(0, int(self._at_rest))
         found = [each.evaluate(rows, motions, x) for each in self.constraints.values()]
         bounded, jacobians = zip(*found)
         objective = of_energy * motions.energy[:, 0]
@@ -260,7 +279,8 @@ class Programs:
         self, rows: Index, x: Array, multipliers: Multipliers | None, width: Array
     ) -> Derivatives:
         """Motions in all scenarios with derivatives by the unknowns; of arrivals what is missed."""
-        scenarios, coefficients = self._scenarios, x[:, : self._size] @ self._axes.T
+        scenarios = self._scenarios
+        coefficients = x[:, : self._size] @ self._axes.T
         weights = None if multipliers is None else self._pull_back(rows, multipliers)
         found = self._batch.derivatives(
             np.repeat(coefficients, scenarios, axis=0),
@@ -282,7 +302,8 @@ class Programs:
 
     def _pull_back(self, rows: Index, multipliers: Multipliers) -> MotionMultipliers:
         """Multipliers of every motion's energy, arrival and limited values."""
-        count, scenarios = len(rows), self._scenarios
+        count = len(rows)
+        scenarios = self._scenarios
         onto = MotionMultipliers(
             np.zeros((count, scenarios)),
             np.zeros((count, scenarios, self._arrival.shape[1])),

@@ -16,11 +16,14 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 _EXACT = {"primal_tol": 1e-11, "dual_tol": 1e-11, "iter_limit": 300}
-_LOOSER, _STIFFER = {"primal_tol": 1e-9, "dual_tol": 1e-9}, 1e-6
+_LOOSER = {"primal_tol": 1e-9, "dual_tol": 1e-9}
+_STIFFER = 1e-6
 """Settings of the quadratic programs, and where these fail."""
 _TIE = 1e-3
 """Curvature that settles which of the steps of least violation is taken: a short one."""
-_EQUALITY, _OPTIMUM, _EMPTY = 5, 1, -1
+_EQUALITY = 5
+_OPTIMUM = 1
+_EMPTY = -1
 """DAQP's mark of one; its words for a solution, and for constraints that cannot be met."""
 
 
@@ -83,8 +86,10 @@ def least_steps(model: Model, lower: Array, upper: Array, radius: Array, linear:
     the same.
     """
     rows, n = model.gradient.shape
-    m, k = model.equality.shape[1], model.bounded.shape[1]
-    above, below = upper - model.bounded, lower - model.bounded
+    m = model.equality.shape[1]
+    k = model.bounded.shape[1]
+    above = upper - model.bounded
+    below = lower - model.bounded
     reach = np.abs(model.bounded_jacobian).sum(axis=2) * radius[:, None]
     near = (above <= reach) | (-below <= reach)
     found = Steps(
@@ -124,7 +129,8 @@ def _least_violation(
     """
     n = table.shape[1]
     give = np.concatenate([np.ones(m), (~hard).astype(float)])
-    above, below = np.isfinite(most), np.isfinite(least)
+    above = np.isfinite(most)
+    below = np.isfinite(least)
     rows = np.block([
         [table[above], -give[above, None]],
         [table[below], give[below, None]],

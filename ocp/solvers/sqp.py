@@ -21,7 +21,8 @@ Prices = dict[str, float]
 _NOTHING = np.zeros(0)
 _NONE = 1e-8
 """A scaled state on arrival that is no larger counts as rest."""
-_REACH, _WARM_REACH = 0.25, 0.02
+_REACH = 0.25
+_WARM_REACH = 0.02
 """How far the unknowns may move at first: minima of the paper's conditions lie within 0.2 of the
 cycloid; and from a neighbouring minimum."""
 _STATUS = {
@@ -92,7 +93,8 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     """The solutions in SI units."""
     coefficients = programs.coefficients(ended.x)
     motions = evaluate([problem.transcription for problem in problems], coefficients)
-    prices, solutions = _shadow_prices(programs, ended, problems), list[Solution]()
+    prices = _shadow_prices(programs, ended, problems)
+    solutions = list[Solution]()
     for i, ((transcription, asked), motion) in enumerate(zip(problems, motions)):
         peaks = transcription.measure(motion, asked.offset).peaks_of(0)
         end = ended.ends[i]
@@ -115,7 +117,8 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
 
 def _shadow_prices(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> list[Prices]:
     """What each least energy falls by if a limit is widened [J by its unit]."""
-    every, prices = programs.split(ended.multipliers.bounded), list[Prices]()
+    every = programs.split(ended.multipliers.bounded)
+    prices = list[Prices]()
     for i, (each, asked) in enumerate(problems):
         bounded = {one.name: every[one.name][i] / each.scale_of(one.name)
                    for one in asked.limits if one.name in every}  # fmt: skip
