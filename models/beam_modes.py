@@ -18,8 +18,6 @@ from quietarm.models.joint_motion import Expression
 _NODES, _WEIGHTS = ((part / 2).tolist() for part in np.polynomial.legendre.leggauss(24))
 _PLACES = [0.5 + node for node in _NODES]
 """Places along the beam, whose weights in integrals are `_WEIGHTS`."""
-_NEWTON = 12
-"""Newton's iterations for a wave number: from its bounds it takes six."""
 
 
 class BeamModes(NamedTuple):
@@ -76,7 +74,9 @@ def _wave_number(index: int, ratio: Expression) -> Expression:
         free = (index + 0.5) * pi
         pinned = (index + 0.25) * pi
         k = pinned + (free - pinned) / (1 + 4 * index * ratio)
-    for _ in range(_NEWTON):  # the equation over cosh k, which keeps its numbers small
+    # Newton's method, which takes six iterations from these bounds, for the equation over cosh k:
+    # that keeps its numbers small.
+    for _ in range(12):
         sine = ca.sin(k)
         cosine = ca.cos(k)
         tangent = ca.tanh(k)

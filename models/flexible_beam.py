@@ -18,8 +18,6 @@ from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.plant import COUNT, Plant, parameter
 
 _MOST_MODES = 6
-_LONGEST = 100.0
-"""A longer beam [m] was typed in other units."""
 _NONE = "none by default"
 _PAPERS = "the paper's plate, section 3.1"
 _modes_of_numbers = lru_cache(maxsize=256)(beam_modes)
@@ -61,7 +59,9 @@ class FlexibleBeam(Plant):
             if value < 0 or (positive and value == 0):
                 least = "more than 0" if positive else "0 or more"
                 raise ValueError(f"{name} is {value:g}; give {least}")
-        if self.length > _LONGEST:
+        # A longer beam [m] was typed in other units.
+        longest = 100.0
+        if self.length > longest:
             raise ValueError(f"length is {self.length:g} m, of no joint; give metres, or 475mm")
         if (count := self.mode_count) not in range(1, _MOST_MODES + 1):
             raise ValueError(

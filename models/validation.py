@@ -42,15 +42,9 @@ _RIGHT = math.pi / 2
 _ANGLES = np.linspace(-2 * math.pi, 2 * math.pi, 241)
 _ANGLES += np.random.default_rng(0).uniform(-0.02, 0.02, 241)  # else sin(60 angle) is 0 at all
 _ANGLES[:5] = _RIGHT * np.array([0, -1, 1, -2, 2])
-_ON_THE_WAY = 101
-"""How many joint angles of a move are looked at."""
 _KINDS = np.array([[1, 1, 1, 1], [1, -1, 1, 1], [1, 0, 1, 1], [1, 1, 0, 1], [1, 0, 0, 0]])
 """Factors of angle, speed, acceleration and modes in the motions at an angle: forwards, backwards,
 at a turning point, at constant speed and, last, at rest."""
-_TINY = 1e-12
-"""What counts as nothing, relative to the values of a moving joint."""
-_SAME = 1e-9
-"""Share by which values may differ from what they should be, by rounding."""
 _EITHER = {"torque": "torques", "tip_displacements": "tips_at"}
 """Methods of which a plant gives one: for one joint or the same tips at any place, or for all."""
 
@@ -83,8 +77,10 @@ def check_passive(plant: Plant) -> None:
 def check_along(plant: Plant, start: float, target: float) -> None:
     """Refuse a move [rad] on which the equations have no value, as a crank's at its dead centre."""
     low, high = sorted((start, target))
-    right = _RIGHT * np.arange(math.ceil(low / _RIGHT), math.floor(high / _RIGHT) + 1)[:_ON_THE_WAY]
-    angles = np.concatenate([[start, target], right, np.linspace(low, high, _ON_THE_WAY)])
+    count = 101
+    quarters = np.arange(math.ceil(low / _RIGHT), math.floor(high / _RIGHT) + 1)
+    right = _RIGHT * quarters[:count]
+    angles = np.concatenate([[start, target], right, np.linspace(low, high, count)])
     motions = _motions(angles, plant.modes)[:, :: len(_KINDS) - 1]  # forwards and at rest
     _check_finite(plant, motions, next(_evaluate(plant, motions)))
 
@@ -301,7 +297,8 @@ def _check_rates(plant: Plant) -> None:
     both = ca.Function("rates", [x], [ca.densify(due), ca.densify(ca.vertcat(*stated))])
     should, are = (table.full() for table in both(random.T))
     largest = np.abs(should).max(axis=1, keepdims=True)
-    for row, column in np.argwhere(~(np.abs(are - should) <= _SAME * np.maximum(largest, 1e-3))):
+    rounding = 1e-9 * np.maximum(largest, 1e-3)
+    for row, column in np.argwhere(~(np.abs(are - should) <= rounding)):
         at = f"at {angles[column]:.4g} of the path"
         what = f"gives a rate of {are[row, column]:.6g} {at} where it is {should[row, column]:.6g}"
         raise _wrong(plant, methods[row], what, "give the time derivatives along the path")
@@ -327,7 +324,9 @@ def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
     """At rest the structure stays at rest, and there are motions that move every tip."""
     still = values[:, -1]
     moving = np.abs(values).max(axis=1)
-    wrong = np.abs(still) > _TINY * moving
+    # What counts as nothing, relative to the values of a moving joint.
+    tiny = 1e-12
+    wrong = np.abs(still) > tiny * moving
     wrong[:, plant.modes] = False  # the torque may hold the joint
     for row, column in np.argwhere(wrong):
         at = f"with the joint at rest at {motions[row, -1, 0]:.4g} rad and W = 0"

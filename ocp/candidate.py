@@ -32,20 +32,6 @@ from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
-_STEPS = 500
-_SMOOTH_STEPS = 250
-"""Least number of steps of the quadrature, in all and where nothing breaks: its nodes are at most a
-thousandth of the move apart, or two. On the paper's conditions energies with 250 are those with
-2000 within 1e-10."""
-_STEPS_OF_A_PART = 2
-"""Of the shortest part between two breaks: there a spline may turn its acceleration."""
-_STEPS_A_RADIAN = 10
-"""Steps for each radian of the plant's fastest mode, where this gives more."""
-_LEAST_STEPS_OF_A_PIECE = 2
-"""So that every piece has the seven samples that `extremes` needs."""
-_RADIANS_A_SAMPLE = 0.003
-"""Phase of the fastest mode between samples after arrival: these miss 1.2e-6 of a peak at most."""
-
 
 @dataclass(frozen=True, eq=False)
 class Candidate(Ranged):
@@ -196,7 +182,10 @@ class Candidate(Ranged):
         times = (begins[:, None] + np.outer(lengths, fractions)).ravel()
         times = np.minimum(times, self.task.duration)  # beyond it by rounding
         vibration = self._vibration
-        samples = math.ceil(vibration.window * vibration.fastest / _RADIANS_A_SAMPLE) + 2
+        # Phase of the fastest mode between samples after arrival: these miss 1.2e-6 of a peak at
+        # most.
+        radians_a_sample = 0.003
+        samples = math.ceil(vibration.window * vibration.fastest / radians_a_sample) + 2
         later = np.linspace(0.0, vibration.window, samples)
         outputs = np.hstack([self._run.outputs, self._after(later)])
         times = np.append(times, self.task.duration + later)
@@ -250,12 +239,23 @@ class Candidate(Ranged):
     @cached_property
     def _grid(self) -> Grid:
         """Steps of the quadrature on every piece."""
-        least = _SMOOTH_STEPS if self.path.smooth else _STEPS
+        # Least number of steps of the quadrature, in all and where nothing breaks: its nodes are
+        # at most a thousandth of the move apart, or two. On the paper's conditions energies with
+        # 250 are those with 2000 within 1e-10.
+        least_steps = 500
+        least_smooth_steps = 250
+        least = least_smooth_steps if self.path.smooth else least_steps
         fastest = fastest_along(self.task.plant, self.task.start, self.task.target)
-        blocks = math.ceil(_STEPS_A_RADIAN * fastest * self.task.duration / least)
+        # Steps for each radian of the plant's fastest mode, where this gives more.
+        steps_a_radian = 10
+        blocks = math.ceil(steps_a_radian * fastest * self.task.duration / least)
         of_a_piece = math.ceil(least * max(1, blocks) / self.path.given.shape[1])
-        of_a_piece = max(of_a_piece, math.ceil(_STEPS_OF_A_PART / self.path.shortest_part))
-        return Grid(max(of_a_piece, _LEAST_STEPS_OF_A_PIECE))
+        # Of the shortest part between two breaks: there a spline may turn its acceleration.
+        steps_of_a_part = 2
+        of_a_piece = max(of_a_piece, math.ceil(steps_of_a_part / self.path.shortest_part))
+        # So that every piece has the seven samples that `extremes` needs.
+        least_of_a_piece = 2
+        return Grid(max(of_a_piece, least_of_a_piece))
 
     @cached_property
     def _samples(self) -> Trajectory:

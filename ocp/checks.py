@@ -106,12 +106,6 @@ def whole(name: str, value: Any, least: int, most: int | None = None, because: s
     return number
 
 
-_ALIKE = 0.55
-"""Share of letters in common from which on a name is asked for."""
-_PART = 3
-"""So many letters of a longer name are enough."""
-
-
 def instance(name: str, value: Any, *kinds: type[T]) -> T:
     """A value that has to be of a class, or of one of several; TypeError that says what to give.
 
@@ -239,8 +233,11 @@ def nearest(name: str, known: Collection[str]) -> str:
 def _nearest(name: str, known: Collection[str]) -> str:
     """The known name that is most like another; an empty one where none is."""
     same = [other for other in known if spelling(other) == spelling(name)]
-    part = [other for other in known if len(name) >= _PART and name.lower() in other.lower()]
-    near = same or part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=_ALIKE)
+    enough = len(name) >= 3  # letters of a longer name
+    part = [entry for entry in known if enough and name.lower() in entry.lower()]
+    # The share of letters in common is such that swapped and missing ones are recognised.
+    alike = difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=0.55)
+    near = same or part or alike
     return near[0] if near else ""
 
 

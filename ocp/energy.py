@@ -137,12 +137,6 @@ class Mix(Energy):
         return "+".join(map("".join, zip(weights, labels)))
 
 
-_ROWS = 7
-"""Candidates at which an energy is looked at."""
-_SAME = 1e-9
-"""Share by which an integrand of one candidate may differ from that among others."""
-
-
 def check_energy(energy: Energy) -> None:
     """Refuse an energy whose integrand is no number, fails on symbols or mixes candidates.
 
@@ -164,11 +158,15 @@ def _check_integrand(energy: Energy) -> None:
     if not isinstance(energy.absolute, Real):
         raise ValueError(f"{name} is {energy.absolute!r}; give a number, 0 or more")
     not_negative(name, energy.absolute)
-    torques, speeds = np.random.default_rng(0).uniform(-2.0, 2.0, (2, _ROWS))
+    # Candidates at which an energy is looked at.
+    rows = 7
+    torques, speeds = np.random.default_rng(0).uniform(-2.0, 2.0, (2, rows))
     together = _integrand(energy, torques, speeds)
     each = zip(torques[:, None], speeds[:, None])
     alone = np.concatenate([_integrand(energy, torque, speed) for torque, speed in each])
-    wrong = ~(np.abs(together - alone) <= _SAME * np.abs(alone).max())  # nan is wrong as well
+    # Share by which an integrand of one candidate may differ from that among others.
+    tolerance = 1e-9
+    wrong = ~(np.abs(together - alone) <= tolerance * np.abs(alone).max())  # nan is wrong as well
     if wrong.any():
         k = int(wrong.argmax())
         raise ValueError(

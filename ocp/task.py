@@ -67,19 +67,12 @@ class ModalState:
             )
 
 
-_SAME = 1e-9
-_NONE = 1e-15
-"""Relative and absolute difference below which numbers are one: 30deg and pi/6."""
-_APART = "plant", "initial", "final", "energy", "uncertainty"
-"""Fields that are told in another way."""
 _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual window": "s"} | {
     f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()
 }
 _TIMES = {"duration": "s", "residual_window": "s"}
 _CLASSES = {"initial": ModalState, "final": ModalState, "uncertainty": Uncertainty}
 """What fields hold that may be None."""
-_MOST = 1e6
-"""Beyond this [rad, m, s] no joint moves, and double precision does not follow."""
 LEAST_DURATION = 1e-6
 LEAST_MOVE = 1e-6
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
@@ -161,9 +154,11 @@ class PointToPoint:
         way = joint_unit("rad", self.plant.joint)
         follows = _is_default(self.residual_window)
         times = {name: unit for name, unit in _TIMES.items() if name == "duration" or not follows}
+        # Beyond this [rad, m, s] no joint moves, and double precision does not follow.
+        most = 1e6
         for name, unit in {"start": way, "target": way, **times}.items():
             check = positive if name in _TIMES else finite
-            number = check(name.replace("_", " "), getattr(self, name), unit, _MOST)
+            number = check(name.replace("_", " "), getattr(self, name), unit, most)
             object.__setattr__(self, name, number)
         for quantity in quantities_of(self.plant.joint, self.plant.tip_unit).values():
             if getattr(self, quantity.limit) is not None:
@@ -206,7 +201,7 @@ class PointToPoint:
             check_contract(plant)
             check_along(plant, self.start, self.target)
         if follows:
-            window = min(default_window([(self.plant, self.target)]), DefaultWindow(_MOST))
+            window = min(default_window([(self.plant, self.target)]), DefaultWindow(most))
             object.__setattr__(self, "residual_window", window)
 
     @property
@@ -355,7 +350,9 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
 
 def _stated(task: PointToPoint) -> dict[str, object]:
     """All that a task has, by words; states are numbers, given or not."""
-    plain = (entry.name for entry in fields(task) if entry.name not in _APART)
+    # Fields that are told in another way.
+    apart = "plant", "initial", "final", "energy", "uncertainty"
+    plain = (entry.name for entry in fields(task) if entry.name not in apart)
     return {
         "plant parameter": task.plant.parameters,
         **{name.replace("_", " "): getattr(task, name) for name in plain},
@@ -381,8 +378,11 @@ def _entries(value: object, name: str = "") -> Iterator[tuple[str, object]]:
 
 
 def _same(one: object, other: object) -> bool:
+    # Relative and absolute difference below which numbers are one: 30deg and pi/6.
+    relative = 1e-9
+    absolute = 1e-15
     if isinstance(one, float | int) and isinstance(other, float | int):
-        return isclose(one, other, rel_tol=_SAME, abs_tol=_NONE)
+        return isclose(one, other, rel_tol=relative, abs_tol=absolute)
     return one == other
 
 

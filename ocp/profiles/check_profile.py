@@ -15,8 +15,6 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 
 _FRACTIONS = np.array([0.0, 1.0, *np.random.default_rng(0).uniform(0.02, 0.98, 15)])
 """Where motions are compared: at both ends, then anywhere between."""
-_TOLERANCE = 1e-6
-"""Share of a quantity's largest value by which it may differ from what it has to be."""
 
 Array = NDArray[np.float64]
 
@@ -103,7 +101,9 @@ def _refuse_wrong(
     name: str, quantity: str, values: Array, expected: Array, what: str, remedy: str
 ) -> None:
     """ValueError where the first values, those at the ends first, are not as expected."""
-    allowed = _TOLERANCE * max(float(np.abs(values).max()), 1e-9)
+    # Share of a quantity's largest value by which it may differ from what it has to be.
+    tolerance = 1e-6
+    allowed = tolerance * max(float(np.abs(values).max()), 1e-9)
     compared = values[: len(expected)]
     wrong = ~(np.abs(compared - expected) <= allowed)  # nan is wrong as well
     if wrong.any():

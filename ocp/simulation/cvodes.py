@@ -35,10 +35,6 @@ CVODES = {
     "abstol": 1e-13,
 }
 """Options of every run, but for its steps: see `_options`."""
-_MOST_STEPS = 3_000_000
-_LEAST_A_SAMPLE = 1_000
-"""Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of 1000,
-five hundred times those of any plan, take 700 from one of 3500 samples to the next."""
 
 Array = NDArray[np.float64]
 
@@ -179,4 +175,8 @@ def _options(times: Array) -> dict[str, str | float | int]:
     """Options of a run of some seconds at most; steps are counted from sample to sample."""
     gaps = np.diff(times, prepend=0.0)
     share = float(gaps.max() / gaps.sum())
-    return {**CVODES, "max_num_steps": max(_LEAST_A_SAMPLE, round(_MOST_STEPS * share))}
+    # Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of
+    # 1000, five hundred times those of any plan, take 700 from one of 3500 samples to the next.
+    most_steps = 3_000_000
+    least_a_sample = 1_000
+    return {**CVODES, "max_num_steps": max(least_a_sample, round(most_steps * share))}

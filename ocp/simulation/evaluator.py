@@ -28,7 +28,6 @@ from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
 Array = NDArray[np.float64]
-_ROWS = (1, 8, 100)
 MOST_STEPS_OF_CSE = 48
 """Common terms are looked for up to these steps: that takes a tenth off a call, but doubles the
 time to build it, and grows with the square of the steps."""
@@ -327,7 +326,7 @@ def simulate(
 
 @lru_cache(maxsize=32)
 def _compiled_values(simulation: Simulation) -> RowFunction:
-    return RowFunction(partial(_build_values, simulation), _ROWS)
+    return RowFunction(partial(_build_values, simulation), sizes=(1, 8, 100))
 
 
 def _build_values(simulation: Simulation, rows: int) -> ca.Function:

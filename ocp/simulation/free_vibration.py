@@ -18,20 +18,6 @@ from quietarm.ocp.window import MOST_RADIANS
 
 Array = NDArray[np.float64]
 
-_RADIANS_OF_ROWS = 0.02
-"""Phase of the fastest mode between the rows: these miss at most 5e-5 of a peak."""
-_RADIANS_OF_PEAKS = 0.06
-"""The same between samples of a peak: the cubic between two of them misses 3e-8 of it."""
-_STRIDE = 16
-_STRIDES_AT_ONCE = 64
-"""Samples of a peak: products of so many rows, and as many states at once."""
-_TIMES_AT_ONCE = 4096
-_SMALL = 0.1
-_TERMS = 10
-"""Up to this phase the exponential is its Taylor series of so many terms, to 1e-18."""
-_ANGLES = 49
-"""Of the joint, at which the fastest mode of a move is looked for: both ends and between them."""
-
 
 class FreeVibration:
     """Free vibration of the modes after arrival; states are W [m], then W' [m/s].
@@ -101,7 +87,8 @@ class FreeVibration:
     @cached_property
     def rows(self) -> Array:
         """F1 is the largest absolute product of a row and a state, to 5e-5; (rows, 2 * modes)."""
-        return self.rows_every(_RADIANS_OF_ROWS)
+        # These miss at most 5e-5 of a peak.
+        return self.rows_every(radians=0.02)
 
     def rows_every(self, radians: float) -> Array:
         """The same at another distance [rad of the fastest mode]; the miss is its square by 8."""
@@ -120,29 +107,35 @@ class FreeVibration:
         given = np.asarray(states, dtype=float)
         state = given.reshape(-1, 1, given.shape[-1])
         matrix, tips = (one.reshape(-1, *one.shape[-2:]) for one in (self.matrix, self.tips))
-        strides = max(1, math.ceil(self._radians / _RADIANS_OF_PEAKS / _STRIDE))
-        rounds = math.ceil(strides / _STRIDES_AT_ONCE)
+        # Phase of the fastest mode between samples: the cubic between two misses 3e-8 of a peak.
+        radians = 0.06
+        # Samples are products of so many rows and so many states.
+        samples = 16
+        states_at_once = 64
+        strides = max(1, math.ceil(self._radians / radians / samples))
+        rounds = math.ceil(strides / states_at_once)
         columns = math.ceil(strides / rounds)
-        between = self.window / (rounds * columns * _STRIDE)
+        between = self.window / (rounds * columns * samples)
         step = exponential(matrix, between, self._most)
         outputs = np.concatenate([tips, between[..., None, None] * tips @ matrix], axis=1)
-        rows = powers(outputs, step, _STRIDE + 1)
-        stride = np.linalg.matrix_power(step, _STRIDE).swapaxes(1, 2)
+        rows = powers(outputs, step, samples + 1)
+        stride = np.linalg.matrix_power(step, samples).swapaxes(1, 2)
         starts = powers(state, stride, columns)
-        round_ = np.linalg.matrix_power(stride, columns)
+        following = np.linalg.matrix_power(stride, columns)
         most = np.zeros(len(state))
         for _ in range(rounds):
             moved = rows @ starts.swapaxes(1, 2)
-            moved = moved.reshape(len(state), _STRIDE + 1, 2, -1)
+            moved = moved.reshape(len(state), samples + 1, 2, -1)
             most = np.maximum(most, _largest(moved[:, :, 0], moved[:, :, 1]))
-            starts = starts @ round_
+            starts = starts @ following
         return most.reshape(given.shape[:-1])
 
     def states(self, state: ArrayLike, times: ArrayLike) -> Array:
         """The states at times since arrival [s], shape (times, 2 * modes), of one vibration."""
         at = np.atleast_1d(np.asarray(times, dtype=float))
         first = np.asarray(state, dtype=float)
-        parts = np.split(at, range(_TIMES_AT_ONCE, len(at), _TIMES_AT_ONCE))
+        at_once = 4096
+        parts = np.split(at, range(at_once, len(at), at_once))
         return np.concatenate(
             [exponential(self.matrix, part, self._most) @ first for part in parts]
         )
@@ -168,7 +161,7 @@ def fastest_along(plant: Plant, start: float, target: float) -> float:
 def fastest_of_moves(plant: Plant, starts: ArrayLike, targets: ArrayLike) -> Array:
     """The same for each of many moves."""
     ends = np.asarray(starts, dtype=float), np.asarray(targets, dtype=float)
-    angles = np.linspace(*ends, _ANGLES)
+    angles = np.linspace(*ends, 49)
     fastest = FreeVibration(plant, angles.ravel()).fastest
     return fastest.reshape(angles.shape).max(axis=0)
 
@@ -177,15 +170,16 @@ def exponential(matrix: Array, times: ArrayLike, fastest: float) -> Array:
     """exp(matrix * time) for each time [s]; fastest is the largest absolute eigenvalue."""
     at = matrix * np.asarray(times, dtype=float)[..., None, None]
     radians = fastest * float(np.max(times, initial=0.0))
-    halvings = max(0, math.ceil(math.log2(max(radians, _SMALL) / _SMALL)))
+    # Up to a phase of 0.1 ten terms of the Taylor series give it to 1e-18.
+    halvings = max(0, math.ceil(math.log2(max(radians, 0.1) / 0.1)))
     small = at / 2**halvings
     unit = np.eye(matrix.shape[-1])
-    found = np.broadcast_to(unit, small.shape)
-    for term in range(_TERMS, 0, -1):
-        found = unit + small @ found / term
+    result = np.broadcast_to(unit, small.shape)
+    for term in range(10, 0, -1):
+        result = unit + small @ result / term
     for _ in range(halvings):
-        found = found @ found
-    return found
+        result = result @ result
+    return result
 
 
 def powers(rows: Array, step: Array, count: int) -> Array:

@@ -17,10 +17,6 @@ from quietarm.ocp.sample import Sample, total
 from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, TO_QUADRATIC
 from quietarm.ocp.simulation.grid import Grid
 
-_TINY = 1e-300
-_RESULTS = (RESIDUAL, "energy")
-"""Figures of a motion that are no peaks of a quantity."""
-
 
 def spent(
     energy: Energy, nodes: Sequence[Sample], h: Expression, unbroken: bool = True
@@ -71,10 +67,11 @@ def quadratic(power: Sequence[Expression]) -> list[Expression]:
 def quadratic_zeros(c: Sequence[Expression]) -> list[Expression]:
     """The zeros of that quadratic on a step, in order; without zeros its extreme's place, twice."""
     discriminant = c[1] * c[1] - 4 * c[0] * c[2]
-    root = ca.sqrt(ca.fmax(discriminant, _TINY))  # at 0 its derivative is infinite
+    tiny = 1e-300
+    root = ca.sqrt(ca.fmax(discriminant, tiny))  # at 0 its derivative is infinite
     half = -(c[1] + ca.copysign(root, c[1])) / 2  # no cancellation
     first, second = (
-        ca.fmin(ca.fmax(zero, 0), 1) for zero in (half / (c[2] + _TINY), c[0] / (half + _TINY))
+        ca.fmin(ca.fmax(zero, 0), 1) for zero in (half / (c[2] + tiny), c[0] / (half + tiny))
     )
     second = first + (discriminant > 0) * (second - first)
     return [ca.fmin(first, second), ca.fmax(first, second)]
@@ -168,7 +165,7 @@ class Motion(Ranged):
 
     def peak(self, name: str) -> float:
         """The residual, or the peak of a quantity, by name: infinite where it is not known."""
-        if name in _RESULTS:
+        if name in (RESIDUAL, "energy"):
             return float(getattr(self, name))
         value = getattr(self, f"peak_{name}", None)
         if value is not None:

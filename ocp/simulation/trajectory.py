@@ -112,10 +112,6 @@ def _modes(plant: Plant, joint: JointMotion, states: Expression) -> tuple[Modes,
 
 _POINTS = 7
 """Samples of the polynomial through an extreme and its neighbours."""
-_NEWTON = 3
-_SMOOTH = 0.02
-"""If the polynomial's two highest terms exceed this share of the range of its samples, the function
-jumps or bends sharply there, and the largest sample is taken instead."""
 
 
 def extremes(times: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -127,8 +123,8 @@ def extremes(times: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[n
     at = np.argmax(signed, axis=1)
     largest = np.take_along_axis(signed, at[:, None], axis=1)[:, 0]
     if len(times) >= _POINTS:
-        found = np.fmax(largest, _between(times, signed, at))
-        largest = np.where(np.isfinite(found), found, largest)
+        between = np.fmax(largest, _between(times, signed, at))
+        largest = np.where(np.isfinite(between), between, largest)
     low, high = np.split(largest, 2)
     return np.column_stack([-low, high])
 
@@ -150,7 +146,7 @@ def _between(
     slope = by_power[:, 1:] * np.arange(1, _POINTS)
     bend = slope[:, 1:] * np.arange(1, _POINTS - 1)
     root = np.zeros_like(centre)
-    for _ in range(_NEWTON):
+    for _ in range(3):  # Newton's method
         powers = _powers(root, _POINTS - 1)
         second = (powers[:, :, :-1] @ bend[:, :, None])[:, 0]
         step = np.zeros_like(root)
@@ -158,11 +154,14 @@ def _between(
         root = np.minimum(np.maximum(root - step, below), above)
     peak = (_powers(root, _POINTS) @ by_power[:, :, None])[:, 0, 0]
     finest = np.abs(by_power[:, -2:]) @ 0.5 ** np.arange(_POINTS - 2, _POINTS)
-    return np.where(finest <= _SMOOTH * np.ptp(values, axis=1), peak, -np.inf)
+    # Where the polynomial's two highest terms are larger, the function jumps or bends sharply.
+    smooth = finest <= 0.02 * np.ptp(values, axis=1)
+    return np.where(smooth, peak, -np.inf)
 
 
 def _powers(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
     """Powers 0 to count - 1 of values of any shape, along one more axis."""
     factors = np.empty((*values.shape, count))
-    factors[..., 0], factors[..., 1:] = 1.0, values[..., None]
+    factors[..., 0] = 1.0
+    factors[..., 1:] = values[..., None]
     return np.multiply.accumulate(factors, axis=-1)

@@ -25,9 +25,6 @@ from quietarm.ocp.solvers.derivatives import compile_derivatives
 from quietarm.ocp.solvers.node import path_of
 
 Array = NDArray[np.float64]
-_ROWS = (1, 4, 8)
-_LEAST_STRETCH = 1e-3
-"""Share of the largest speed below which a direction in a box counts as this share."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +71,8 @@ class Batch:
 
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
-        self._derivatives = RowFunction(partial(compile_derivatives, simulation), _ROWS)
+        build = partial(compile_derivatives, simulation)
+        self._derivatives = RowFunction(build, sizes=(1, 4, 8))
 
     @cached_property
     def _steps(self) -> int:
@@ -104,7 +102,8 @@ class Batch:
         if columns is None:
             return np.eye(self.simulation.profile.size)
         if boxed:
-            least = _LEAST_STRETCH * np.linalg.norm(columns, 2)
+            # No direction counts for less than this share of the fastest.
+            least = 1e-3 * np.linalg.norm(columns, 2)
             columns = np.concatenate([columns, least * np.eye(self.simulation.profile.size)])
         triangle: Any = np.linalg.qr(columns, mode="r")
         return np.linalg.inv(triangle) * triangle[0, 0]

@@ -32,12 +32,6 @@ from quietarm.ocp.simulation.rows import join, widen
 from quietarm.ocp.solvers.node import Node, Table, path_of, product, transpose
 from quietarm.ocp.uncertainty import perturb_plant
 
-_ROWS_OF_CSE = 4
-"""Common terms are looked for where there are more rows than these."""
-_LEAST_SLOPE = 1e-4
-"""Smaller slopes of the power at its zeros count as this share of its root mean square."""
-_TINY = 1e-300
-
 
 class MovingZero(NamedTuple):
     """A zero of the power: its weights of the power at the nodes; twice the inverse of the slope.
@@ -74,14 +68,17 @@ def differentiate_energy(
     steps = h.shape[1]
     share = energy.absolute
     of_nodes = ca.horzcat(*(w * h for w in GAUSS_WEIGHTS))
-    rms = ca.sqrt(ca.sum2(power * power) / power.shape[1]) + _TINY
+    tiny = 1e-300
+    rms = ca.sqrt(ca.sum2(power * power) / power.shape[1]) + tiny
+    # Smaller slopes of the power at its zeros count as this share of its root mean square.
+    least_slope = 1e-4
     of_sharp, zeros = differentiate_absolute(
-        ca.horzsplit(power, steps), _LEAST_SLOPE * ca.repmat(rms, 1, steps) * length
+        ca.horzsplit(power, steps), least_slope * ca.repmat(rms, 1, steps) * length
     )
     rounded = ca.sqrt(power * power + width * width)
     is_rounded = width > 0
     sharp_slope = ca.repmat(h, 1, NODES) * ca.horzcat(*of_sharp)
-    slope = ca.if_else(is_rounded, of_nodes * power / (rounded + _TINY), sharp_slope)
+    slope = ca.if_else(is_rounded, of_nodes * power / (rounded + tiny), sharp_slope)
     # of |p| itself Euler's theorem: it is homogeneous
     absolute = ca.sum2(ca.if_else(is_rounded, of_nodes * rounded, sharp_slope * power))
     factor = ca.if_else(is_rounded[:, :steps], 0.0, share * h)
@@ -89,7 +86,7 @@ def differentiate_energy(
         value=share * absolute + sum(ca.sum2(of_nodes * one) for one in smooth),
         by_power=share * slope,
         by_smooth=of_nodes,
-        by_power_twice=share * of_nodes * width**2 / (rounded**3 + _TINY),
+        by_power_twice=share * of_nodes * width**2 / (rounded**3 + tiny),
         zeros=[zero._replace(bend=factor * zero.bend) for zero in zeros],
     )
 
@@ -324,7 +321,9 @@ class _Differentiated:
             self.path_hessian(of_outputs, of_forcing),
         ]
         outputs = [join(x, rows) for x in found]
-        options = {"cse": rows > _ROWS_OF_CSE and steps <= MOST_STEPS_OF_CSE}
+        # Common terms are looked for where there are more rows than these.
+        rows_of_cse = 4
+        options = {"cse": rows > rows_of_cse and steps <= MOST_STEPS_OF_CSE}
         return ca.Function("derivatives", self.inputs, outputs, options)
 
 

@@ -39,8 +39,6 @@ from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.uncertainty import Scenario
 
 Array = NDArray[np.float64]
-_WIDTHS = (0.5, 0.05, 0.0)
-"""Shares of the plain motion's mean power over which |power| is rounded off, run by run."""
 _OPTIONS = {
     **OPTIONS,
     # Where zeros of the power meet, exact second derivatives are without bound.
@@ -194,7 +192,9 @@ class _Run:
 
     def __init__(self, problem: Problem, warm: bool, solver: Ipopt) -> None:
         self.problem = problem
-        self.widths = _WIDTHS[-1:] if warm else _WIDTHS
+        # Shares of the plain motion's mean power over which |power| is rounded off, run by run.
+        widths = (0.5, 0.05, 0.0)
+        self.widths = widths[-1:] if warm else widths
         transcription, asked = problem
         task = problem.transcription.task
         tips = transcription.tip_rows

@@ -32,19 +32,16 @@ OPTIONS: dict[str, str | int | float] = {
     "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
-_THREADS = "OPENBLAS_NUM_THREADS"
-
-
-_SHOWS_ITERATIONS = 5
-"""IPOPT's print level."""
 
 
 def options_of(solver: Solver) -> dict[str, str | int | float]:
     """IPOPT's options that say what a solver's say."""
+    # IPOPT's print level.
+    shows_iterations = 5
     return {
         "tol": solver.tolerance,
         "max_iter": solver.iterations,
-        "print_level": _SHOWS_ITERATIONS if solver.log else 0,
+        "print_level": shows_iterations if solver.log else 0,
     }
 
 
@@ -71,14 +68,15 @@ def _on_one_thread() -> Iterator[None]:
     Its matrices are small: a second thread shortens nothing, and keeps a core from other processes.
     OpenBLAS reads the variable once, when it is loaded with the first solver.
     """
-    asked = os.environ.get(_THREADS)
-    os.environ[_THREADS] = asked or os.environ.get("OMP_NUM_THREADS", "1")
+    threads = "OPENBLAS_NUM_THREADS"
+    asked = os.environ.get(threads)
+    os.environ[threads] = asked or os.environ.get("OMP_NUM_THREADS", "1")
     try:
         yield
     finally:
-        del os.environ[_THREADS]
+        del os.environ[threads]
         if asked is not None:
-            os.environ[_THREADS] = asked
+            os.environ[threads] = asked
 
 
 Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]

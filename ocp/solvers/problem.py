@@ -22,11 +22,6 @@ from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 ENERGY = "energy"
-_LEAST_STEPS = 48
-_LIMITED_STEPS = 80
-_STEPS_A_TERM = 8
-"""Steps that resolve a profile: more with more terms, since the power changes sign more often, but
-within the first two; with limits the second, since limits hold only at the nodes."""
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
 STILL = 1e-8
@@ -114,9 +109,11 @@ class Transcription:
 
 def first_steps(task: PointToPoint, profile: JointProfile) -> int:
     """Steps of the solver to begin with; ValueError where the move is too long for it."""
-    fewest = _LIMITED_STEPS if task.limits else _LEAST_STEPS
-    least = min(max(fewest, _STEPS_A_TERM * (profile.size - 2)), _LIMITED_STEPS)
-    steps = default_steps(task, least=least)
+    # 8 for each term, since the power then changes sign more often, within 48 and 80; with limits
+    # 80, since these hold only at the nodes.
+    fewest = 80 if task.limits else 48
+    of_profile = 8 * (profile.size - 2)
+    steps = default_steps(task, least=min(max(fewest, of_profile), 80))
     if steps > MOST_SOLVER_STEPS:
         raise ValueError(
             f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
@@ -221,10 +218,6 @@ class Problem(NamedTuple):
         return cls(transcription, Scalarization(limits, bound, minimise))
 
 
-_LITTLE = 1e-8
-"""Curvature that makes a linear program a quadratic one."""
-
-
 @dataclass(frozen=True)
 class Solution:
     """What a solver gives for one start, in SI units and by its own steps.
@@ -306,5 +299,7 @@ def price_of_rest(multipliers: NDArray[np.float64], rows: NDArray[np.float64]) -
     table = rows / scale
     limit = np.ones(len(table))
     steepest = np.abs(slope).max() or 1.0
-    state, *_ = daqp.solve(_LITTLE * np.eye(len(slope)), -slope / steepest, table, limit, -limit)
+    # Curvature that makes a linear program a quadratic one.
+    little = 1e-8
+    state, *_ = daqp.solve(little * np.eye(len(slope)), -slope / steepest, table, limit, -limit)
     return float(slope @ np.asarray(state))

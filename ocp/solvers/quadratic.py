@@ -19,8 +19,6 @@ _EXACT = {"primal_tol": 1e-11, "dual_tol": 1e-11, "iter_limit": 300}
 _LOOSER = {"primal_tol": 1e-9, "dual_tol": 1e-9}
 _STIFFER = 1e-6
 """Settings of the quadratic programs, and where these fail."""
-_TIE = 1e-3
-"""Curvature that settles which of the steps of least violation is taken: a short one."""
 _EQUALITY = 5
 _OPTIMUM = 1
 _EMPTY = -1
@@ -138,7 +136,9 @@ def _least_violation(
     free = np.inf
     upper = np.concatenate([np.full(n, radius), [free], most[above], np.full(below.sum(), free)])
     lower = np.concatenate([np.full(n, -radius), [0.0], np.full(above.sum(), -free), least[below]])
-    hessian = np.diag([*[_TIE] * n, _TIE])
+    # Curvature that settles which of the steps of least violation is taken: a short one.
+    tie = 1e-3
+    hessian = np.diag([*[tie] * n, tie])
     cost = np.append(np.zeros(n), 1.0)
     marks = np.zeros(len(upper), dtype=np.int32)
     d, *_ = daqp.solve(hessian, cost, rows, upper, lower, marks, **_EXACT)

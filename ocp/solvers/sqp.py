@@ -18,13 +18,6 @@ from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
 Prices = dict[str, float]
-_NOTHING = np.zeros(0)
-_NONE = 1e-8
-"""A scaled state on arrival that is no larger counts as rest."""
-_REACH = 0.25
-_WARM_REACH = 0.02
-"""How far the unknowns may move at first: minima of the paper's conditions lie within 0.2 of the
-cycloid; and from a neighbouring minimum."""
 _STATUS = {
     End.SOLVED: SolveStatus.OPTIMAL,
     End.CREEPING: SolveStatus.ACCEPTABLE,
@@ -54,6 +47,14 @@ class Sqp(Solver):
     ) -> list[Solution]:
         """Solve each problem from its start; see `Solver.solve`."""
         solutions: dict[int, Solution] = {}
+        course = Course(
+            widths=SHARP if warm else WIDTHS,
+            # Minima of the paper's conditions lie within 0.2 of the cycloid.
+            reach=0.02 if warm else 0.25,
+            tolerance=self.tolerance,
+            iterations=self.iterations,
+            log=self.log,
+        )
         for places in _group_by_form(problems):
             own = [problems[i] for i in places]
             transcription = own[0].transcription
@@ -68,13 +69,7 @@ class Sqp(Solver):
                 equalities=programs.equalities,
                 linear=programs.linear,
                 groups=None if groups is None else np.array([groups[i] for i in places]),
-                course=Course(
-                    widths=SHARP if warm else WIDTHS,
-                    reach=_WARM_REACH if warm else _REACH,
-                    tolerance=self.tolerance,
-                    iterations=self.iterations,
-                    log=self.log,
-                ),
+                course=course,
             )
             solutions.update(zip(places, _in_units(programs, ended, own)))
         return [solutions[i] for i in range(len(problems))]
@@ -95,10 +90,11 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     motions = evaluate([problem.transcription for problem in problems], coefficients)
     prices = _shadow_prices(programs, ended, problems)
     solutions = list[Solution]()
+    still = 1e-8
     for i, ((transcription, asked), motion) in enumerate(zip(problems, motions)):
         peaks = transcription.measure(motion, asked.offset).peaks_of(0)
         end = ended.ends[i]
-        if asked.at_rest and ended.violation[i] <= _NONE:
+        if asked.at_rest and ended.violation[i] <= still:
             peaks[RESIDUAL] = 0.0
         solutions.append(
             Solution(
@@ -119,12 +115,13 @@ def _shadow_prices(programs: Programs, ended: Ended, problems: Sequence[Problem]
     """What each least energy falls by if a limit is widened [J by its unit]."""
     every = programs.split(ended.multipliers.bounded)
     prices = list[Prices]()
+    nothing = np.zeros(0)
     for i, (each, asked) in enumerate(problems):
         bounded = {one.name: every[one.name][i] / each.scale_of(one.name)
                    for one in asked.limits if one.name in every}  # fmt: skip
         of_energy = programs.weights[i, 0] / each.energy_scale
         of_arrival = (
-            ended.multipliers.equality[i] / each.arrival_scale if asked.at_rest else _NOTHING
+            ended.multipliers.equality[i] / each.arrival_scale if asked.at_rest else nothing
         )
         prices.append(shadow_prices(asked, of_energy, bounded, of_arrival, each.tip_rows[0]))
     return prices
