@@ -47,7 +47,7 @@ def beam_modes(count: int, ratio: Expression, radius: Expression) -> BeamModes:
         waves,
         masses=[ratio + _integral(shape, shape) for shape in values],
         pushes=[end + _integral(arms, shape) for shape in values],
-        stiffenings=[[_integral(tension, one, other) for other in slopes] for one in slopes],
+        stiffenings=[[_integral(tension, first, second) for second in slopes] for first in slopes],
     )
 
 

@@ -122,14 +122,14 @@ class FlexibleBeam(Plant):
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """Second derivatives of what each mode displaces the tip by [m/s^2]."""
         first, *_ = self._modes.wave_numbers
-        found: list[Expression] = []
+        accelerations: list[Expression] = []
         for i, (k, mass, push, stiffening) in enumerate(zip(*self._modes)):
             omega = self.omega * (k / first) ** 2
             by_speed = sum(map(mul, stiffening, W)) / mass - W[i]
             vibration = -2 * self.zeta * omega * dW[i] - omega**2 * W[i]
             pushed = joint.speed**2 * by_speed + self.length * push / mass * joint.acceleration
-            found.append(vibration - pushed)
-        return found
+            accelerations.append(vibration - pushed)
+        return accelerations
 
     def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque [N m]."""

@@ -115,9 +115,9 @@ def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
     _check_rest(plant, motions, values)
     # where the angle does not matter, the first is enough
     still, first = np.unique(slopes[:, -1], axis=0, return_index=True)
-    found = motions[first, -1, 0], still.reshape(len(still), motions.shape[2], -1)
-    at_rest.check_stable(plant.name, *found)
-    return found
+    at_angles = motions[first, -1, 0], still.reshape(len(still), motions.shape[2], -1)
+    at_rest.check_stable(plant.name, *at_angles)
+    return at_angles
 
 
 def _angles_of(plant: Plant) -> Array:
@@ -220,20 +220,20 @@ def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings("error", r"\s*casadi: a numpy function", FutureWarning)
-            found: Any = getattr(plant, method)(*arguments)
+            result: Any = getattr(plant, method)(*arguments)
     except Exception as error:
         inside = traceback.extract_tb(error.__traceback__)[1:2]
-        at = "".join(f" at line {one.lineno} of {Path(one.filename).name}" for one in inside)
+        at = "".join(f" at line {frame.lineno} of {Path(frame.filename).name}" for frame in inside)
         text = str(error).strip().partition("\n")[0]
         of_symbol = "to_double" in text or "truth value" in text  # casadi's own words say little
         why = "a symbol is no number" if of_symbol else f"{type(error).__name__}: {text}"
         raise _wrong(plant, method, f"fails{at} ({why})") from None
-    entries = [found] if method == "torque" else found
+    entries = [result] if method == "torque" else result
     entries = list(entries) if isinstance(entries, list | tuple) else []
     count = plant.modes if method == "modal_accelerations" else max(1, len(entries))
     kinds = JointMotion if method == "joints" else Real | ca.SX | ca.MX | ca.DM
     if len(entries) != count or not all(isinstance(entry, kinds) for entry in entries):
-        raise _wrong(plant, method, f"returns {reprlib.repr(found)}")
+        raise _wrong(plant, method, f"returns {reprlib.repr(result)}")
     return entries
 
 
@@ -249,11 +249,11 @@ def _wrong(plant: Plant, method: str, what: str, remedy: str = "") -> ValueError
 def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
     """Many motions that stand side by side in matrices give what each gives alone."""
     outputs = outputs_of(plant, [ca.DM(column.ravel()) for column in np.moveaxis(motions, 2, 0)])
-    each = np.moveaxis(values, 2, 0).reshape(len(outputs), -1)
-    for method, output, alone in zip(_methods(plant), outputs, each):
-        found = ca.DM(output).full().T
+    by_output = np.moveaxis(values, 2, 0).reshape(len(outputs), -1)
+    for method, output, alone in zip(_methods(plant), outputs, by_output):
+        together = ca.DM(output).full().T
         least = 1e-9 * np.abs(alone).max()
-        if len(found) > 1 or not np.allclose(found, alone, rtol=1e-9, atol=least):
+        if len(together) > 1 or not np.allclose(together, alone, rtol=1e-9, atol=least):
             remedy = "compute entry by entry: no sum, dot, mtimes or max over entries"
             raise _wrong(plant, method, "mixes motions that are side by side in a matrix", remedy)
 

@@ -23,7 +23,7 @@ from quietarm.ocp.limits import JERK, QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion, check_profile
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
+from quietarm.ocp.simulation.cvodes import Integration, integrate, integrate_to
 from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.grid import Grid
@@ -75,7 +75,7 @@ class Candidate(Ranged):
         """The move along a profile; ValueError where coefficients or duration do not fit it."""
         check_profile(profile)
         path = PiecewiseMotion.of_profile(task, profile, coefficients)
-        checked = tuple(path.given[: profile.size, 0].tolist())
+        checked = tuple(path.arguments[: profile.size, 0].tolist())
         check_motion(profile, checked, *task.move)
         return cls(task, path, profile=profile, coefficients=checked)
 
@@ -114,13 +114,13 @@ class Candidate(Ranged):
     def residual(self) -> float:
         """Largest tip displacement after arrival from the wanted free vibration, F1 [m]."""
         missed = self.task.missed(self.arrival)
-        each = zip(self.scenarios, missed)
-        return max(float(one._vibration.peak(state)) for one, state in each)
+        pairs = zip(self.scenarios, missed)
+        return max(float(motion._vibration.peak(state)) for motion, state in pairs)
 
     @cached_property
     def arrival(self) -> NDArray[np.float64]:
         """W (m) and then W' (m/s) on arrival, shape (scenarios, 2 * modes)."""
-        return np.array([one._run.arrival for one in self.scenarios])
+        return np.array([motion._run.arrival for motion in self.scenarios])
 
     @cached_property
     def motion(self) -> Motion:
@@ -162,8 +162,8 @@ class Candidate(Ranged):
     def _range(self, quantity: Quantity) -> tuple[float, float]:
         """Least and largest value in the scenarios that count, between the samples as well."""
         counted = self.scenarios if quantity.in_scenarios else (self,)
-        found = np.concatenate([one._ranges(quantity) for one in counted])
-        return float(found.min()), float(found.max())
+        ranges = np.concatenate([motion._ranges(quantity) for motion in counted])
+        return float(ranges.min()), float(ranges.max())
 
     def _ranges(self, quantity: Quantity) -> NDArray[np.float64]:
         """The same of each of its values on this plant."""
@@ -176,7 +176,7 @@ class Candidate(Ranged):
     @property
     def trajectory(self) -> Trajectory:
         """The move and the residual window; where two pieces meet, two samples of one time."""
-        lengths = self.path.given[-1]
+        lengths = self.path.arguments[-1]
         fractions = self._grid.samples
         begins = np.append(0.0, np.cumsum(lengths[:-1]))
         times = (begins[:, None] + np.outer(lengths, fractions)).ravel()
@@ -212,7 +212,7 @@ class Candidate(Ranged):
                 f"sample times are {reprlib.repr(at.tolist())}; give finite ones that increase "
                 "from 0 or later"
             )
-        if self.path.given.shape[1] > 1:
+        if self.path.arguments.shape[1] > 1:
             raise ValueError("a free motion has samples of its own; take its trajectory")
         moving = at[at <= duration]
         later = at[at > duration] - duration
@@ -224,7 +224,7 @@ class Candidate(Ranged):
         return Trajectory.from_outputs(plant, at, outputs)
 
     @cached_property
-    def _run(self) -> Run:
+    def _run(self) -> Integration:
         _ = self._vibration  # refuses a window that is too long
         task = self.task
         return integrate(
@@ -249,7 +249,7 @@ class Candidate(Ranged):
         # Steps for each radian of the plant's fastest mode, where this gives more.
         steps_a_radian = 10
         blocks = math.ceil(steps_a_radian * fastest * self.task.duration / least)
-        of_a_piece = math.ceil(least * max(1, blocks) / self.path.given.shape[1])
+        of_a_piece = math.ceil(least * max(1, blocks) / self.path.arguments.shape[1])
         # Of the shortest part between two breaks: there a spline may turn its acceleration.
         steps_of_a_part = 2
         of_a_piece = max(of_a_piece, math.ceil(steps_of_a_part / self.path.shortest_part))

@@ -76,10 +76,10 @@ def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.
             "coefficients are a masked array; give plain numbers, as of its filled(value)"
         )
     try:
-        given = np.asarray(coefficients)
-        if given.dtype.kind not in "biufO":
+        table = np.asarray(coefficients)
+        if table.dtype.kind not in "biufO":
             raise TypeError
-        table = given.astype(float)
+        table = table.astype(float)
     except (TypeError, ValueError, OverflowError):
         raise ValueError(
             f"coefficients are {reprlib.repr(coefficients)}; give a row of numbers for each motion"
@@ -140,8 +140,8 @@ def _instead_of(value: Any, kind: type[Any]) -> str:
     meant = value if isinstance(value, type) and issubclass(value, kind) else None
     if isinstance(value, str):
         named = known(kind)
-        complete = {name: each for name, each in named.items() if not _needed(each)}
-        # one that needs nothing works as it stands in the message
+        complete = {name: entry for name, entry in named.items() if not _needed(entry)}
+        # a class that needs nothing works as it stands in the message
         meant = complete.get(_nearest(value, complete)) or named.get(_nearest(value, named))
     if meant is not None:
         return f"an object, as {_construction(meant)}"
@@ -232,11 +232,11 @@ def nearest(name: str, known: Collection[str]) -> str:
 
 def _nearest(name: str, known: Collection[str]) -> str:
     """The known name that is most like another; an empty one where none is."""
-    same = [other for other in known if spelling(other) == spelling(name)]
+    same = [entry for entry in known if spelling(entry) == spelling(name)]
     enough = len(name) >= 3  # letters of a longer name
     part = [entry for entry in known if enough and name.lower() in entry.lower()]
-    # The share of letters in common is such that swapped and missing ones are recognised.
-    alike = difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=0.55)
+    share = 0.55  # of letters in common from which on a name is asked for
+    alike = difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=share)
     near = same or part or alike
     return near[0] if near else ""
 
@@ -251,25 +251,27 @@ def cut(text: str, most: int) -> str:
     """A text of at most so many letters, without its middle where it is longer."""
     if len(text) <= most:
         return text
-    left = (most - 5) // 2
-    return f"{text[:left]} ... {text[-left:]}"
+    head = (most - 5) // 2
+    return f"{text[:head]} ... {text[-head:]}"
 
 
 def printable(text: str) -> str:
     """A text for a terminal, which would obey the control characters of a stranger's file."""
     if text.isprintable():
         return text
-    kept = "\n\t\N{NO-BREAK SPACE}"
-    return "".join(letter if letter.isprintable() or letter in kept else "?" for letter in text)
+    whitespace = "\n\t\N{NO-BREAK SPACE}"
+    return "".join(
+        letter if letter.isprintable() or letter in whitespace else "?" for letter in text
+    )
 
 
 def known(family: type[T]) -> dict[str, type[T]]:
     """The subclasses that have a name of their own, by it, those of the user's own files too."""
-    found: dict[str, type[T]] = {}
+    classes: dict[str, type[T]] = {}
     for kind in family.__subclasses__():
         name = vars(kind).get("name")
-        found |= ({name: kind} if isinstance(name, str) else {}) | known(kind)
-    return found
+        classes |= ({name: kind} if isinstance(name, str) else {}) | known(kind)
+    return classes
 
 
 def install(extra: str) -> str:

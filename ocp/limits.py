@@ -269,7 +269,7 @@ class TorqueSpeedLine:
             for torque, speed in pairs
         )  # fmt: skip
         object.__setattr__(self, "points", points)
-        rises = len(points) > 1 and all(one[1] < other[1] for one, other in pairwise(points))
+        rises = len(points) > 1 and all(first[1] < second[1] for first, second in pairwise(points))
         falls = [fall for _, fall in self._pieces] if rises else [0.0]
         if falls[-1] <= 0 or falls != sorted(falls) or falls[0] < 0:
             example = TorqueSpeedLine(((1.5, 0.0), (0.8, 20.0)), self.joint)
@@ -316,7 +316,9 @@ class Ranged:
 
     def exceeded(self, limits: Iterable[Limit], tolerance: float = 0.0) -> dict[str, float]:
         """What exceeds its limit by more than a share: its peak over the limit, by name."""
-        ratios = {one.name: one.peak_of(self) / one.size for one in limits if one.size > 0}
+        ratios = {
+            limit.name: limit.peak_of(self) / limit.size for limit in limits if limit.size > 0
+        }
         return {name: ratio for name, ratio in ratios.items() if ratio > 1 + tolerance}
 
 

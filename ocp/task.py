@@ -255,8 +255,8 @@ class PointToPoint:
     @cached_property
     def perturbed_plants(self) -> tuple[Plant, ...]:
         """The plant in every scenario, the nominal one first."""
-        others = (dict(zip(self.ranges, one)) for one in self.scenarios[1:])
-        return (self.plant, *(perturb_plant(self.plant, errors) for errors in others))
+        by_name = (dict(zip(self.ranges, errors)) for errors in self.scenarios[1:])
+        return (self.plant, *(perturb_plant(self.plant, errors) for errors in by_name))
 
     @property
     def certain(self) -> PointToPoint:
@@ -271,10 +271,10 @@ class PointToPoint:
     def limits(self) -> tuple[Limit, ...]:
         """The limits that are set."""
         quantities = quantities_of(self.plant.joint, self.plant.tip_unit).values()
-        given = [(one, getattr(self, one.limit)) for one in quantities]
+        stated = [(quantity, getattr(self, quantity.limit)) for quantity in quantities]
         limits = [
-            Limit.within(one, bounds, self.plant.joint_names)
-            for one, bounds in given
+            Limit.within(quantity, bounds, self.plant.joint_names)
+            for quantity, bounds in stated
             if bounds is not None
         ]
         if self.torque_speed is not None:
@@ -292,36 +292,36 @@ def _is_default(window: object) -> bool:
     return window is None or isinstance(window, DefaultWindow)
 
 
-def _check_bounds(quantity: Quantity, given: Any, plant: Plant) -> Bounds:
+def _check_bounds(quantity: Quantity, value: Any, plant: Plant) -> Bounds:
     """A positive number, or a negative and a positive one; or such of joints by name."""
     name = quantity.limit.replace("_", " ")
-    if not isinstance(given, Mapping):
-        return _check_sides(name, quantity.unit, given)
+    if not isinstance(value, Mapping):
+        return _check_sides(name, quantity.unit, value)
     if not quantity.of_joints:
         raise ValueError(
-            f"{name} is {given!r}; give one for all, as {quantity.label}s have no joint"
+            f"{name} is {value!r}; give one for all, as {quantity.label}s have no joint"
         )
-    if not given:
-        raise ValueError(f"{name} is {given!r}; give a limit of one joint or more, by name")
-    for joint in given:
+    if not value:
+        raise ValueError(f"{name} is {value!r}; give a limit of one joint or more, by name")
+    for joint in value:
         if joint not in plant.joint_names:
             raise ValueError(has_no(plant.name, "joint", joint, plant.joint_names))
     return ByJoint(
         {
             joint: _check_sides(f"{name} of {joint}", quantity.unit, bounds)
-            for joint, bounds in given.items()
+            for joint, bounds in value.items()
         }
     )
 
 
-def _check_sides(name: str, unit: str, given: Any) -> Sides:
+def _check_sides(name: str, unit: str, value: Any) -> Sides:
     """A positive number, or a negative and a positive one."""
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        return positive(name, given, unit)
-    bounds: list[Any] = list(given)
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        return positive(name, value, unit)
+    bounds: list[Any] = list(value)
     if len(bounds) != 2:
-        raise ValueError(f"{name} is {given!r}; give one number, or the least and the largest")
-    lower, upper = (finite(name, one, unit) for one in bounds)
+        raise ValueError(f"{name} is {value!r}; give one number, or the least and the largest")
+    lower, upper = (finite(name, side, unit) for side in bounds)
     if not lower < 0 < upper:
         raise ValueError(
             f"{name} is {lower:g} to {upper:g} {unit}; give a negative and a positive number"
@@ -329,22 +329,22 @@ def _check_sides(name: str, unit: str, given: Any) -> Sides:
     return upper if lower == -upper else (lower, upper)
 
 
-@takes(one=PointToPoint, other=PointToPoint)
-def task_difference(one: PointToPoint, other: PointToPoint) -> str:
+@takes(task=PointToPoint, reference=PointToPoint)
+def task_difference(task: PointToPoint, reference: PointToPoint) -> str:
     """Every entry in which two tasks differ, in words; empty where they are the same.
 
     Numbers are the same within rounding; states of rest are the same, given or not.
     """
-    if one.plant.name != other.plant.name:
-        return f"plant is {one.plant.name}, not {other.plant.name}"
-    mine = dict(_entries(_stated(one)))
-    theirs = dict(_entries(_stated(other)))
-    joint = one.plant.joint
+    if task.plant.name != reference.plant.name:
+        return f"plant is {task.plant.name}, not {reference.plant.name}"
+    entries = dict(_entries(_stated(task)))
+    expected = dict(_entries(_stated(reference)))
+    joint = task.plant.joint
     return ", ".join(
-        f"{name} is {_words(name, mine.get(name), joint)}, "
-        f"not {_words(name, theirs.get(name), joint)}"
-        for name in mine | theirs
-        if not _same(mine.get(name), theirs.get(name))
+        f"{name} is {_words(name, entries.get(name), joint)}, "
+        f"not {_words(name, expected.get(name), joint)}"
+        for name in entries | expected
+        if not _same(entries.get(name), expected.get(name))
     )
 
 
@@ -377,13 +377,13 @@ def _entries(value: object, name: str = "") -> Iterator[tuple[str, object]]:
             yield name, value
 
 
-def _same(one: object, other: object) -> bool:
+def _same(first: object, second: object) -> bool:
     # Relative and absolute difference below which numbers are one: 30deg and pi/6.
     relative = 1e-9
     absolute = 1e-15
-    if isinstance(one, float | int) and isinstance(other, float | int):
-        return isclose(one, other, rel_tol=relative, abs_tol=absolute)
-    return one == other
+    if isinstance(first, float | int) and isinstance(second, float | int):
+        return isclose(first, second, rel_tol=relative, abs_tol=absolute)
+    return first == second
 
 
 def _words(name: str, value: object, joint: str) -> str:

@@ -80,7 +80,7 @@ def _refuse_difference(
     profile: JointProfile, motion: _Comparison, start: float, target: float
 ) -> None:
     """ValueError where a motion is not at rest at the ends, or its derivatives are wrong."""
-    refuse = partial(_refuse_wrong, profile.name)
+    refuse = partial(_refuse_wrong, getattr(profile, "name", type(profile).__name__))
     ends = np.array([start, target])
     what = f"its end of a move from {start:.4g} to {target:.4g}"
     remedy = "let angle, or input of a cycloid, go from 0 to 1"

@@ -51,7 +51,7 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
     modes = range(plant.modes)
     zero = [0.0] * plant.modes
     acts = _acting(plant, joint)
-    units = [[float(other == mode) for other in modes] for mode in modes]
+    units = [[float(entry == mode) for entry in modes] for mode in modes]
     g = list(plant.modal_accelerations(joint, zero, zero))
 
     def columns(responses: Sequence[Modes]) -> list[list[Expression]]:
@@ -79,9 +79,9 @@ def _acting(plant: Plant, joint: JointMotion) -> list[list[bool]]:
 def _kind_of(plant: Plant) -> Any:
     """SX where a parameter of the plant, or of one inside it, is such a symbol, else MX."""
     values = list(vars(plant).values())
-    inside = (one for one in values if isinstance(one, Plant))
-    is_sx = any(isinstance(one, ca.SX) for one in values)
-    return ca.SX if is_sx or any(_kind_of(one) is ca.SX for one in inside) else ca.MX
+    inside = (value for value in values if isinstance(value, Plant))
+    is_sx = any(isinstance(value, ca.SX) for value in values)
+    return ca.SX if is_sx or any(_kind_of(value) is ca.SX for value in inside) else ca.MX
 
 
 class NodeState(NamedTuple):
@@ -122,7 +122,7 @@ class Step:
         """State after the step, from the state before it and W'' at its nodes."""
         times = [self.h, self.h * self.h]
         by_mode = list(zip(*ddW))
-        ends = [(dot(_ONCE[NODES], own), dot(_TWICE[NODES], own)) for own in by_mode]
+        ends = [(dot(_ONCE[NODES], at_nodes), dot(_TWICE[NODES], at_nodes)) for at_nodes in by_mode]
         return (
             [w + dot(times, (v, twice)) for w, v, (_, twice) in zip(W, dW, ends)],
             [v + dot(times[:1], (once,)) for v, (once, _) in zip(dW, ends)],
@@ -146,9 +146,9 @@ class Step:
         by_mode = list(zip(*ddW))
         return [
             NodeState(
-                [w + c * h * v + square * dot(_TWICE[j], own)
-                 for w, v, own in zip(W, dW, by_mode)],
-                [v + h * dot(_ONCE[j], own) for v, own in zip(dW, by_mode)],
+                [w + c * h * v + square * dot(_TWICE[j], at_nodes)
+                 for w, v, at_nodes in zip(W, dW, by_mode)],
+                [v + h * dot(_ONCE[j], at_nodes) for v, at_nodes in zip(dW, by_mode)],
                 list(ddW[j]),
             )
             for j, c in enumerate(GAUSS_NODES)
@@ -175,13 +175,13 @@ def collocate(system: ModalSystem, h: Expression, forced: bool = False) -> Step:
     right: list[list[Expression]] = []
     for j in range(NODES):
         for i in modes:
-            own = len(matrix)
+            place = len(matrix)
             terms = [(k[j], d[j]) for k, d in zip(K[i], D[i])]
             weights = zip(_ONCE[j], _TWICE[j])
             implicit = [_held(h, k, d, once, twice) for once, twice in weights for k, d in terms]
-            matrix.append([float(own == at) + entry for at, entry in enumerate(implicit)])
+            matrix.append([float(place == at) + entry for at, entry in enumerate(implicit)])
             by_rate = [_negative(d, GAUSS_NODES[j] * h, k) for k, d in terms]
-            unit = [float(own == at) for at in range(count)] if forced else []
+            unit = [float(place == at) for at in range(count)] if forced else []
             right.append([g[i][j], *(-k for k, _ in terms), *by_rate, *unit])
     rows = eliminate(matrix, right)
     size = 1 + 2 * len(modes)
@@ -233,6 +233,8 @@ def eliminate(
     return right
 
 
-def _less(row: list[Expression], factor: Expression, other: list[Expression]) -> list[Expression]:
+def _less(
+    row: list[Expression], factor: Expression, subtracted: list[Expression]
+) -> list[Expression]:
     """The row less a multiple of another; entries that are nothing cost nothing."""
-    return [a if is_zero(b) else a - factor * b for a, b in zip(row, other)]
+    return [a if is_zero(b) else a - factor * b for a, b in zip(row, subtracted)]

@@ -39,7 +39,7 @@ CVODES = {
 Array = NDArray[np.float64]
 
 
-class Run(NamedTuple):
+class Integration(NamedTuple):
     """`outputs_of` every piece at its ends and nodes, a column each; state on arrival; work [J]."""
 
     outputs: Array
@@ -55,12 +55,12 @@ def integrate(
     initial: Sequence[float],
     steps: int,
     energy: Energy,
-) -> Run:
+) -> Integration:
     """Follow a motion on a plant with errors, by so many steps of the quadrature on a piece."""
     with COST.timed("checks"), _refusing(path.remedy):
-        figures = _figures(plant, path.law, path.given.shape, steps, tuple(errors), energy)
-        outputs, arrival, spent, net_work = figures(path.given, list(errors.values()), initial)
-    return Run(outputs, arrival[:, 0], spent.item(), net_work.item())
+        figures = _figures(plant, path.law, path.arguments.shape, steps, tuple(errors), energy)
+        outputs, arrival, spent, net_work = figures(path.arguments, list(errors.values()), initial)
+    return Integration(outputs, arrival[:, 0], spent.item(), net_work.item())
 
 
 def integrate_to(
@@ -72,10 +72,10 @@ def integrate_to(
 ) -> Array:
     """`outputs_of` at these fractions of a motion in one piece, 0 the first of them."""
     with _refusing(path.remedy):
-        shape = path.given.shape
+        shape = path.arguments.shape
         names = tuple(errors)
         along = Compiled(lambda: _along(plant, path.law, shape, fractions, names), silent=True)
-        return along(path.given, list(errors.values()), initial)[1]
+        return along(path.arguments, list(errors.values()), initial)[1]
 
 
 @contextmanager
@@ -96,7 +96,7 @@ def _figures(
     names: tuple[str, ...],
     definition: Energy,
 ) -> Compiled:
-    """(given, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
+    """(arguments, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
     build = partial(_build_figures, plant, law, shape, steps, names, definition)
     return Compiled(build, silent=True)  # the error of `_refusing` is enough
 
@@ -109,55 +109,56 @@ def _build_figures(
     names: tuple[str, ...],
     definition: Energy,
 ) -> ca.Function:
-    given = ca.MX.sym("p", *shape)
+    arguments = ca.MX.sym("p", *shape)
     grid = Grid(steps)
     errors = ca.MX.sym("e", len(names))
     initial = ca.MX.sym("x", 2 * plant.modes)
-    states, outputs = _along(plant, law, shape, grid.samples, names)(given, errors, initial)
+    states, outputs = _along(plant, law, shape, grid.samples, names)(arguments, errors, initial)
     pieces = [ca.reshape(row, -1, shape[1]) for row in ca.vertsplit(outputs)]
     layout = symbolic_sample(plant)
     nodes = [
         layout.with_values(row[1 + node : -1 : NODES, :].T for row in pieces)
         for node in range(NODES)
     ]
-    h = given[-1, :].T @ grid.columns()[1]
+    h = arguments[-1, :].T @ grid.columns()[1]
     energy = spent(definition, nodes, h)
     net_work = integrated([sample.power for sample in nodes], h)
     figures = [outputs, states[:, -1], ca.sum1(energy), ca.sum1(net_work)]
     dense = [ca.densify(figure) for figure in figures]  # a plant's output may be zero throughout
-    return ca.Function("figures", [given, errors, initial], dense)
+    return ca.Function("figures", [arguments, errors, initial], dense)
 
 
 def _along(
     plant: Plant, law: Law, shape: tuple[int, int], fractions: Array, names: tuple[str, ...]
 ) -> ca.Function:
-    """(given, errors, state before) -> states and outputs at these fractions of every piece."""
+    """(arguments, errors, state before) -> states and outputs at these fractions of every piece."""
     numbers, pieces = shape
     count = len(fractions)
-    given = ca.MX.sym("p", numbers, pieces)
+    arguments = ca.MX.sym("p", numbers, pieces)
     errors = ca.MX.sym("e", len(names))
     initial = ca.MX.sym("x", 2 * plant.modes)
     piece = _over_a_piece(plant, law, numbers, fractions, names)
-    _, states = piece.mapaccum(pieces)(initial, ca.vertcat(given, ca.repmat(errors, 1, pieces)))
+    _, states = piece.mapaccum(pieces)(initial, ca.vertcat(arguments, ca.repmat(errors, 1, pieces)))
     at_samples = [
-        row if pieces == 1 else ca.vec(ca.repmat(row, count, 1)).T for row in ca.vertsplit(given)
+        row if pieces == 1 else ca.vec(ca.repmat(row, count, 1)).T
+        for row in ca.vertsplit(arguments)
     ]
     joint = law(at_samples, ca.DM(np.tile(fractions, pieces)).T, jerk=True)
     outputs = outputs_of(_perturbed(plant, names, errors), joint, states)
-    return ca.Function("along", [given, errors, initial], [states, ca.densify(outputs)])
+    return ca.Function("along", [arguments, errors, initial], [states, ca.densify(outputs)])
 
 
 def _over_a_piece(
     plant: Plant, law: Law, numbers: int, fractions: Array, names: tuple[str, ...]
 ) -> ca.Function:
-    """CVODES: (state before, given and errors) -> state after a piece, states along it."""
+    """CVODES: (state before, arguments and errors) -> state after a piece, states along it."""
     count = numbers + len(names)
     state = ca.SX.sym("x", 2 * plant.modes)
     fraction = ca.SX.sym("t")
     both = ca.SX.sym("p", count)
-    given = ca.vertsplit(both[:numbers])
+    arguments = ca.vertsplit(both[:numbers])
     perturbed = _perturbed(plant, names, both[numbers:])
-    rates = given[-1] * rates_of(perturbed, law(given, fraction, jerk=False), state)
+    rates = arguments[-1] * rates_of(perturbed, law(arguments, fraction, jerk=False), state)
     problem = {"t": fraction, "x": state, "p": both, "ode": rates}
     times = fractions[1:]
     run = ca.integrator("piece", "cvodes", problem, 0.0, times.tolist(), _options(times))

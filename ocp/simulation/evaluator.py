@@ -285,7 +285,7 @@ class Evaluation:
         """The same without the residual."""
         peaks: dict[str, Array] = {}
         for limit in self.evaluator.tasks[0].limits:
-            sides = [own.sides for own in _limits_of(self.evaluator.tasks, limit.name)]
+            sides = [entry.sides for entry in _limits_of(self.evaluator.tasks, limit.name)]
             below, above = np.array(sides).T[..., None]
             least, largest = np.moveaxis(self.ranges[limit.name], -1, 0)
             by_scenario = np.maximum(least / below, largest / above)

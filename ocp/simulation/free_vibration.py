@@ -65,8 +65,8 @@ class FreeVibration:
         units = np.eye(modes).tolist()
         by_mode = [list(plant.tips_at(at_rest, unit)) for unit in units]
         of_tips[:, :, :modes] = _stacked(by_mode, len(angles)).transpose(0, 2, 1)
-        one = np.ndim(angle) == 0
-        self.matrix, self.tips = (of_rates[0], of_tips[0]) if one else (of_rates, of_tips)
+        single = np.ndim(angle) == 0
+        self.matrix, self.tips = (of_rates[0], of_tips[0]) if single else (of_rates, of_tips)
         self._eigenvalues = np.linalg.eigvals(self.matrix).astype(complex)
         self.fastest: Array = np.abs(self._eigenvalues).max(axis=-1)
         self._most = float(self.fastest.max())
@@ -81,8 +81,8 @@ class FreeVibration:
     @property
     def modes(self) -> list[tuple[float, float]]:
         """Undamped frequency [rad/s] and damping ratio of each oscillating mode, slowest first."""
-        swinging = [complex(one) for one in self._eigenvalues if one.imag > 0]
-        return [(abs(one), -one.real / abs(one)) for one in sorted(swinging, key=abs)]
+        swinging = [complex(value) for value in self._eigenvalues if value.imag > 0]
+        return [(abs(value), -value.real / abs(value)) for value in sorted(swinging, key=abs)]
 
     @cached_property
     def rows(self) -> Array:
@@ -104,9 +104,11 @@ class FreeVibration:
         States on arrival have shape (2 * modes,) or (n, 2 * modes), many of one vibration or one of
         each; the peaks () or (n,), between the samples where a tip turns back there.
         """
-        given = np.asarray(states, dtype=float)
-        state = given.reshape(-1, 1, given.shape[-1])
-        matrix, tips = (one.reshape(-1, *one.shape[-2:]) for one in (self.matrix, self.tips))
+        rows_of_states = np.asarray(states, dtype=float)
+        state = rows_of_states.reshape(-1, 1, rows_of_states.shape[-1])
+        matrix, tips = (
+            matrices.reshape(-1, *matrices.shape[-2:]) for matrices in (self.matrix, self.tips)
+        )
         # Phase of the fastest mode between samples: the cubic between two misses 3e-8 of a peak.
         radians = 0.06
         # Samples are products of so many rows and so many states.
@@ -128,7 +130,7 @@ class FreeVibration:
             moved = moved.reshape(len(state), samples + 1, 2, -1)
             most = np.maximum(most, _largest(moved[:, :, 0], moved[:, :, 1]))
             starts = starts @ following
-        return most.reshape(given.shape[:-1])
+        return most.reshape(rows_of_states.shape[:-1])
 
     def states(self, state: ArrayLike, times: ArrayLike) -> Array:
         """The states at times since arrival [s], shape (times, 2 * modes), of one vibration."""
@@ -203,7 +205,10 @@ def _largest(tips: Array, rates: Array) -> Array:
     """Largest absolute value of samples (n, samples, tips), and of the cubics between them."""
     most = np.abs(tips).max(axis=(1, 2))
     turns = np.nonzero(rates[:, :-1] * rates[:, 1:] < 0)
-    (w, after), (v, v_after) = ((one[:, :-1][turns], one[:, 1:][turns]) for one in (tips, rates))
+    w = tips[:, :-1][turns]
+    after = tips[:, 1:][turns]
+    v = rates[:, :-1][turns]
+    v_after = rates[:, 1:][turns]
     at = v / (v - v_after)
     rise = after - w  # where the rate, nearly a line, is zero
     second = 3 * rise - 2 * v - v_after
@@ -217,14 +222,14 @@ def extreme_rows(rows: Array, tips: int) -> Array:
 
     A tip that one mode moves turns in a plane, and dies away: corners of half a turn suffice.
     """
-    kept: list[Array] = []
+    parts: list[Array] = []
     for tip in range(tips):
-        own = rows[tip::tips]
-        turning, spread, _ = np.linalg.svd(own, full_matrices=False)
+        of_tip = rows[tip::tips]
+        turning, spread, _ = np.linalg.svd(of_tip, full_matrices=False)
         if spread[2:].max(initial=0.0) <= 1e-12 * spread[0]:
-            own = own[_corners(turning[:, 0], turning[:, 1])]
-        kept.append(own)
-    return np.vstack(kept)
+            of_tip = of_tip[_corners(turning[:, 0], turning[:, 1])]
+        parts.append(of_tip)
+    return np.vstack(parts)
 
 
 def _corners(x: Array, y: Array) -> list[int]:

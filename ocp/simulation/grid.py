@@ -83,7 +83,7 @@ class Grid:
 def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
     """Steps for the profile (`least`), and 2 a radian of the fastest mode of all scenarios."""
     plants = task.perturbed_plants
-    radians = task.duration * max(fastest_along(one, task.start, task.target) for one in plants)
+    radians = task.duration * max(fastest_along(plant, task.start, task.target) for plant in plants)
     if 2 * radians > MOST_STEPS:
         raise ValueError(
             f"duration {task.duration:g} s is {radians:.3g} radians of the plant's fastest mode; "

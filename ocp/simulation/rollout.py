@@ -215,11 +215,11 @@ def march(
     rows, steps = shape
     size = len(constant)
     acting = tuple((i, k) for k in range(size) for i in range(size) if not is_zero(columns[k][i]))
-    given = [ca.horzsplit(ca.DM.zeros(rows, steps * width) + x, width) for x in constant]
-    given += [ca.horzsplit(ca.DM.zeros(rows, steps) + columns[k][i], 1) for i, k in acting]
+    by_step = [ca.horzsplit(ca.DM.zeros(rows, steps * width) + x, width) for x in constant]
+    by_step += [ca.horzsplit(ca.DM.zeros(rows, steps) + columns[k][i], 1) for i, k in acting]
     affine = _affine_step(rows, width, size, acting)
     states = [[ca.DM.zeros(rows, width) + x for x in initial or [0.0] * size]]
-    for at_step in zip(*given):
+    for at_step in zip(*by_step):
         states.append(affine.call([*states[-1], *at_step], True, False))  # inline
     *before, arrival = states
     by_mode = [ca.horzcat(*state) for state in zip(*before)]
@@ -231,9 +231,9 @@ def _affine_step(
     rows: int, width: int, size: int, acting: tuple[tuple[int, int], ...]
 ) -> ca.Function:
     """(states, constants, entries of the matrix that are not zero) -> states after."""
-    before, given = ([ca.MX.sym("x", rows, width) for _ in range(size)] for _ in range(2))
+    before, constants = ([ca.MX.sym("x", rows, width) for _ in range(size)] for _ in range(2))
     gains = [ca.MX.sym("a", rows) for _ in acting]
-    after = [*given]
+    after = [*constants]
     for (i, k), gain in zip(acting, gains):
         after[i] = after[i] + ca.repmat(gain, 1, width) * before[k]
-    return ca.Function("step", [*before, *given, *gains], after)
+    return ca.Function("step", [*before, *constants, *gains], after)

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Multipliers:
+class MotionMultipliers:
     """Weights of the sum of energy, arrival and limited values whose Hessian is asked for.
 
     Shapes are those of `Values`; or with an axis of scenarios after the first.
@@ -127,7 +127,7 @@ class Batch:
         move: Array,
         errors: Array,
         width: Array | None = None,
-        multipliers: Multipliers | None = None,
+        multipliers: MotionMultipliers | None = None,
     ) -> Derivatives:
         """Evaluate candidates with first derivatives, and second ones of a weighted sum.
 
@@ -140,11 +140,20 @@ class Batch:
         COST.gradients += rows
         COST.hessians += rows if multipliers is not None else 0
         width = np.zeros(rows) if width is None else width
-        weights = multipliers or Multipliers(
-            np.zeros(rows), np.zeros((rows, states)), np.zeros((rows, self.limited))
+        weights = multipliers or MotionMultipliers(
+            energy=np.zeros(rows),
+            arrival=np.zeros((rows, states)),
+            limited=np.zeros((rows, self.limited)),
         )
-        inputs = [coefficients, move, errors, width[:, None], weights.energy[:, None],
-                  weights.arrival, weights.limited]  # fmt: skip
+        inputs = [
+            coefficients,
+            move,
+            errors,
+            width[:, None],
+            weights.energy[:, None],
+            weights.arrival,
+            weights.limited,
+        ]
         unpack = self._unpack_first if multipliers is None else self._unpack
         return Derivatives(*self._derivatives(inputs, unpack))
 
@@ -155,8 +164,9 @@ class Batch:
     def _unpack(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
         """What `Derivatives` holds; a column of the outputs is a candidate."""
         size = self.simulation.profile.size
-        left, right = (self._by_coefficient(factor, rows) for factor in outputs[6:8])
-        hessian = left @ right.swapaxes(1, 2)
+        sensitivities = self._by_coefficient(outputs[6], rows)
+        curved = self._by_coefficient(outputs[7], rows)
+        hessian = sensitivities @ curved.swapaxes(1, 2)
         if outputs[8].size:
             hessian += outputs[8][:, :rows].T.reshape(rows, size, size)
         return (*self._unpack_first(outputs, rows)[:-1], hessian)
@@ -167,15 +177,20 @@ class Batch:
         energy, arrival, limited, gradient, arrival_jacobian = copy_rows(outputs[:5], rows)
         limited_jacobian = self._by_coefficient(outputs[5], rows)
         return (
-            energy[:, 0], arrival, limited, gradient, arrival_jacobian.reshape(rows, -1, size),
-            limited_jacobian.swapaxes(1, 2), np.zeros((rows, size, size)),
-        )  # fmt: skip
+            energy[:, 0],
+            arrival,
+            limited,
+            gradient,
+            arrival_jacobian.reshape(rows, -1, size),
+            limited_jacobian.swapaxes(1, 2),
+            np.zeros((rows, size, size)),
+        )
 
     def _by_coefficient(self, output: Array, rows: int) -> Array:
-        """From (value, coefficient, step; candidate) to (candidate; coefficient; others)."""
+        """From (value, coefficient, step; candidate) to (candidate; coefficient; value, step)."""
         size = self.simulation.profile.size
-        apart = output.reshape(-1, size, self._steps, output.shape[1])[..., :rows]
-        return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
+        by_axis = output.reshape(-1, size, self._steps, output.shape[1])[..., :rows]
+        return by_axis.transpose(3, 1, 0, 2).reshape(rows, size, -1)
 
 
 batch_of = lru_cache(maxsize=32)(Batch)

@@ -68,7 +68,7 @@ def differentiate_energy(
     steps = h.shape[1]
     share = energy.absolute
     of_nodes = ca.horzcat(*(w * h for w in GAUSS_WEIGHTS))
-    tiny = 1e-300
+    tiny = 1e-300  # where the power is zero
     rms = ca.sqrt(ca.sum2(power * power) / power.shape[1]) + tiny
     # Smaller slopes of the power at its zeros count as this share of its root mean square.
     least_slope = 1e-4
@@ -83,7 +83,7 @@ def differentiate_energy(
     absolute = ca.sum2(ca.if_else(is_rounded, of_nodes * rounded, sharp_slope * power))
     factor = ca.if_else(is_rounded[:, :steps], 0.0, share * h)
     return EnergyDerivatives(
-        value=share * absolute + sum(ca.sum2(of_nodes * one) for one in smooth),
+        value=share * absolute + sum(ca.sum2(of_nodes * value) for value in smooth),
         by_power=share * slope,
         by_smooth=of_nodes,
         by_power_twice=share * of_nodes * width**2 / (rounded**3 + tiny),
@@ -136,20 +136,23 @@ class _Differentiated:
     """The expressions of `compile_derivatives`, from the motion to the Hessian."""
 
     def __init__(self, simulation: Simulation, rows: int) -> None:
-        plant, profile, _, quantities, names, self.definition, _ = simulation
+        plant = simulation.plant
+        profile = simulation.profile
+        names = simulation.errors
+        self.definition = simulation.energy
         grid = simulation.grid
         steps = len(grid.lengths)
         nodes = NODES * steps
         self.size = profile.size
         self.modes = plant.modes
         self.shape = (rows, steps)
-        self.path = path_of(profile, grid, ask_for_jerk(quantities), rows)
-        self.node = Node(plant, self.path, quantities, names, self.definition, (rows, nodes))
-        limited = (self.node.count - self.node.own) * nodes
+        self.path = path_of(profile, grid, ask_for_jerk(simulation.quantities), rows)
+        self.node = Node(simulation, self.path, (rows, nodes))
+        limited = (self.node.count - self.node.of_energy) * nodes
         counts = [self.size, 3 + 2 * plant.modes, len(names), 1, 1, 2 * plant.modes, limited]
         self.inputs = [ca.MX.sym("x", rows, count) for count in counts]
         self.a, row, errors, (self.width,), (self.of_energy,) = (
-            widen(one, nodes) for one in self.inputs[:5]
+            widen(column, nodes) for column in self.inputs[:5]
         )
         self.move = row[:3]
         self.initial = ca.horzsplit(self.inputs[1], 1)[3:]
@@ -247,8 +250,8 @@ class _Differentiated:
         )
         of_after = [_reverse(x) for x in (*W, *dW)]
         after = sum(ca.dot(w, x) for w, x in zip(of_after, driven.column(0)))
-        found = ca.horzsplit(ca.gradient(here + after, forcing), steps)
-        return [ca.horzcat(*found[i::m]) for i in range(m)]
+        by_forcing = ca.horzsplit(ca.gradient(here + after, forcing), steps)
+        return [ca.horzcat(*by_forcing[i::m]) for i in range(m)]
 
     def point_multipliers(self, of_outputs: Sequence[ca.MX]) -> list[ca.MX]:
         """Multipliers of the point v, from those of the outputs there."""
@@ -265,8 +268,8 @@ class _Differentiated:
         pairs = list[tuple[Any, Any]]()
         l_vv = self.node.hessian(self.point, [*of_forcing, *of_outputs])
         for v_a, table in zip(self.v_a, self.along(l_vv)):
-            turned = product(table, v_a, self.count)
-            pairs += [(v_a[i], turned[i]) for i in sorted({row for row, _ in table})]
+            by_v = product(table, v_a, self.count)
+            pairs += [(v_a[i], by_v[i]) for i in sorted({row for row, _ in table})]
         bends = list[tuple[Any, Any]]()
         for joint, energy in enumerate(energies):
             power_a = [outputs[joint] for outputs in self.o_a]
@@ -276,7 +279,8 @@ class _Differentiated:
                 terms = zip(map(self.repeat, weights), power_a)
                 bends.append((self.of_energy[:, :steps] * bend, sum(w * x for w, x in terms)))
         pairs += [(x, self.repeat(bend) * x) for bend, x in bends]
-        return [left for left, _ in pairs], [right for _, right in pairs]
+        factors, turned = zip(*pairs)
+        return list(factors), list(turned)
 
     def path_hessian(self, of_outputs: list[ca.MX], of_forcing: list[ca.MX]) -> list[ca.MX]:
         """What the path's own second derivatives add to the Hessian."""
@@ -288,42 +292,41 @@ class _Differentiated:
         of_y = [x + y for x, y in zip(by_outputs, by_forcing)]
         y_aa = self.path.hessian(self.a, self.move, of_y)
         zero = ca.MX.zeros(self.shape[0], 1)
-        every = range(self.size)
-        return [ca.sum2(y_aa[i, k]) if (i, k) in y_aa else zero for i in every for k in every]
+        places = [(i, k) for i in range(self.size) for k in range(self.size)]
+        return [ca.sum2(y_aa[place]) if place in y_aa else zero for place in places]
 
     def compile(self) -> ca.Function:
         """All of it as a function."""
         rows, steps = self.shape
-        own = self.node.own
+        of_energy = self.node.of_energy
         powers = self.outputs[: self.node.powers]
-        smooth = self.outputs[self.node.powers : own]
+        smooth = self.outputs[self.node.powers : of_energy]
         energies = [  # the smooth part, of all joints, counts with the first
             differentiate_energy(
                 self.definition, power, [] if joint else smooth, self.h, self.length, self.width
             )
             for joint, power in enumerate(powers)
         ]
-        energy_o = [*(energy.by_power for energy in energies), energies[0].by_smooth][:own]
+        energy_o = [*(energy.by_power for energy in energies), energies[0].by_smooth][:of_energy]
         of_outputs = [self.of_energy * x for x in energy_o]
         of_outputs += ca.horzsplit(self.inputs[6], NODES * steps)
         of_forcing = self.forcing_multipliers(of_outputs)
         along = [[self.repeat(x) for x in ca.horzsplit(by, steps)] for by in energy_o]
-        energy_a = sum(along[i][j] * self.o_a[j][i] for i in range(own) for j in range(NODES))
-        limited_a = zip(*(outputs[own:] for outputs in self.o_a))
-        found = [
+        energy_a = sum(along[i][j] * self.o_a[j][i] for i in range(of_energy) for j in range(NODES))
+        limited_a = zip(*(outputs[of_energy:] for outputs in self.o_a))
+        blocks = [
             [total([energy.value for energy in energies])],
             [self.arrival],
-            self.outputs[own:],
+            self.outputs[of_energy:],
             [ca.sum2(x) for x in ca.horzsplit(energy_a, steps)],
             [self.arrival_a],
             [x for of_value in limited_a for x in of_value],
             *self.hessian_factors(energies, of_outputs, of_forcing),
             self.path_hessian(of_outputs, of_forcing),
         ]
-        outputs = [join(x, rows) for x in found]
+        outputs = [join(x, rows) for x in blocks]
         # Common terms are looked for where there are more rows than these.
-        rows_of_cse = 4
-        options = {"cse": rows > rows_of_cse and steps <= MOST_STEPS_OF_CSE}
+        options = {"cse": rows > 4 and steps <= MOST_STEPS_OF_CSE}
         return ca.Function("derivatives", self.inputs, outputs, options)
 
 
@@ -338,7 +341,7 @@ def _reverse(by_step: Any) -> Any:
     return by_step[:, ::-1] if several else by_step
 
 
-def _modes_at_nodes(one: Step, W: list[ca.MX], dW: list[ca.MX]) -> list[ca.MX]:
+def _modes_at_nodes(step: Step, W: list[ca.MX], dW: list[ca.MX]) -> list[ca.MX]:
     """W, W' and W'' at the nodes, from those before the steps."""
-    state = modes_at_nodes(one.nodes(W, dW, one.accelerations(W, dW)))
+    state = modes_at_nodes(step.nodes(W, dW, step.accelerations(W, dW)))
     return [*state.W, *state.dW, *state.ddW]

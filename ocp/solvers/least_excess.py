@@ -97,16 +97,16 @@ class _Linearised:
     def _arrival_rows(self, problem: Problem, motions: Derivatives) -> None:
         """What has to be 0, or within 1: scaled states on arrival, or displacements after it."""
         transcription = problem.transcription
-        asked = problem.scalarization
-        missed = motions.arrival - transcription.wanted + asked.offset
-        if asked.at_rest:
+        scalarization = problem.scalarization
+        missed = motions.arrival - transcription.wanted + scalarization.offset
+        if scalarization.at_rest:
             scale = transcription.arrival_scale
             self.arrival = missed[0] / scale
             self.arrival_table = motions.arrival_jacobian[0] / scale[:, None]
             self.allowed = 0.0
             return
         rows = list(zip(transcription.tip_rows, missed, motions.arrival_jacobian))
-        limit = asked.residual_limit
+        limit = scalarization.residual_limit
         self.arrival = np.concatenate([tips @ state / limit for tips, state, _ in rows])
         self.arrival_table = np.concatenate([tips @ table / limit for tips, _, table in rows])
         self.allowed = 1.0

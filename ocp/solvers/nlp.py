@@ -36,12 +36,10 @@ OPTIONS: dict[str, str | int | float] = {
 
 def options_of(solver: Solver) -> dict[str, str | int | float]:
     """IPOPT's options that say what a solver's say."""
-    # IPOPT's print level.
-    shows_iterations = 5
     return {
         "tol": solver.tolerance,
         "max_iter": solver.iterations,
-        "print_level": shows_iterations if solver.log else 0,
+        "print_level": 5 if solver.log else 0,  # 5 has a line for each iteration
     }
 
 
@@ -68,15 +66,15 @@ def _on_one_thread() -> Iterator[None]:
     Its matrices are small: a second thread shortens nothing, and keeps a core from other processes.
     OpenBLAS reads the variable once, when it is loaded with the first solver.
     """
-    threads = "OPENBLAS_NUM_THREADS"
-    asked = os.environ.get(threads)
-    os.environ[threads] = asked or os.environ.get("OMP_NUM_THREADS", "1")
+    name = "OPENBLAS_NUM_THREADS"
+    chosen = os.environ.get(name)
+    os.environ[name] = chosen or os.environ.get("OMP_NUM_THREADS", "1")
     try:
         yield
     finally:
-        del os.environ[threads]
-        if asked is not None:
-            os.environ[threads] = asked
+        del os.environ[name]
+        if chosen is not None:
+            os.environ[name] = chosen
 
 
 Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -91,9 +89,13 @@ def run_ipopt(
 ) -> Stop:
     """Run IPOPT from a point, within lower and upper bounds of unknowns and of constraints."""
     result, stats = solver.solve(
-        x0=start, lbx=bounds[0], ubx=bounds[1], lbg=constraint_bounds[0],
-        ubg=constraint_bounds[1], p=parameters,
-    )  # fmt: skip
+        x0=start,
+        lbx=bounds[0],
+        ubx=bounds[1],
+        lbg=constraint_bounds[0],
+        ubg=constraint_bounds[1],
+        p=parameters,
+    )
     COST.candidates += int(stats.get("n_call_nlp_f", 0))
     COST.gradients += int(stats.get("n_call_nlp_grad_f", 0))
     COST.hessians += int(stats.get("n_call_nlp_hess_l", 0))

@@ -127,24 +127,24 @@ def evaluate(transcriptions: Sequence[Transcription], coefficients: Array) -> li
 
     Coefficients have shape (transcriptions, profile.size).
     """
-    counts = [len(one.errors) for one in transcriptions]
-    found = transcriptions[0].batch.derivatives(
+    counts = [len(transcription.errors) for transcription in transcriptions]
+    derivatives = transcriptions[0].batch.derivatives(
         np.repeat(coefficients, counts, axis=0),
-        np.repeat([one.task.row for one in transcriptions], counts, axis=0),
-        np.concatenate([one.errors for one in transcriptions]),
+        np.repeat([transcription.task.row for transcription in transcriptions], counts, axis=0),
+        np.concatenate([transcription.errors for transcription in transcriptions]),
     )
-    return [found.take(slice(*ends)) for ends in pairwise(np.cumsum([0, *counts]))]
+    return [derivatives.take(slice(*ends)) for ends in pairwise(np.cumsum([0, *counts]))]
 
 
 def transcribe(
     tasks: Sequence[PointToPoint], profile: JointProfile, steps: int
 ) -> list[Transcription]:
     """Many tasks of one plant, whose plain motions are evaluated in one call."""
-    made = [Transcription(task, profile, steps) for task in tasks]
-    plain = np.repeat(profile.plain[None], len(made), axis=0)
-    for one, motion in zip(made, evaluate(made, plain)):
-        one.__dict__["plain"] = motion
-    return made
+    transcriptions = [Transcription(task, profile, steps) for task in tasks]
+    plain = np.repeat(profile.plain[None], len(transcriptions), axis=0)
+    for transcription, motion in zip(transcriptions, evaluate(transcriptions, plain)):
+        transcription.__dict__["plain"] = motion
+    return transcriptions
 
 
 LEAST_ENERGY = {ENERGY: 1.0}
@@ -185,7 +185,7 @@ class Scalarization(NamedTuple):
     @property
     def residual_limit(self) -> float:
         """Largest residual [m]; infinite where it is not limited."""
-        return max((one.size for one in self.limits if one.name == RESIDUAL), default=np.inf)
+        return max((limit.size for limit in self.limits if limit.name == RESIDUAL), default=np.inf)
 
     @property
     def at_rest(self) -> bool:
@@ -264,7 +264,7 @@ class Solution:
 
 
 def shadow_prices(
-    asked: Scalarization,
+    scalarization: Scalarization,
     of_energy: float,
     bounded: Mapping[str, NDArray[np.float64]],
     of_arrival: NDArray[np.float64],
@@ -279,10 +279,10 @@ def shadow_prices(
         return {}
     prices = {
         limit.name: limit.price(bounded[limit.name]) / of_energy
-        for limit in asked.limits
-        if limit.name in bounded and limit.name != asked.peak
+        for limit in scalarization.limits
+        if limit.name in bounded and limit.name != scalarization.peak
     }
-    if asked.at_rest:
+    if scalarization.at_rest:
         prices[RESIDUAL] = price_of_rest(of_arrival, tips) / of_energy
     return prices
 

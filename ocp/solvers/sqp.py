@@ -17,7 +17,6 @@ from quietarm.ocp.solvers.programs import Programs
 from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
-Prices = dict[str, float]
 _STATUS = {
     End.SOLVED: SolveStatus.OPTIMAL,
     End.CREEPING: SolveStatus.ACCEPTABLE,
@@ -56,30 +55,32 @@ class Sqp(Solver):
             log=self.log,
         )
         for places in _group_by_form(problems):
-            own = [problems[i] for i in places]
-            transcription = own[0].transcription
-            transcription.batch.prepare(len(own) * len(transcription.errors))
-            programs = Programs(own)
+            alike = [problems[i] for i in places]
+            transcription = alike[0].transcription
+            transcription.batch.prepare(len(alike) * len(transcription.errors))
+            programs = Programs(alike)
             x = programs.start(np.array([starts[i] for i in places]))
             ended = minimise(
-                programs.evaluate,
+                programs,
                 x,
-                programs.lower,
-                programs.upper,
-                equalities=programs.equalities,
-                linear=programs.linear,
                 groups=None if groups is None else np.array([groups[i] for i in places]),
                 course=course,
             )
-            solutions.update(zip(places, _in_units(programs, ended, own)))
+            solutions.update(zip(places, _in_units(programs, ended, alike)))
         return [solutions[i] for i in range(len(problems))]
 
 
 def _group_by_form(problems: Sequence[Problem]) -> Iterable[list[int]]:
     """The places of the problems that are solved together."""
     forms: dict[tuple[object, ...], list[int]] = {}
-    for i, (one, asked) in enumerate(problems):
-        form = one.batch, len(one.errors), asked.peak, asked.at_rest, asked.bounds_residual
+    for i, (transcription, scalarization) in enumerate(problems):
+        form = (
+            transcription.batch,
+            len(transcription.errors),
+            scalarization.peak,
+            scalarization.at_rest,
+            scalarization.bounds_residual,
+        )
         forms.setdefault(form, []).append(i)
     return forms.values()
 
@@ -90,11 +91,11 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     motions = evaluate([problem.transcription for problem in problems], coefficients)
     prices = _shadow_prices(programs, ended, problems)
     solutions = list[Solution]()
-    still = 1e-8
-    for i, ((transcription, asked), motion) in enumerate(zip(problems, motions)):
-        peaks = transcription.measure(motion, asked.offset).peaks_of(0)
+    for i, ((transcription, scalarization), motion) in enumerate(zip(problems, motions)):
+        peaks = transcription.measure(motion, scalarization.offset).peaks_of(0)
         end = ended.ends[i]
-        if asked.at_rest and ended.violation[i] <= still:
+        # A scaled state on arrival that is no larger counts as rest.
+        if scalarization.at_rest and ended.violation[i] <= 1e-8:
             peaks[RESIDUAL] = 0.0
         solutions.append(
             Solution(
@@ -103,7 +104,7 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
                 peaks,
                 _STATUS[end],
                 int(ended.iterations[i]),
-                arrival=motion.arrival + asked.offset,
+                arrival=motion.arrival + scalarization.offset,
                 shadow_prices=prices[i],
                 reason=end.value,
             )
@@ -111,17 +112,22 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     return solutions
 
 
-def _shadow_prices(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> list[Prices]:
+def _shadow_prices(
+    programs: Programs, ended: Ended, problems: Sequence[Problem]
+) -> list[dict[str, float]]:
     """What each least energy falls by if a limit is widened [J by its unit]."""
-    every = programs.split(ended.multipliers.bounded)
-    prices = list[Prices]()
-    nothing = np.zeros(0)
-    for i, (each, asked) in enumerate(problems):
-        bounded = {one.name: every[one.name][i] / each.scale_of(one.name)
-                   for one in asked.limits if one.name in every}  # fmt: skip
-        of_energy = programs.weights[i, 0] / each.energy_scale
-        of_arrival = (
-            ended.multipliers.equality[i] / each.arrival_scale if asked.at_rest else nothing
-        )
-        prices.append(shadow_prices(asked, of_energy, bounded, of_arrival, each.tip_rows[0]))
+    multipliers = programs.split(ended.multipliers.bounded)
+    prices = list[dict[str, float]]()
+    for i, (transcription, scalarization) in enumerate(problems):
+        bounded = {
+            limit.name: multipliers[limit.name][i] / transcription.scale_of(limit.name)
+            for limit in scalarization.limits
+            if limit.name in multipliers
+        }
+        of_energy = programs.weights[i, 0] / transcription.energy_scale
+        of_arrival = np.zeros(0)
+        if scalarization.at_rest:
+            of_arrival = ended.multipliers.equality[i] / transcription.arrival_scale
+        tips = transcription.tip_rows[0]
+        prices.append(shadow_prices(scalarization, of_energy, bounded, of_arrival, tips))
     return prices

@@ -163,7 +163,7 @@ def test_plans_do_not_depend_on_how_a_profile_is_written(tasks, tmp_path):
 def test_both_solvers_plan_with_an_angle_alone(tasks):
     plans = [
         qa.plan_move(tasks["single link"], _MinimumJerk(6), starts=1, solver=solver)
-        for solver in ("sqp", "ipopt")
+        for solver in (qa.Sqp(), qa.Ipopt())
     ]
     assert plans[0].residual < 1e-8
     assert plans[1].energy == pytest.approx(plans[0].energy, rel=1e-5)
