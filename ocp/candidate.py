@@ -26,7 +26,7 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.cvodes import Integration, integrate, integrate_to
 from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import PEAKS, Motion
 from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import PointToPoint
@@ -171,13 +171,13 @@ class Candidate(Ranged):
 
     def _largest(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
         """Least and largest value of each row of samples."""
-        return extremes(self._grid.samples, rows)
+        return extremes(self._mesh.samples, rows)
 
     @property
     def trajectory(self) -> Trajectory:
         """The move and the residual window; where two pieces meet, two samples of one time."""
         lengths = self.path.arguments[-1]
-        fractions = self._grid.samples
+        fractions = self._mesh.samples
         begins = np.append(0.0, np.cumsum(lengths[:-1]))
         times = (begins[:, None] + np.outer(lengths, fractions)).ravel()
         times = np.minimum(times, self.task.duration)  # beyond it by rounding
@@ -228,7 +228,7 @@ class Candidate(Ranged):
         _ = self._vibration  # refuses a window that is too long
         task = self.task
         return integrate(
-            task.plant, self.errors, self.path, task.initial_state, self._grid.steps, task.energy
+            task.plant, self.errors, self.path, task.initial_state, self._mesh.steps, task.energy
         )
 
     @property
@@ -237,7 +237,7 @@ class Candidate(Ranged):
         return vibration_of(plant, self.task.target, self.task.residual_window)
 
     @cached_property
-    def _grid(self) -> Grid:
+    def _mesh(self) -> Mesh:
         """Steps of the quadrature on every piece."""
         # Least number of steps of the quadrature, in all and where nothing breaks: its nodes are
         # at most a thousandth of the move apart, or two. On the paper's conditions energies with
@@ -255,7 +255,7 @@ class Candidate(Ranged):
         of_a_piece = max(of_a_piece, math.ceil(steps_of_a_part / self.path.shortest_part))
         # So that every piece has the seven samples that `extremes` needs.
         least_of_a_piece = 2
-        return Grid(max(of_a_piece, least_of_a_piece))
+        return Mesh(max(of_a_piece, least_of_a_piece))
 
     @cached_property
     def _samples(self) -> Trajectory:

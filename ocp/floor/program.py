@@ -20,7 +20,7 @@ from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.sample import sample_plant, total
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, Step, step
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import smooth_power
 from quietarm.ocp.simulation.rollout import march
 from quietarm.ocp.solvers.ipopt import Ipopt
@@ -53,7 +53,7 @@ Array = NDArray[np.float64]
 
 def first_grid(steps: int) -> Array:
     """Boundaries of about `steps` intervals, as fractions of the move, finer at the ends."""
-    even = Grid(max(2, steps - 2 * _AT_AN_END)).boundaries
+    even = Mesh(max(2, steps - 2 * _AT_AN_END)).boundaries
     cuts = even[1] * _SHRINK ** -np.arange(_AT_AN_END, 0.0, -1)
     return np.concatenate([[0.0], cuts, even[1:-1], 1 - cuts[::-1], [1.0]])
 

@@ -24,7 +24,7 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.profiles.free_motion import Law, PiecewiseMotion
 from quietarm.ocp.sample import symbolic_sample
 from quietarm.ocp.simulation.collocation import NODES
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import integrated, spent
 from quietarm.ocp.simulation.trajectory import outputs_of, rates_of
 from quietarm.ocp.uncertainty import perturb_plant
@@ -110,17 +110,17 @@ def _build_figures(
     definition: Energy,
 ) -> ca.Function:
     arguments = ca.MX.sym("p", *shape)
-    grid = Grid(steps)
+    mesh = Mesh(steps)
     errors = ca.MX.sym("e", len(names))
     initial = ca.MX.sym("x", 2 * plant.modes)
-    states, outputs = _along(plant, law, shape, grid.samples, names)(arguments, errors, initial)
+    states, outputs = _along(plant, law, shape, mesh.samples, names)(arguments, errors, initial)
     pieces = [ca.reshape(row, -1, shape[1]) for row in ca.vertsplit(outputs)]
     layout = symbolic_sample(plant)
     nodes = [
         layout.with_values(row[1 + node : -1 : NODES, :].T for row in pieces)
         for node in range(NODES)
     ]
-    h = arguments[-1, :].T @ grid.columns()[1]
+    h = arguments[-1, :].T @ mesh.columns()[1]
     energy = spent(definition, nodes, h)
     net_work = integrated([sample.power for sample in nodes], h)
     figures = [outputs, states[:, -1], ca.sum1(energy), ca.sum1(net_work)]

@@ -21,7 +21,7 @@ from quietarm.ocp.profiles.check_profile import check_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.free_vibration import FreeVibration, after_arrival
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.rollout import Simulation, places_of
 from quietarm.ocp.simulation.rows import RowFunction, copy_rows, join, widen
 from quietarm.ocp.task import PointToPoint
@@ -334,7 +334,7 @@ def _build_values(simulation: Simulation, rows: int) -> ca.Function:
 
     (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
-    steps = len(simulation.grid.lengths)
+    steps = len(simulation.mesh.lengths)
     counts = simulation.profile.size, 3 + 2 * simulation.plant.modes, len(simulation.errors)
     inputs = [ca.MX.sym("x", rows, count) for count in counts]
     a, row, errors = (widen(matrix, NODES * steps) for matrix in inputs)

@@ -15,7 +15,7 @@ from quietarm.ocp.energy import Energy
 from quietarm.ocp.limits import RESIDUAL, Quantity, Ranged
 from quietarm.ocp.sample import Sample, total
 from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, TO_QUADRATIC
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 
 
 def spent(
@@ -100,11 +100,11 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
     """
     if steps == 1:
         return ca.DM(NODES, 1), ca.DM(NODES, 1)  # no neighbour
-    grid = Grid(steps)
-    nodes = grid.nodes.T.ravel()
+    mesh = Mesh(steps)
+    nodes = mesh.nodes.T.ravel()
     step = np.arange(steps)[:, None]
     five = np.clip(NODES * step - 1, 0, len(nodes) - 5) + np.arange(5)
-    x = (nodes[five] - grid.boundaries[:-1, None]) / grid.lengths[:, None]
+    x = (nodes[five] - mesh.boundaries[:-1, None]) / mesh.lengths[:, None]
     to_quartic = np.linalg.inv(x[:, :, None] ** np.arange(5))
     # lists: casadi takes twenty times as long over arrays here
     at = (five % NODES * steps + five // NODES).ravel().tolist(), np.repeat(step, 5).tolist()

@@ -24,7 +24,7 @@ from quietarm.ocp.simulation.collocation import (
     collocate,
     modal_system,
 )
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import spent
 from quietarm.ocp.uncertainty import perturb_plant
 
@@ -96,9 +96,9 @@ class Simulation(NamedTuple):
     breaks: tuple[float, ...] = ()
 
     @property
-    def grid(self) -> Grid:
+    def mesh(self) -> Mesh:
         """Where the steps begin and end."""
-        return Grid(self.steps, self.breaks, self.profile.steps_of_a_piece)
+        return Mesh(self.steps, self.breaks, self.profile.steps_of_a_piece)
 
     def rollout(
         self,
@@ -121,7 +121,7 @@ def places_of(simulation: Simulation) -> Mapping[str, slice]:
     places: dict[str, slice] = {}
     first = 0
     for quantity in simulation.quantities:
-        count = quantity.rows(simulation.plant) * NODES * len(simulation.grid.lengths)
+        count = quantity.rows(simulation.plant) * NODES * len(simulation.mesh.lengths)
         places[quantity.name] = slice(first, first + count)
         first += count
     return places
@@ -152,7 +152,7 @@ def symbolic_rollout(
     steps, candidates : int
         Number of steps, and of rows.
     jerk : bool
-        Whether the joint's jerk is computed as well, at the times of `Grid.stretch`.
+        Whether the joint's jerk is computed as well, at the times of `Mesh.stretch`.
     breaks : tuple of float
         Fractions of the duration at which the motion is not smooth: there a step ends.
     initial : sequence of Expression
@@ -172,12 +172,12 @@ def symbolic_rollout(
         raise ValueError(
             f"got {len(coefficients)} coefficients for a profile of {profile.size}; give one each"
         )
-    grid = Grid(steps, breaks, profile.steps_of_a_piece)
-    times, length = grid.columns(candidates)
+    mesh = Mesh(steps, breaks, profile.steps_of_a_piece)
+    times, length = mesh.columns(candidates)
     at = ca.horzcat(*times)
     joint = profile.motion(coefficients, at, *move)
     if jerk:
-        there = profile.motion(coefficients, grid.stretch(at), *move, jerk=True)
+        there = profile.motion(coefficients, mesh.stretch(at), *move, jerk=True)
         joint = joint._replace(jerk=there.jerk)
     h = at_each_node(move[2], length)[0] * length
     every_step = collocate(modal_system(plant, joint), h)

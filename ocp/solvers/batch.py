@@ -77,7 +77,7 @@ class Batch:
     @cached_property
     def _steps(self) -> int:
         """How many there are: some more than asked for where the motion breaks."""
-        return len(self.simulation.grid.lengths)
+        return len(self.simulation.mesh.lengths)
 
     @cached_property
     def places(self) -> Mapping[str, slice]:
@@ -112,12 +112,12 @@ class Batch:
     def _speeds(self) -> Array | None:
         """The path's speed at the nodes by each coefficient; None if it is not linear in them."""
         size = self.simulation.profile.size
-        grid = self.simulation.grid
-        path = path_of(self.simulation.profile, grid, False, 1)
+        mesh = self.simulation.mesh
+        path = path_of(self.simulation.profile, mesh, False, 1)
         if not path.linear:
             return None
         table = path.jacobian([0.0] * size, [])
-        weights = np.sqrt(np.tile(grid.lengths, NODES))
+        weights = np.sqrt(np.tile(mesh.lengths, NODES))
         speeds = [table.get((1, n), ca.DM.zeros(1, len(weights))).full()[0] for n in range(size)]
         return (weights * np.array(speeds)).T
 

@@ -140,13 +140,13 @@ class _Differentiated:
         profile = simulation.profile
         names = simulation.errors
         self.definition = simulation.energy
-        grid = simulation.grid
-        steps = len(grid.lengths)
+        mesh = simulation.mesh
+        steps = len(mesh.lengths)
         nodes = NODES * steps
         self.size = profile.size
         self.modes = plant.modes
         self.shape = (rows, steps)
-        self.path = path_of(profile, grid, ask_for_jerk(simulation.quantities), rows)
+        self.path = path_of(profile, mesh, ask_for_jerk(simulation.quantities), rows)
         self.node = Node(simulation, self.path, (rows, nodes))
         limited = (self.node.count - self.node.of_energy) * nodes
         counts = [self.size, 3 + 2 * plant.modes, len(names), 1, 1, 2 * plant.modes, limited]
@@ -156,7 +156,7 @@ class _Differentiated:
         )
         self.move = row[:3]
         self.initial = ca.horzsplit(self.inputs[1], 1)[3:]
-        _, self.length = grid.columns(rows)
+        _, self.length = mesh.columns(rows)
         self.h = self.move[2][:, :steps] * self.length
         self.simulate(perturb_plant(plant, dict(zip(names, errors))), errors)
         self.differentiate()

@@ -18,7 +18,7 @@ from quietarm.models import JointMotion
 from quietarm.models.joint_motion import is_zero
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.sample import sample_plant
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import smooth_power
 from quietarm.ocp.simulation.rollout import Simulation
 from quietarm.ocp.uncertainty import perturb_plant
@@ -90,13 +90,13 @@ class Tables:
 class Path:
     """The values y(a, t) through which a profile's coefficients a enter the joint's motion.
 
-    Where the jerk is asked for, y stands once more at the times of `Grid.stretch`, with its rates
+    Where the jerk is asked for, y stands once more at the times of `Mesh.stretch`, with its rates
     by the fraction of the duration. Coefficients and the move are arrays like the times. There are
     `count` values, `linear` in the coefficients or not: then the Jacobian depends on time alone.
     """
 
-    def __init__(self, profile: JointProfile, grid: Grid, jerk: bool, rows: int) -> None:
-        times, _ = grid.columns(rows)
+    def __init__(self, profile: JointProfile, mesh: Mesh, jerk: bool, rows: int) -> None:
+        times, _ = mesh.columns(rows)
         self._profile = profile
         self._jerk = jerk
         self._times = ca.horzcat(*times)
@@ -109,7 +109,7 @@ class Path:
         self._count = len(y)
         if jerk:
             rates = product(jacobian(y, [at]), [ca.MX.ones(*shape)], len(y))
-            y += ca.substitute([*y, *rates], [at], [grid.stretch(at)])
+            y += ca.substitute([*y, *rates], [at], [mesh.stretch(at)])
         self.count = len(y)
         inputs = [*a, at, *move]
         y_a = jacobian(y, a)

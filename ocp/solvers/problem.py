@@ -16,7 +16,7 @@ from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, Values
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.batch import Derivatives, batch_of
 from quietarm.ocp.task import PointToPoint
 

@@ -24,7 +24,7 @@ ROLLOUT_STEPS = 140
 
 
 @dataclass(frozen=True)
-class Grid:
+class Mesh:
     """Steps of a move, or of a smooth piece of it, as fractions of its duration.
 
     Steps are finer at the ends, where the powers of T in the profile change fastest: in the paper's
@@ -45,7 +45,7 @@ class Grid:
             return even / 2 + (1 - np.cos(np.pi * even)) / 4
         pieces = [np.zeros(1)]
         for start, end in pairwise((0.0, *self.breaks, 1.0)):
-            piece = Grid(max(self.of_a_piece, math.ceil((end - start) * self.steps)))
+            piece = Mesh(max(self.of_a_piece, math.ceil((end - start) * self.steps)))
             pieces.append(start + (end - start) * piece.boundaries[1:])
         return np.concatenate(pieces)
 
