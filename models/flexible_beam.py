@@ -106,7 +106,11 @@ class FlexibleBeam(Plant):
         """The same beam, of the same stiffness, with another mass [kg] at its tip."""
         (before,), *_ = beam_modes(1, self.tip_mass / self._mass, 0.0)
         (after,), *_ = beam_modes(1, tip_mass / self._mass, 0.0)
-        return replace(self, tip_mass=tip_mass, omega=self.omega * (after / before) ** 2)
+        return replace(
+            self,
+            tip_mass=tip_mass,
+            omega=self.omega * (after / before) ** 2,
+        )
 
     @property
     def _mass(self) -> Expression:

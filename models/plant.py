@@ -80,7 +80,11 @@ class Plant(ABC):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        refuse_overridden(cls, Plant, "the three equations; other checks belong into __post_init__")
+        refuse_overridden(
+            cls,
+            Plant,
+            "the three equations; other checks belong into __post_init__",
+        )
         choices = {"joint": (ROTARY, LINEAR), "tip_unit": ("m", "rad")}
         for entry, kinds in choices.items():
             if getattr(cls, entry) not in kinds:
@@ -161,7 +165,8 @@ class Plant(ABC):
 
         The joint's angle is in rad; the tips are `tip_displacements` [m], scaled for the picture.
         """
-        links = [Body(rigid_link(1.0, angle, tip), rigid=True, tip=True) for tip in tips]
+        shapes = [rigid_link(1.0, angle, tip) for tip in tips]
+        links = [Body(shape, rigid=True, tip=True) for shape in shapes]
         return [*links, Body(np.zeros((1, 2)), rigid=True)]
 
     @property

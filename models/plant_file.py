@@ -115,7 +115,8 @@ def _run(file: PlantFile) -> dict[str, type[Plant]]:
     module.__file__ = file.path
     sys.path.append(folder := str(Path(file.path).resolve().parent))  # it may import its neighbour
     try:
-        exec(compile(file.source, file.path, "exec", dont_inherit=True), vars(module))
+        code = compile(file.source, file.path, "exec", dont_inherit=True)
+        exec(code, vars(module))
     except Exception as error:
         del sys.modules[module.__name__]
         frames = traceback.extract_tb(error.__traceback__)

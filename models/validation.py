@@ -219,7 +219,11 @@ def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
     """What a method returns, as a list."""
     try:
         with warnings.catch_warnings():
-            warnings.filterwarnings("error", r"\s*casadi: a numpy function", FutureWarning)
+            warnings.filterwarnings(
+                "error",
+                r"\s*casadi: a numpy function",
+                FutureWarning,
+            )
             result: Any = getattr(plant, method)(*arguments)
     except Exception as error:
         inside = traceback.extract_tb(error.__traceback__)[1:2]
@@ -255,7 +259,12 @@ def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
         least = 1e-9 * np.abs(alone).max()
         if len(together) > 1 or not np.allclose(together, alone, rtol=1e-9, atol=least):
             remedy = "compute entry by entry: no sum, dot, mtimes or max over entries"
-            raise _wrong(plant, method, "mixes motions that are side by side in a matrix", remedy)
+            raise _wrong(
+                plant,
+                method,
+                "mixes motions that are side by side in a matrix",
+                remedy,
+            )
 
 
 def _check_rates(plant: Plant) -> None:
@@ -276,7 +285,12 @@ def _check_rates(plant: Plant) -> None:
         for joint in _call(plant, "joints", path):
             for value, rate in pairwise(joint):
                 if rate is None:
-                    raise _wrong(plant, "joints", "gives no jerk where the path has one", "give it")
+                    raise _wrong(
+                        plant,
+                        "joints",
+                        "gives no jerk where the path has one",
+                        "give it",
+                    )
                 pairs.append(("joints", value, rate))
     if _gives(plant, "tips_at") or _gives(plant, "tip_speeds"):
         amplitudes = ca.vertsplit(W)
@@ -294,14 +308,23 @@ def _check_rates(plant: Plant) -> None:
     random[:, 0] = angles
     methods, values, stated = zip(*pairs)
     due = ca.jtimes(ca.vertcat(*values), moving, rates)
-    both = ca.Function("rates", [x], [ca.densify(due), ca.densify(ca.vertcat(*stated))])
+    both = ca.Function(
+        "rates",
+        [x],
+        [ca.densify(due), ca.densify(ca.vertcat(*stated))],
+    )
     should, are = (table.full() for table in both(random.T))
     largest = np.abs(should).max(axis=1, keepdims=True)
     rounding = 1e-9 * np.maximum(largest, 1e-3)
     for row, column in np.argwhere(~(np.abs(are - should) <= rounding)):
         at = f"at {angles[column]:.4g} of the path"
         what = f"gives a rate of {are[row, column]:.6g} {at} where it is {should[row, column]:.6g}"
-        raise _wrong(plant, methods[row], what, "give the time derivatives along the path")
+        raise _wrong(
+            plant,
+            methods[row],
+            what,
+            "give the time derivatives along the path",
+        )
 
 
 def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
@@ -331,6 +354,16 @@ def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
     for row, column in np.argwhere(wrong):
         at = f"with the joint at rest at {motions[row, -1, 0]:.4g} rad and W = 0"
         what = f"gives {still[row, column]:.4g}, not 0, {at}"
-        raise _wrong(plant, _methods(plant)[column], what, "measure W from the static deflection")
+        raise _wrong(
+            plant,
+            _methods(plant)[column],
+            what,
+            "measure W from the static deflection",
+        )
     if not moving[:, plant.modes + 1 :].any(axis=0).all():
-        raise _wrong(plant, "tip_displacements", "returns a tip that no W moves", "give W a factor")
+        raise _wrong(
+            plant,
+            "tip_displacements",
+            "returns a tip that no W moves",
+            "give W a factor",
+        )

@@ -261,7 +261,11 @@ class Candidate(Ranged):
     def _samples(self) -> Trajectory:
         """Everything on the way, at the samples of the quadrature."""
         outputs = self._run.outputs
-        return Trajectory.from_outputs(self.task.plant, np.zeros(outputs.shape[1]), outputs)
+        return Trajectory.from_outputs(
+            self.task.plant,
+            np.zeros(outputs.shape[1]),
+            outputs,
+        )
 
     def _after(self, later: NDArray[np.float64]) -> NDArray[np.float64]:
         """`outputs_of` the joint at rest, at times since arrival [s]."""

@@ -123,7 +123,11 @@ class Mix(Energy):
             for weight, part in self.parts
         )
         object.__setattr__(self, "parts", parts)
-        object.__setattr__(self, "absolute", sum(weight * part.absolute for weight, part in parts))
+        object.__setattr__(
+            self,
+            "absolute",
+            sum(weight * part.absolute for weight, part in parts),
+        )
 
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
         """The weighted sum of the parts'."""
@@ -181,7 +185,8 @@ def _integrand(energy: Energy, torques: NDArray[np.float64], speeds: NDArray[np.
     torque, speed = (ca.MX.sym(name, len(torques)) for name in ("torque", "speed"))
     try:
         integrand = ca.MX.zeros(len(torques)) + energy.smooth(torque, speed)
-        smooth = Compiled(lambda: ca.Function("smooth", [torque, speed], [ca.densify(integrand)]))
+        outputs = [ca.densify(integrand)]
+        smooth = Compiled(lambda: ca.Function("smooth", [torque, speed], outputs))
         return smooth(torques, speeds)[0].ravel()
     except Exception as error:  # of any kind: a user's own lines
         text = " ".join(f"{type(error).__name__}: {error}".split())

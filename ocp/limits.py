@@ -359,7 +359,11 @@ class Limit:
     @classmethod
     def of_line(cls, line: TorqueSpeedLine) -> Limit:
         """Of the torque by a torque-speed line."""
-        return cls(Quantity(TORQUE_SPEED, "", "share of the drive's torque", line), -1.0, 1.0)
+        return cls(
+            Quantity(TORQUE_SPEED, "", "share of the drive's torque", line),
+            -1.0,
+            1.0,
+        )
 
     @property
     def name(self) -> str:

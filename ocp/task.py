@@ -70,9 +70,6 @@ class ModalState:
 _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual window": "s"} | {
     f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()
 }
-_TIMES = {"duration": "s", "residual_window": "s"}
-_CLASSES = {"initial": ModalState, "final": ModalState, "uncertainty": Uncertainty}
-"""What fields hold that may be None."""
 LEAST_DURATION = 1e-6
 LEAST_MOVE = 1e-6
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
@@ -146,20 +143,41 @@ class PointToPoint:
             instance("plant", self.plant, Plant)
         self.plant.validate()
         check_energy(self.energy)
-        for name, kind in _CLASSES.items():
+        optional = {"initial": ModalState, "final": ModalState, "uncertainty": Uncertainty}
+        for name, kind in optional.items():
             if getattr(self, name) is not None:
                 instance(name, getattr(self, name), kind)
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)
-        way = joint_unit("rad", self.plant.joint)
         follows = _is_default(self.residual_window)
-        times = {name: unit for name, unit in _TIMES.items() if name == "duration" or not follows}
+        unit = joint_unit("rad", self.plant.joint)
         # Beyond this [rad, m, s] no joint moves, and double precision does not follow.
         most = 1e6
-        for name, unit in {"start": way, "target": way, **times}.items():
-            check = positive if name in _TIMES else finite
-            number = check(name.replace("_", " "), getattr(self, name), unit, most)
+        for name in ("start", "target"):
+            number = finite(name, getattr(self, name), unit, most)
             object.__setattr__(self, name, number)
+        for name in ("duration",) if follows else ("duration", "residual_window"):
+            number = positive(name.replace("_", " "), getattr(self, name), "s", most)
+            object.__setattr__(self, name, number)
+        self._check_limits()
+        for name, angle in (("start", self.start), ("target", self.target)):
+            more = unit == "rad" and abs(angle) > 2 * math.pi
+            if more and (2 * angle).is_integer():  # no multiple of pi is
+                warnings.warn(
+                    f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
+                    f"quietarm.deg({angle:g})",
+                    stacklevel=3,
+                )
+        self._check_move(unit)
+        for plant in self.perturbed_plants:
+            check_contract(plant)
+            check_along(plant, self.start, self.target)
+        if follows:
+            window = min(default_window([(self.plant, self.target)]), DefaultWindow(most))
+            object.__setattr__(self, "residual_window", window)
+
+    def _check_limits(self) -> None:
+        """Read the limits; ValueError where one is out of range."""
         for quantity in quantities_of(self.plant.joint, self.plant.tip_unit).values():
             if getattr(self, quantity.limit) is not None:
                 bounds = _check_bounds(quantity, getattr(self, quantity.limit), self.plant)
@@ -167,18 +185,13 @@ class PointToPoint:
         if self.torque_speed is not None:
             line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
             object.__setattr__(self, "torque_speed", line.points)
-        for name, angle in (("start", self.start), ("target", self.target)):
-            more = way == "rad" and abs(angle) > 2 * math.pi
-            if more and (2 * angle).is_integer():  # no multiple of pi is
-                warnings.warn(
-                    f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
-                    f"quietarm.deg({angle:g})",
-                    stacklevel=3,
-                )
+
+    def _check_move(self, unit: str) -> None:
+        """Refuse a move that is too small, too quick, or beyond the plant's path or modes."""
         if abs(self.span) < LEAST_MOVE:
             raise ValueError(
-                f"target - start is {self.span:g} {way}: there is no move; change one of them by "
-                f"{LEAST_MOVE:g} {way} or more"
+                f"target - start is {self.span:g} {unit}: there is no move; change one of them by "
+                f"{LEAST_MOVE:g} {unit} or more"
             )
         if self.plant.path_range is not None:
             least, largest = self.plant.path_range
@@ -197,12 +210,6 @@ class PointToPoint:
                     f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
                     "give W and W' of each"
                 )
-        for plant in self.perturbed_plants:
-            check_contract(plant)
-            check_along(plant, self.start, self.target)
-        if follows:
-            window = min(default_window([(self.plant, self.target)]), DefaultWindow(most))
-            object.__setattr__(self, "residual_window", window)
 
     @property
     def span(self) -> float:

@@ -203,7 +203,12 @@ def _check_symbols(plant: Plant, name: str, value: float) -> None:
     outputs = ca.densify(ca.vertcat(*expressions))
     computed = Compiled(lambda: ca.Function("found", [symbol], [outputs]))(value)[0].ravel()
     anew = outputs_of(replace(plant, **{name: value}), motion)
-    if not np.allclose(computed, [float(entry) for entry in anew], rtol=_SAME, atol=0.0):
+    if not np.allclose(
+        computed,
+        [float(entry) for entry in anew],
+        rtol=_SAME,
+        atol=0.0,
+    ):
         raise ValueError(
             f"plant {plant.name!r} computes with {name} outside its equations or by Python's math; "
             f"compute in them, from self.{name}, with casadi.sqrt and its like"

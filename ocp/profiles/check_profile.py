@@ -94,7 +94,13 @@ def _refuse_difference(
     what = "the derivative of the angle"
     refuse("speed", motion.speed, motion.exact_speed, what, remedy)
     what = "the derivative of the speed"
-    refuse("acceleration", motion.acceleration, motion.exact_acceleration, what, remedy)
+    refuse(
+        "acceleration",
+        motion.acceleration,
+        motion.exact_acceleration,
+        what,
+        remedy,
+    )
 
 
 def _refuse_wrong(

@@ -185,7 +185,12 @@ def collocate(system: ModalSystem, h: Expression, forced: bool = False) -> Step:
             right.append([g[i][j], *(-k for k, _ in terms), *by_rate, *unit])
     rows = eliminate(matrix, right)
     size = 1 + 2 * len(modes)
-    return Step(h, [row[:size] for row in rows], len(modes), [row[size:] for row in rows])
+    return Step(
+        h,
+        [row[:size] for row in rows],
+        len(modes),
+        [row[size:] for row in rows],
+    )
 
 
 def at_each_node(entry: Expression, h: Expression) -> list[Expression]:

@@ -58,7 +58,14 @@ def integrate(
 ) -> Integration:
     """Follow a motion on a plant with errors, by so many steps of the quadrature on a piece."""
     with COST.timed("checks"), _refusing(path.remedy):
-        figures = _figures(plant, path.law, path.arguments.shape, steps, tuple(errors), energy)
+        figures = _figures(
+            plant,
+            path.law,
+            path.arguments.shape,
+            steps,
+            tuple(errors),
+            energy,
+        )
         outputs, arrival, spent, net_work = figures(path.arguments, list(errors.values()), initial)
     return Integration(outputs, arrival[:, 0], spent.item(), net_work.item())
 
@@ -97,7 +104,15 @@ def _figures(
     definition: Energy,
 ) -> Compiled:
     """(arguments, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
-    build = partial(_build_figures, plant, law, shape, steps, names, definition)
+    build = partial(
+        _build_figures,
+        plant,
+        law,
+        shape,
+        steps,
+        names,
+        definition,
+    )
     return Compiled(build, silent=True)  # the error of `_refusing` is enough
 
 
@@ -145,7 +160,11 @@ def _along(
     ]
     joint = law(at_samples, ca.DM(np.tile(fractions, pieces)).T, jerk=True)
     outputs = outputs_of(_perturbed(plant, names, errors), joint, states)
-    return ca.Function("along", [arguments, errors, initial], [states, ca.densify(outputs)])
+    return ca.Function(
+        "along",
+        [arguments, errors, initial],
+        [states, ca.densify(outputs)],
+    )
 
 
 def _over_a_piece(
@@ -158,10 +177,21 @@ def _over_a_piece(
     both = ca.SX.sym("p", count)
     arguments = ca.vertsplit(both[:numbers])
     perturbed = _perturbed(plant, names, both[numbers:])
-    rates = arguments[-1] * rates_of(perturbed, law(arguments, fraction, jerk=False), state)
+    rates = arguments[-1] * rates_of(
+        perturbed,
+        law(arguments, fraction, jerk=False),
+        state,
+    )
     problem = {"t": fraction, "x": state, "p": both, "ode": rates}
     times = fractions[1:]
-    run = ca.integrator("piece", "cvodes", problem, 0.0, times.tolist(), _options(times))
+    run = ca.integrator(
+        "piece",
+        "cvodes",
+        problem,
+        0.0,
+        times.tolist(),
+        _options(times),
+    )
     before = ca.MX.sym("x", state.numel())
     both = ca.MX.sym("p", count)
     states = ca.horzcat(before, run(x0=before, p=both)["xf"])

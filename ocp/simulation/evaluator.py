@@ -246,7 +246,11 @@ class Evaluation:
         names = self.evaluator.simulation.errors
         errors = dict(zip(names, map(ca.DM, self.errors.T)))
         targets = [task.target] * len(self.errors)
-        return FreeVibration(perturb_plant(task.plant, errors), targets, task.residual_window)
+        return FreeVibration(
+            perturb_plant(task.plant, errors),
+            targets,
+            task.residual_window,
+        )
 
     @cached_property
     def sampled_residual(self) -> Array:
@@ -320,7 +324,11 @@ def simulate(
     """Values of rows that have coefficients, the `row` of a task and errors of their own."""
     COST.candidates += len(coefficients)
     function = _compiled_values(simulation)
-    energy, arrival, limited = function((coefficients, move, errors), copy_rows, threads)
+    energy, arrival, limited = function(
+        (coefficients, move, errors),
+        copy_rows,
+        threads,
+    )
     return Values(energy[:, 0], arrival, limited)
 
 
@@ -343,4 +351,9 @@ def _build_values(simulation: Simulation, rows: int) -> ca.Function:
     limited = [x for quantity in simulation.quantities for x in rollout.values(quantity)]
     outputs = [[rollout.energy], [rollout.arrival], limited]
     options = {"cse": steps <= MOST_STEPS_OF_CSE}
-    return ca.Function("values", inputs, [join(columns, rows) for columns in outputs], options)
+    return ca.Function(
+        "values",
+        inputs,
+        [join(columns, rows) for columns in outputs],
+        options,
+    )

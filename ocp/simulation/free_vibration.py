@@ -213,7 +213,11 @@ def _largest(tips: Array, rates: Array) -> Array:
     rise = after - w  # where the rate, nearly a line, is zero
     second = 3 * rise - 2 * v - v_after
     third = v + v_after - 2 * rise
-    np.maximum.at(most, turns[0], np.abs(w + at * (v + at * (second + at * third))))
+    np.maximum.at(
+        most,
+        turns[0],
+        np.abs(w + at * (v + at * (second + at * third))),
+    )
     return most
 
 

@@ -109,10 +109,17 @@ class Simulation(NamedTuple):
     ) -> SymbolicRollout:
         """As of `symbolic_rollout`, of the `row` of a task and relative errors of its plant."""
         return symbolic_rollout(
-            perturb_plant(self.plant, dict(zip(self.errors, errors))), self.profile,
-            coefficients, row[:3], self.steps, candidates, ask_for_jerk(self.quantities),
-            self.breaks, row[3:], self.energy,
-        )  # fmt: skip
+            perturb_plant(self.plant, dict(zip(self.errors, errors))),
+            self.profile,
+            coefficients,
+            move=row[:3],
+            steps=self.steps,
+            candidates=candidates,
+            jerk=ask_for_jerk(self.quantities),
+            breaks=self.breaks,
+            initial=row[3:],
+            energy=self.energy,
+        )
 
 
 @lru_cache(maxsize=128)
@@ -174,11 +181,11 @@ def symbolic_rollout(
         )
     mesh = Mesh(steps, breaks, profile.steps_of_a_piece)
     times, length = mesh.columns(candidates)
-    at = ca.horzcat(*times)
-    joint = profile.motion(coefficients, at, *move)
+    fraction = ca.horzcat(*times)
+    joint = profile.motion(coefficients, fraction, *move)
     if jerk:
-        there = profile.motion(coefficients, mesh.stretch(at), *move, jerk=True)
-        joint = joint._replace(jerk=there.jerk)
+        stretched = profile.motion(coefficients, mesh.stretch(fraction), *move, jerk=True)
+        joint = joint._replace(jerk=stretched.jerk)
     h = at_each_node(move[2], length)[0] * length
     every_step = collocate(modal_system(plant, joint), h)
     W, dW, arrival = march(*every_step.transition(), h.shape, initial)

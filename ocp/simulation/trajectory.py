@@ -138,7 +138,11 @@ def _between(
     near = first[:, None] + np.arange(_POINTS)
     centre = times[at][:, None]
     width = (times[near[:, -1]] - times[near[:, 0]])[:, None]
-    values = np.take_along_axis(rows, piece[:, None] * len(times) + near, axis=1)
+    values = np.take_along_axis(
+        rows,
+        piece[:, None] * len(times) + near,
+        axis=1,
+    )
     x = (times[near] - centre) / width
     by_power = np.linalg.solve(_powers(x, _POINTS), values[:, :, None])[:, :, 0]
     below = ((times[np.maximum(at - 1, 0)])[:, None] - centre) / width
@@ -150,7 +154,12 @@ def _between(
         powers = _powers(root, _POINTS - 1)
         second = (powers[:, :, :-1] @ bend[:, :, None])[:, 0]
         step = np.zeros_like(root)
-        np.divide((powers @ slope[:, :, None])[:, 0], second, where=second < 0, out=step)
+        np.divide(
+            (powers @ slope[:, :, None])[:, 0],
+            second,
+            where=second < 0,
+            out=step,
+        )
         root = np.minimum(np.maximum(root - step, below), above)
     peak = (_powers(root, _POINTS) @ by_power[:, :, None])[:, 0, 0]
     finest = np.abs(by_power[:, -2:]) @ 0.5 ** np.arange(_POINTS - 2, _POINTS)

@@ -78,9 +78,19 @@ def differentiate_energy(
     rounded = ca.sqrt(power * power + width * width)
     is_rounded = width > 0
     sharp_slope = ca.repmat(h, 1, NODES) * ca.horzcat(*of_sharp)
-    slope = ca.if_else(is_rounded, of_nodes * power / (rounded + tiny), sharp_slope)
+    slope = ca.if_else(
+        is_rounded,
+        of_nodes * power / (rounded + tiny),
+        sharp_slope,
+    )
     # of |p| itself Euler's theorem: it is homogeneous
-    absolute = ca.sum2(ca.if_else(is_rounded, of_nodes * rounded, sharp_slope * power))
+    absolute = ca.sum2(
+        ca.if_else(
+            is_rounded,
+            of_nodes * rounded,
+            sharp_slope * power,
+        )
+    )
     factor = ca.if_else(is_rounded[:, :steps], 0.0, share * h)
     return EnergyDerivatives(
         value=share * absolute + sum(ca.sum2(of_nodes * value) for value in smooth),
@@ -146,7 +156,12 @@ class _Differentiated:
         self.size = profile.size
         self.modes = plant.modes
         self.shape = (rows, steps)
-        self.path = path_of(profile, mesh, ask_for_jerk(simulation.quantities), rows)
+        self.path = path_of(
+            profile,
+            mesh,
+            ask_for_jerk(simulation.quantities),
+            rows,
+        )
         self.node = Node(simulation, self.path, (rows, nodes))
         limited = (self.node.count - self.node.of_energy) * nodes
         counts = [self.size, 3 + 2 * plant.modes, len(names), 1, 1, 2 * plant.modes, limited]
@@ -167,7 +182,12 @@ class _Differentiated:
         system = modal_system(plant, self.path.motion(y, self.move))
         self.step = collocate(system, self.h, forced=True)
         constant, self.columns = self.step.transition()
-        W, dW, self.arrival = march(constant, self.columns, self.shape, self.initial)
+        W, dW, self.arrival = march(
+            constant,
+            self.columns,
+            self.shape,
+            self.initial,
+        )
         v = [*y, *_modes_at_nodes(self.step, W, dW)]
         self.count = len(v)
         self.point = [*v, *self.move, *errors]

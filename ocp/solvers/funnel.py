@@ -140,7 +140,13 @@ def minimise(
             print(descent.log_line(number))
         descent.iterate()
     ends = [End.UNFINISHED if end is None else end for end in descent.ends]
-    return Ended(descent.x, descent.violation, descent.multipliers, ends, descent.iterations)
+    return Ended(
+        descent.x,
+        descent.violation,
+        descent.multipliers,
+        ends,
+        descent.iterations,
+    )
 
 
 class _Attempt(NamedTuple):
@@ -213,7 +219,12 @@ class _Descent:
             np.zeros((rows, programs.equalities)),
             np.zeros((rows, bounded)),
         )
-        self.model = programs.evaluate(self.going, x, self.multipliers, self.width(self.going))
+        self.model = programs.evaluate(
+            self.going,
+            x,
+            self.multipliers,
+            self.width(self.going),
+        )
         self.f = self.model.objective.copy()
         self.violation = self._violation(self.going, self.model)
         self.funnel = np.maximum(0.1, 1.1 * self.violation)
@@ -257,11 +268,20 @@ class _Descent:
         promised -= 0.5 * np.einsum("rn,rnm,rm->r", step.d, hessian, step.d)
         sharper = self._sharper(step, promised)
         width = self.widths[self.stage[rows] + sharper]
-        trial = self.programs.evaluate(rows, self.x[rows] + step.d, step.multipliers, width)
+        trial = self.programs.evaluate(
+            rows,
+            self.x[rows] + step.d,
+            step.multipliers,
+            width,
+        )
         good = self._accepted(np.arange(len(rows)), step, step.d, promised, trial)
         # of another width f says nothing; so small a step need not lower it
         violation = self._violation(rows, trial)
-        good = np.where(sharper, violation <= np.maximum(self.funnel[rows], self.met), good)
+        good = np.where(
+            sharper,
+            violation <= np.maximum(self.funnel[rows], self.met),
+            good,
+        )
         for_f = (promised > self.switch * self.violation[rows] ** 2) & ~sharper
         return _Attempt(step, promised, sharper, trial, for_f, good)
 
@@ -421,7 +441,13 @@ class _Descent:
         """Solve the quadratic programs of rows whose models these are."""
         lower = self.programs.lower[rows]
         upper = self.programs.upper[rows]
-        return least_steps(model, lower, upper, self.radius[rows], self.programs.linear)
+        return least_steps(
+            model,
+            lower,
+            upper,
+            self.radius[rows],
+            self.programs.linear,
+        )
 
 
 def _times(matrices: Array, d: Array) -> Array:

@@ -17,7 +17,7 @@ sides of its limit.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple
@@ -150,23 +150,21 @@ def _build_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: boo
 
     rollouts = [simulation.rollout(a, ca.vertsplit(row), errors) for errors in form.scenarios]
     nominal = rollouts[0]
-    arrival = ca.horzcat(*(rollout.arrival.T for rollout in rollouts))
-    missed = arrival - wanted
-    energy = ca.if_else(width > 0, _round_off(simulation.energy, nominal, width), nominal.energy)
+    missed = ca.horzcat(*(rollout.arrival.T for rollout in rollouts)) - wanted
+    energy = ca.if_else(
+        width > 0,
+        _round_off(simulation.energy, nominal, width),
+        nominal.energy,
+    )
     values = {RESIDUAL: ca.vertcat(*(rows @ missed[:, i] for i, rows in enumerate(tips)))}
     for quantity in quantities:
         counted = rollouts if quantity.in_scenarios else rollouts[:1]
-        values[quantity.name] = ca.veccat(
-            *(ca.horzcat(*rollout.values(quantity)) for rollout in counted)
-        )
+        by_scenario = (ca.horzcat(*rollout.values(quantity)) for rollout in counted)
+        values[quantity.name] = ca.veccat(*by_scenario)
 
-    constraints = {"arrival": missed[:, 0] / scale if form.at_rest else ca.MX(0, 1)}
-    for k, (name, value) in enumerate(values.items()):
-        if name == form.peak:
-            constraints["below peak"] = value / scales[k] - sides[1] * p
-            constraints["above peak"] = value / scales[k] - sides[0] * p
-        elif name != RESIDUAL or form.bounds_residual:
-            constraints[name] = value / scales[k]
+    scaled = {name: value / scales[k] for k, (name, value) in enumerate(values.items())}
+    arrival = missed[:, 0] / scale if form.at_rest else ca.MX(0, 1)
+    constraints = {"arrival": arrival, **_bounded(form, scaled, p, sides)}
     nlp = {
         "x": ca.veccat(a, p),
         "p": ca.veccat(row, wanted, *tips, scale, scales, sides, weights, width),
@@ -180,12 +178,28 @@ def _build_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: boo
     }
     compiled_solver = compile_nlp(nlp, options)
     outputs = [nominal.energy, missed.T, *values.values()]
-    figures = ca.Function("figures", [a, row, wanted, *tips], list(map(ca.densify, outputs)))
+    figures = ca.Function(
+        "figures",
+        [a, row, wanted, *tips],
+        list(map(ca.densify, outputs)),
+    )
     return _Program(
         Compiled(lambda: compiled_solver, silent=True),  # casadi warns of every failure
         {name: value.numel() for name, value in constraints.items()},
         Compiled(lambda: figures),
     )
+
+
+def _bounded(form: _Form, scaled: Mapping[str, ca.MX], p: ca.MX, sides: ca.MX) -> dict[str, ca.MX]:
+    """The inequalities, of scaled values by name: of the peak p that is minimised two."""
+    constraints = dict[str, ca.MX]()
+    for name, value in scaled.items():
+        if name == form.peak:
+            constraints["below peak"] = value - sides[1] * p
+            constraints["above peak"] = value - sides[0] * p
+        elif name != RESIDUAL or form.bounds_residual:
+            constraints[name] = value
+    return constraints
 
 
 def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
@@ -308,4 +322,10 @@ class _Numbers:
         if scalarization.at_rest:
             of_arrival = of_arrival / self.scale
         tips = transcription.tip_rows[0]
-        return shadow_prices(scalarization, self.of_energy, bounded, of_arrival, tips)
+        return shadow_prices(
+            scalarization,
+            self.of_energy,
+            bounded,
+            of_arrival,
+            tips,
+        )

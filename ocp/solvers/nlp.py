@@ -56,7 +56,12 @@ def compile_nlp(problem: Mapping[str, ca.MX], options: Options) -> ca.Function:
     """IPOPT for a nonlinear program, with casadi's derivatives."""
     chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
     with _on_one_thread():
-        return ca.nlpsol("program", "ipopt", dict(problem), {**chosen, "ipopt": dict(options)})
+        return ca.nlpsol(
+            "program",
+            "ipopt",
+            dict(problem),
+            {**chosen, "ipopt": dict(options)},
+        )
 
 
 @contextmanager
@@ -99,4 +104,9 @@ def run_ipopt(
     COST.candidates += int(stats.get("n_call_nlp_f", 0))
     COST.gradients += int(stats.get("n_call_nlp_grad_f", 0))
     COST.hessians += int(stats.get("n_call_nlp_hess_l", 0))
-    return Stop(result["x"], result["lam_g"], str(stats["return_status"]), int(stats["iter_count"]))
+    return Stop(
+        result["x"],
+        result["lam_g"],
+        str(stats["return_status"]),
+        int(stats["iter_count"]),
+    )

@@ -49,7 +49,11 @@ def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
 
 def hessian(expression: Any, by: Sequence[ca.MX]) -> Table:
     """Second derivatives of an expression."""
-    (gradient,) = ca.reverse([expression], [*by], [[ca.MX.ones(*expression.shape)]])
+    (gradient,) = ca.reverse(
+        [expression],
+        [*by],
+        [[ca.MX.ones(*expression.shape)]],
+    )
     upper = {
         place: entry for place, entry in jacobian(gradient, by).items() if place[0] <= place[1]
     }
@@ -153,7 +157,11 @@ class Path:
             return joint
         there = y[self._count : 2 * self._count]
         rates = y[2 * self._count :]
-        (jerk,) = product(jacobian([self.motion(there, move).acceleration], there), rates, 1)
+        (jerk,) = product(
+            jacobian([self.motion(there, move).acceleration], there),
+            rates,
+            1,
+        )
         return joint._replace(jerk=jerk / move[2])
 
 

@@ -130,7 +130,11 @@ def evaluate(transcriptions: Sequence[Transcription], coefficients: Array) -> li
     counts = [len(transcription.errors) for transcription in transcriptions]
     derivatives = transcriptions[0].batch.derivatives(
         np.repeat(coefficients, counts, axis=0),
-        np.repeat([transcription.task.row for transcription in transcriptions], counts, axis=0),
+        np.repeat(
+            [transcription.task.row for transcription in transcriptions],
+            counts,
+            axis=0,
+        ),
         np.concatenate([transcription.errors for transcription in transcriptions]),
     )
     return [derivatives.take(slice(*ends)) for ends in pairwise(np.cumsum([0, *counts]))]
@@ -301,5 +305,11 @@ def price_of_rest(multipliers: NDArray[np.float64], rows: NDArray[np.float64]) -
     steepest = np.abs(slope).max() or 1.0
     # Curvature that makes a linear program a quadratic one.
     little = 1e-8
-    state, *_ = daqp.solve(little * np.eye(len(slope)), -slope / steepest, table, limit, -limit)
+    state, *_ = daqp.solve(
+        little * np.eye(len(slope)),
+        -slope / steepest,
+        table,
+        limit,
+        -limit,
+    )
     return float(slope @ np.asarray(state))

@@ -54,7 +54,11 @@ class _ResidualLimit(_Constraint):
     def __init__(self, tips: Array, limit: Array) -> None:
         """Tips have shape (problems, scenarios, times, 2 * modes), scaled; limits (problems,)."""
         self._tips = tips
-        self.upper = np.repeat(limit[:, None], tips.shape[1] * tips.shape[2], axis=1)
+        self.upper = np.repeat(
+            limit[:, None],
+            tips.shape[1] * tips.shape[2],
+            axis=1,
+        )
         self.lower = -self.upper
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
@@ -66,7 +70,11 @@ class _ResidualLimit(_Constraint):
 
     def pull_back(self, rows: Index, multipliers: Array, onto: MotionMultipliers) -> None:
         tips = self._tips[rows]
-        onto.arrival[:] += np.einsum("rst,rstk->rsk", multipliers.reshape(tips.shape[:3]), tips)
+        onto.arrival[:] += np.einsum(
+            "rst,rstk->rsk",
+            multipliers.reshape(tips.shape[:3]),
+            tips,
+        )
 
 
 class _QuantityLimit(_Constraint):
@@ -249,7 +257,11 @@ class Programs:
             peak = self.constraints[self._peak]
             x = np.column_stack([x, np.zeros(len(x))])
             assert isinstance(peak, _Peak)
-            x[:, -1] = peak.largest(rows, self._simulate(rows, x, None, np.zeros(len(x))), x)
+            x[:, -1] = peak.largest(
+                rows,
+                self._simulate(rows, x, None, np.zeros(len(x))),
+                x,
+            )
         return x
 
     def coefficients(self, x: Array) -> Array:

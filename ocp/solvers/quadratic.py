@@ -95,7 +95,14 @@ def least_steps(model: Model, lower: Array, upper: Array, radius: Array, linear:
         table = np.concatenate([model.equality_jacobian[i], model.bounded_jacobian[i, chosen]])
         most = np.concatenate([box, -model.equality[i], above[i, chosen]])
         least = np.concatenate([-box, -model.equality[i], below[i, chosen]])
-        solution = _solve(model.hessian[i], model.gradient[i], table, most, least, m)
+        solution = _solve(
+            model.hessian[i],
+            model.gradient[i],
+            table,
+            most,
+            least,
+            m,
+        )
         if solution is not None:
             steps.met[i] = True
             steps.d[i], multipliers = solution
@@ -124,7 +131,12 @@ def _solve(
     d, _, flag, info = daqp.solve(hessian, *program, **_EXACT)
     if flag not in (optimum, empty):  # it cycles: with a little more curvature it ends
         stiffer = hessian + 1e-6 * np.trace(hessian) * np.eye(n)
-        d, _, flag, info = daqp.solve(stiffer, *program, primal_tol=1e-9, dual_tol=1e-9)
+        d, _, flag, info = daqp.solve(
+            stiffer,
+            *program,
+            primal_tol=1e-9,
+            dual_tol=1e-9,
+        )
     return (d, info["lam"][n:]) if flag == optimum else None
 
 

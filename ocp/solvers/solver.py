@@ -53,7 +53,12 @@ class Solver:
         tolerance = positive(
             "tolerance of the solver", self.tolerance, most=0.01, why="it is a share"
         )
-        iterations = whole("iterations of the solver", self.iterations, 1, 1_000_000)
+        iterations = whole(
+            "iterations of the solver",
+            self.iterations,
+            1,
+            1_000_000,
+        )
         object.__setattr__(self, "tolerance", tolerance)
         object.__setattr__(self, "iterations", iterations)
 

@@ -129,5 +129,13 @@ def _shadow_prices(
         if scalarization.at_rest:
             of_arrival = ended.multipliers.equality[i] / transcription.arrival_scale
         tips = transcription.tip_rows[0]
-        prices.append(shadow_prices(scalarization, of_energy, bounded, of_arrival, tips))
+        prices.append(
+            shadow_prices(
+                scalarization,
+                of_energy,
+                bounded,
+                of_arrival,
+                tips,
+            )
+        )
     return prices
