@@ -88,7 +88,7 @@ class FlexibleBeam(Plant):
         youngs_modulus: float,
         length: float,
         tip_mass: float = 0.0,
-        **others: float,
+        **parameters: float,
     ) -> FlexibleBeam:
         """A beam whose frequency is not measured, from its section [m] and material [kg/m^3, Pa].
 
@@ -99,7 +99,7 @@ class FlexibleBeam(Plant):
         stiffness = youngs_modulus * width * thickness**3 / 12
         omega = k**2 * (stiffness / per_length) ** 0.5 / length**2
         return cls(
-            omega=omega, length=length, mass_per_length=per_length, tip_mass=tip_mass, **others
+            omega=omega, length=length, mass_per_length=per_length, tip_mass=tip_mass, **parameters
         )
 
     def carrying(self, tip_mass: float) -> FlexibleBeam:

@@ -56,8 +56,7 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
         raise TypeError(f"path is {path!r}; give the name of a Python file, as 'plants.py'")
     if Path(path).suffix != ".py":  # a data file may be valid Python, and is not run by mistake
         raise ValueError(f"plant file {path} is not called .py; give a Python file")
-    # Of a plant file: some twenty thousand lines.
-    most_bytes = 1_000_000
+    most_bytes = 1_000_000  # some twenty thousand lines
     try:
         if Path(path).exists() and not Path(path).is_file():  # a pipe or a device may never end
             raise ValueError(f"plant file {path} is no ordinary file; save it as one")

@@ -122,10 +122,11 @@ class Step:
         """State after the step, from the state before it and W'' at its nodes."""
         times = [self.h, self.h * self.h]
         by_mode = list(zip(*ddW))
-        ends = [(dot(_ONCE[NODES], at_nodes), dot(_TWICE[NODES], at_nodes)) for at_nodes in by_mode]
+        once = [dot(_ONCE[NODES], at_nodes) for at_nodes in by_mode]
+        twice = [dot(_TWICE[NODES], at_nodes) for at_nodes in by_mode]
         return (
-            [w + dot(times, (v, twice)) for w, v, (_, twice) in zip(W, dW, ends)],
-            [v + dot(times[:1], (once,)) for v, (once, _) in zip(dW, ends)],
+            [w + dot(times, (v, change)) for w, v, change in zip(W, dW, twice)],
+            [v + dot(times[:1], (change,)) for v, change in zip(dW, once)],
         )
 
     def transition(self) -> tuple[list[Expression], list[list[Expression]]]:
@@ -144,15 +145,15 @@ class Step:
         h = self.h
         square = self.h * self.h
         by_mode = list(zip(*ddW))
-        return [
-            NodeState(
-                [w + c * h * v + square * dot(_TWICE[j], at_nodes)
-                 for w, v, at_nodes in zip(W, dW, by_mode)],
-                [v + h * dot(_ONCE[j], at_nodes) for v, at_nodes in zip(dW, by_mode)],
-                list(ddW[j]),
-            )
-            for j, c in enumerate(GAUSS_NODES)
-        ]  # fmt: skip
+        nodes = list[NodeState]()
+        for c, once, twice, accelerations in zip(GAUSS_NODES, _ONCE, _TWICE, ddW):
+            amplitudes = [
+                w + c * h * v + square * dot(twice, at_nodes)
+                for w, v, at_nodes in zip(W, dW, by_mode)
+            ]
+            rates = [v + h * dot(once, at_nodes) for v, at_nodes in zip(dW, by_mode)]
+            nodes.append(NodeState(amplitudes, rates, list(accelerations)))
+        return nodes
 
 
 def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
