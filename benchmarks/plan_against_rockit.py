@@ -52,7 +52,7 @@ from rockit.sampling_method import FunctionGrid
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.simulation.collocation import NODES
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.solvers.nlp import OPTIONS
 from quietarm.ocp.solvers.problem import RESIDUAL, Problem, Scalarization, Solution, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
@@ -145,7 +145,7 @@ class RockitMove:
 
 
 def _boundaries(steps: int) -> list[float]:
-    return Grid(steps).boundaries.tolist()
+    return Mesh(steps).boundaries.tolist()
 
 
 def fewest(above: Callable[[int], float], within: float) -> int:

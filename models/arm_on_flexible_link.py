@@ -15,10 +15,6 @@ from quietarm.models.plant import TIP, Plant, parameter
 
 _LENGTH = 0.55
 """Of the link [m], section 3.2."""
-_ARM = 2 * 0.105
-"""Length at which the arm is drawn [m]: it is not printed; the centre of gravity is at 105 mm."""
-_CLAMP = 0.05
-"""Half the width at which the clamp is drawn [m]."""
 
 
 def _printed(value: float, unit: str, meaning: str) -> Any:
@@ -49,8 +45,10 @@ class ArmOnFlexibleLink(Plant):
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W'' from eq (13) [m/s^2]."""
-        (w,), (dw,) = W, dW
-        sine, cosine = ca.sin(joint.angle), ca.cos(joint.angle)
+        (w,) = W
+        (dw,) = dW
+        sine = ca.sin(joint.angle)
+        cosine = ca.cos(joint.angle)
         force = (
             2 * self.zeta * self.omega * dw
             + self.omega**2 * w
@@ -76,8 +74,13 @@ class ArmOnFlexibleLink(Plant):
         """
         link = flexible_link(_LENGTH, 0.0, tips[0])
         slope = np.arctan(TIP_SLOPE * tips[0] / _LENGTH)
-        arm = rigid_link(_ARM, np.pi - angle + slope, base=link[-1])
+        # It is not printed; the centre of gravity is at 105 mm.
+        arm_length = 2 * 0.105
+        arm = rigid_link(arm_length, np.pi - angle + slope, base=link[-1])
+        half_width = 0.05  # of the clamp, as drawn [m]
         return [
-            Body(np.array([[0.0, -_CLAMP], [0.0, _CLAMP]]), rigid=True), Body(link, tip=True),
-            Body(arm, rigid=True), Body(link[-1:], rigid=True),
-        ]  # fmt: skip
+            Body(np.array([[0.0, -half_width], [0.0, half_width]]), rigid=True),
+            Body(link, tip=True),
+            Body(arm, rigid=True),
+            Body(link[-1:], rigid=True),
+        ]

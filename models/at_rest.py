@@ -13,28 +13,23 @@ from numpy.typing import NDArray
 
 from quietarm.models.joint_motion import Array
 
-_TINY = 1e-12
-"""An eigenvalue that is nothing, relative to the largest."""
-_GROWTH = 1e-6
-"""Growth of a mode, relative to its frequency, that rounding does not explain."""
-_IDENTIFIED = 1e-2
-"""Share of |Z| that its real part may be below 0, as coefficients are identified one by one."""
-_SWINGS = (1e-3 + 1j) * np.geomspace(1e-2, 1e2, 21)
-"""Z is looked at close to the imaginary axis, at these multiples of the modes' frequencies."""
-
 
 def eigenvalues(slopes: Array) -> NDArray[np.complex128]:
     """Of the modes [1/s], two for each mode, at every angle."""
     by_W, by_dW = _of_modes(slopes)
-    one = np.broadcast_to(np.eye(by_W.shape[1]), by_W.shape)
-    return np.linalg.eigvals(np.block([[0 * one, one], [by_W, by_dW]])).astype(complex)
+    unit = np.broadcast_to(np.eye(by_W.shape[1]), by_W.shape)
+    return np.linalg.eigvals(np.block([[0 * unit, unit], [by_W, by_dW]])).astype(complex)
 
 
 def check_stable(plant: str, angles: Array, slopes: Array) -> None:
     """Refuse a plant of this name one of whose modes grows, or does not come back."""
     values = eigenvalues(slopes)
     largest = np.abs(values).max(axis=1, keepdims=True)
-    wrong = (values.real > _GROWTH * largest) | (np.abs(values) <= _TINY * largest)
+    # An eigenvalue that is nothing, relative to the largest.
+    tiny = 1e-12
+    # Growth of a mode, relative to its frequency, that rounding does not explain.
+    growth = 1e-6
+    wrong = (values.real > growth * largest) | (np.abs(values) <= tiny * largest)
     for row, mode in np.argwhere(wrong):
         raise ValueError(
             f"plant {plant!r} has a mode that grows or drifts: with the joint at rest at "
@@ -54,7 +49,9 @@ def check_passive(plant: str, angles: Array, slopes: Array) -> None:
             f"{angles[inertia.argmin()]:.4g} rad an acceleration of 1 rad/s^2 takes "
             f"{inertia.min():.3g} N m; check its parameters, and the signs in torque"
         )
-    s = np.sqrt(np.abs(np.linalg.eigvals(by_W)))[..., None] * _SWINGS
+    # Z is looked at close to the imaginary axis, at these multiples of the modes' frequencies.
+    swings = (1e-3 + 1j) * np.geomspace(1e-2, 1e2, 21)
+    s = np.sqrt(np.abs(np.linalg.eigvals(by_W)))[..., None] * swings
     s = s.reshape(len(angles), -1, 1)
     # the torque that holds the joint at another angle does no work in a period
     driven = slopes[:, None, 1] + s * slopes[:, None, 2]
@@ -63,7 +60,9 @@ def check_passive(plant: str, angles: Array, slopes: Array) -> None:
     state = np.concatenate([W, s * W], axis=2)
     impedance = driven[..., modes] + (slopes[:, None, 3:, modes] * state).sum(axis=2)
     shares = (impedance.real / np.abs(impedance)).min(axis=1)
-    if shares.min() < -_IDENTIFIED:
+    # Share of |Z| that its real part may be below 0, as coefficients are identified one by one.
+    identified = 1e-2
+    if shares.min() < -identified:
         raise ValueError(
             f"plant {plant!r} yields work from rest: a joint that swings about "
             f"{angles[shares.argmin()]:.4g} rad gets back more than it gave, as torque and modes "

@@ -18,8 +18,6 @@ from quietarm.models.joint_motion import Expression
 _NODES, _WEIGHTS = ((part / 2).tolist() for part in np.polynomial.legendre.leggauss(24))
 _PLACES = [0.5 + node for node in _NODES]
 """Places along the beam, whose weights in integrals are `_WEIGHTS`."""
-_NEWTON = 12
-"""Newton's iterations for a wave number: from its bounds it takes six."""
 
 
 class BeamModes(NamedTuple):
@@ -49,7 +47,7 @@ def beam_modes(count: int, ratio: Expression, radius: Expression) -> BeamModes:
         waves,
         masses=[ratio + _integral(shape, shape) for shape in values],
         pushes=[end + _integral(arms, shape) for shape in values],
-        stiffenings=[[_integral(tension, one, other) for other in slopes] for one in slopes],
+        stiffenings=[[_integral(tension, first, second) for second in slopes] for first in slopes],
     )
 
 
@@ -73,10 +71,15 @@ def _wave_number(index: int, ratio: Expression) -> Expression:
     if index == 0:  # Rayleigh's estimate, within 2 % for any mass
         k: Expression = ca.sqrt(ca.sqrt(3 / (ratio + 33 / 140)))
     else:
-        free, pinned = (index + 0.5) * pi, (index + 0.25) * pi
+        free = (index + 0.5) * pi
+        pinned = (index + 0.25) * pi
         k = pinned + (free - pinned) / (1 + 4 * index * ratio)
-    for _ in range(_NEWTON):  # the equation over cosh k, which keeps its numbers small
-        sine, cosine, tangent = ca.sin(k), ca.cos(k), ca.tanh(k)
+    # Newton's method, which takes six iterations from these bounds, for the equation over cosh k:
+    # that keeps its numbers small.
+    for _ in range(12):
+        sine = ca.sin(k)
+        cosine = ca.cos(k)
+        tangent = ca.tanh(k)
         of_mass = cosine * tangent - sine
         value = 1 / ca.cosh(k) + cosine + ratio * k * of_mass
         by_mass = ratio * of_mass - ratio * k * tangent * (sine + cosine * tangent)

@@ -56,5 +56,6 @@ def flexible_link(
 
 
 def _placed(points: Array, angle: float, base: Sequence[float]) -> Array:
-    cosine, sine = np.cos(angle), np.sin(angle)
+    cosine = np.cos(angle)
+    sine = np.sin(angle)
     return points @ np.array([[cosine, sine], [-sine, cosine]]) + np.asarray(base)

@@ -12,9 +12,6 @@ from quietarm.models.drawing import Body, flexible_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.plant import TIP, Plant, parameter
 
-_LENGTH = 0.5
-"""Length at which both links are drawn [m]: theirs are not published."""
-
 
 def _identified(theory: float, factor: float, unit: str, meaning: str) -> Any:
     source = "theoretical value times identified factor, docs/physics.md"
@@ -76,6 +73,8 @@ class DualLinkManipulator(Plant):
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """Two links on one hub, the second opposite the first: how they stand is not published."""
-        first = flexible_link(_LENGTH, angle, tips[0])
-        second = flexible_link(_LENGTH, angle + np.pi, tips[1])
+        # Length at which both links are drawn [m]: theirs are not published.
+        length = 0.5
+        first = flexible_link(length, angle, tips[0])
+        second = flexible_link(length, angle + np.pi, tips[1])
         return [Body(first, tip=True), Body(second, tip=True), Body(first[:1], rigid=True)]

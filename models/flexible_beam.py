@@ -18,8 +18,6 @@ from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.plant import COUNT, Plant, parameter
 
 _MOST_MODES = 6
-_LONGEST = 100.0
-"""A longer beam [m] was typed in other units."""
 _NONE = "none by default"
 _PAPERS = "the paper's plate, section 3.1"
 _modes_of_numbers = lru_cache(maxsize=256)(beam_modes)
@@ -61,7 +59,9 @@ class FlexibleBeam(Plant):
             if value < 0 or (positive and value == 0):
                 least = "more than 0" if positive else "0 or more"
                 raise ValueError(f"{name} is {value:g}; give {least}")
-        if self.length > _LONGEST:
+        # A longer beam [m] was typed in other units.
+        longest = 100.0
+        if self.length > longest:
             raise ValueError(f"length is {self.length:g} m, of no joint; give metres, or 475mm")
         if (count := self.mode_count) not in range(1, _MOST_MODES + 1):
             raise ValueError(
@@ -88,7 +88,7 @@ class FlexibleBeam(Plant):
         youngs_modulus: float,
         length: float,
         tip_mass: float = 0.0,
-        **others: float,
+        **parameters: float,
     ) -> FlexibleBeam:
         """A beam whose frequency is not measured, from its section [m] and material [kg/m^3, Pa].
 
@@ -99,14 +99,18 @@ class FlexibleBeam(Plant):
         stiffness = youngs_modulus * width * thickness**3 / 12
         omega = k**2 * (stiffness / per_length) ** 0.5 / length**2
         return cls(
-            omega=omega, length=length, mass_per_length=per_length, tip_mass=tip_mass, **others
+            omega=omega, length=length, mass_per_length=per_length, tip_mass=tip_mass, **parameters
         )
 
     def carrying(self, tip_mass: float) -> FlexibleBeam:
         """The same beam, of the same stiffness, with another mass [kg] at its tip."""
         (before,), *_ = beam_modes(1, self.tip_mass / self._mass, 0.0)
         (after,), *_ = beam_modes(1, tip_mass / self._mass, 0.0)
-        return replace(self, tip_mass=tip_mass, omega=self.omega * (after / before) ** 2)
+        return replace(
+            self,
+            tip_mass=tip_mass,
+            omega=self.omega * (after / before) ** 2,
+        )
 
     @property
     def _mass(self) -> Expression:
@@ -114,25 +118,27 @@ class FlexibleBeam(Plant):
 
     @property
     def _modes(self) -> BeamModes:
-        ratio, radius = self.tip_mass / self._mass, self.hub_radius / self.length
+        ratio = self.tip_mass / self._mass
+        radius = self.hub_radius / self.length
         are_numbers = isinstance(ratio, float) and isinstance(radius, float)
         return (_modes_of_numbers if are_numbers else beam_modes)(self.modes, ratio, radius)
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """Second derivatives of what each mode displaces the tip by [m/s^2]."""
         first, *_ = self._modes.wave_numbers
-        found: list[Expression] = []
+        accelerations: list[Expression] = []
         for i, (k, mass, push, stiffening) in enumerate(zip(*self._modes)):
             omega = self.omega * (k / first) ** 2
             by_speed = sum(map(mul, stiffening, W)) / mass - W[i]
             vibration = -2 * self.zeta * omega * dW[i] - omega**2 * W[i]
             pushed = joint.speed**2 * by_speed + self.length * push / mass * joint.acceleration
-            found.append(vibration - pushed)
-        return found
+            accelerations.append(vibration - pushed)
+        return accelerations
 
     def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque [N m]."""
-        radius, end = self.hub_radius, self.hub_radius + self.length
+        radius = self.hub_radius
+        end = self.hub_radius + self.length
         of_beam = self.mass_per_length * (end**3 - radius**3) / 3
         inertia = self.hub_inertia + of_beam + self.tip_mass * end**2
         bending = self._mass * self.length * sum(map(mul, self._modes.pushes, ddW))

@@ -16,7 +16,8 @@ Expression = Any
 Modes = Sequence[Expression]
 """A value for each mode: amplitudes W [m], rates [m/s], accelerations [m/s^2]."""
 
-LINEAR, ROTARY = "linear", "rotary"
+LINEAR = "linear"
+ROTARY = "rotary"
 """Kinds of joint."""
 
 

@@ -13,8 +13,6 @@ from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.plant import COUNT, Plant, parameter
 
 _MADE_UP = "made up: a gantry of 8 kg"
-_LENGTH = 0.3
-"""At which the load is drawn below the carriage [m]."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +91,9 @@ class LinearAxis(Plant):
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The load below its carriage, along the axis."""
         carriage = np.array([[angle - 0.05, 0.0], [angle + 0.05, 0.0]])
+        # At which the load is drawn below the carriage [m].
+        length = 0.3
         return [
             Body(carriage, rigid=True),
-            Body(np.array([[angle, 0.0], [angle + tips[0], -_LENGTH]]), tip=True),
+            Body(np.array([[angle, 0.0], [angle + tips[0], -length]]), tip=True),
         ]

@@ -85,8 +85,13 @@ class Plant(ABC):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        refuse_overridden(cls, Plant, "the three equations; other checks belong into __post_init__")
-        for entry, kinds in _KINDS.items():
+        refuse_overridden(
+            cls,
+            Plant,
+            "the three equations; other checks belong into __post_init__",
+        )
+        choices = {"joint": (ROTARY, LINEAR), "tip_unit": ("m", "rad")}
+        for entry, kinds in choices.items():
             if getattr(cls, entry) not in kinds:
                 raise ValueError(
                     f"{entry} of {cls.__name__} is {getattr(cls, entry)!r}; give "
@@ -100,12 +105,14 @@ class Plant(ABC):
         Plant._known[name] = cls
 
     def __post_init__(self) -> None:
+        # Powers of larger ones are beyond double precision.
+        largest = 1e100
         for name, value in self.parameters.items():
             number = isinstance(value, Real) and not isinstance(value, bool)
-            if not (number and abs(value) <= _MOST_PARAMETER):
+            if not (number and abs(value) <= largest):
                 raise ValueError(
                     f"{self.name}: parameter {name} is {reprlib.repr(value)}; give a finite number "
-                    f"of at most {_MOST_PARAMETER:g} in size, in SI units"
+                    f"of at most {largest:g} in size, in SI units"
                 )
             object.__setattr__(self, name, float(value))
 
@@ -168,7 +175,8 @@ class Plant(ABC):
 
         The joint's angle is in rad; the tips are `tip_displacements` [m], scaled for the picture.
         """
-        links = [Body(rigid_link(1.0, angle, tip), rigid=True, tip=True) for tip in tips]
+        shapes = [rigid_link(1.0, angle, tip) for tip in tips]
+        links = [Body(shape, rigid=True, tip=True) for shape in shapes]
         return [*links, Body(np.zeros((1, 2)), rigid=True)]
 
     @property
@@ -215,12 +223,6 @@ class Plant(ABC):
         """
         check_contract(self)
         check_passive(self)
-
-
-_KINDS = {"joint": (ROTARY, LINEAR), "tip_unit": ("m", "rad")}
-"""What entries of a class may be."""
-_MOST_PARAMETER = 1e100
-"""Powers of larger ones are beyond double precision."""
 
 
 def known_plants() -> dict[str, type[Plant]]:

@@ -29,8 +29,6 @@ class PlantFile:
         return hashlib.sha256(self.source).hexdigest()
 
 
-_MOST_BYTES = 1_000_000
-"""Of a plant file: some twenty thousand lines."""
 _file_of: dict[type[Plant], PlantFile] = {}
 
 
@@ -58,15 +56,16 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
         raise TypeError(f"path is {path!r}; give the name of a Python file, as 'plants.py'")
     if Path(path).suffix != ".py":  # a data file may be valid Python, and is not run by mistake
         raise ValueError(f"plant file {path} is not called .py; give a Python file")
+    most_bytes = 1_000_000  # some twenty thousand lines
     try:
         if Path(path).exists() and not Path(path).is_file():  # a pipe or a device may never end
             raise ValueError(f"plant file {path} is no ordinary file; save it as one")
         with open(path, "rb") as file:
-            source = file.read(_MOST_BYTES + 1)
+            source = file.read(most_bytes + 1)
     except OSError as error:
         raise ValueError(f"plant file {path} cannot be read: {error}; give another file") from None
-    if len(source) > _MOST_BYTES:
-        raise ValueError(f"plant file {path} has over {_MOST_BYTES} bytes; is it another file?")
+    if len(source) > most_bytes:
+        raise ValueError(f"plant file {path} has over {most_bytes} bytes; is it another file?")
     return dict(_plants_of(PlantFile(str(path), source)))
 
 
@@ -115,7 +114,8 @@ def _run(file: PlantFile) -> dict[str, type[Plant]]:
     module.__file__ = file.path
     sys.path.append(folder := str(Path(file.path).resolve().parent))  # it may import its neighbour
     try:
-        exec(compile(file.source, file.path, "exec", dont_inherit=True), vars(module))
+        code = compile(file.source, file.path, "exec", dont_inherit=True)
+        exec(code, vars(module))
     except Exception as error:
         del sys.modules[module.__name__]
         frames = traceback.extract_tb(error.__traceback__)

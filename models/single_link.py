@@ -41,7 +41,8 @@ class SingleLinkManipulator(Plant):
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W'' from eq (9) [m/s^2]."""
-        (w,), (dw,) = W, dW
+        (w,) = W
+        (dw,) = dW
         stiffness = self.omega**2 + self.beta2 * joint.speed**2
         damping = 2 * self.zeta * self.omega
         return [-damping * dw - stiffness * w - self.beta1 * joint.acceleration]

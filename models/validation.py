@@ -42,22 +42,17 @@ _RIGHT = math.pi / 2
 _ANGLES = np.linspace(-2 * math.pi, 2 * math.pi, 241)
 _ANGLES += np.random.default_rng(0).uniform(-0.02, 0.02, 241)  # else sin(60 angle) is 0 at all
 _ANGLES[:5] = _RIGHT * np.array([0, -1, 1, -2, 2])
-_ON_THE_WAY = 101
-"""How many joint angles of a move are looked at."""
 _KINDS = np.array([[1, 1, 1, 1], [1, -1, 1, 1], [1, 0, 1, 1], [1, 1, 0, 1], [1, 0, 0, 0]])
 """Factors of angle, speed, acceleration and modes in the motions at an angle: forwards, backwards,
 at a turning point, at constant speed and, last, at rest."""
-_TINY = 1e-12
-"""What counts as nothing, relative to the values of a moving joint."""
-_SAME = 1e-9
-"""Share by which values may differ from what they should be, by rounding."""
 _EITHER = {"torque": "torques", "tip_displacements": "tips_at"}
 """Methods of which a plant gives one: for one joint or the same tips at any place, or for all."""
 
 
 def check_contract(plant: Plant) -> None:
     """Refuse a plant that breaks the contract of `Plant`; ValueError with what is wrong."""
-    kind, modes = type(plant), getattr(plant, "modes", None)
+    kind = type(plant)
+    modes = getattr(plant, "modes", None)
     bare = any(isinstance(entry, Field) for entry in vars(kind).values())
     is_frozen = is_dataclass(plant) and not bare and kind.__hash__ is not None
     if not (is_frozen and isinstance(modes, int) and modes > 0):
@@ -82,8 +77,10 @@ def check_passive(plant: Plant) -> None:
 def check_along(plant: Plant, start: float, target: float) -> None:
     """Refuse a move [rad] on which the equations have no value, as a crank's at its dead centre."""
     low, high = sorted((start, target))
-    right = _RIGHT * np.arange(math.ceil(low / _RIGHT), math.floor(high / _RIGHT) + 1)[:_ON_THE_WAY]
-    angles = np.concatenate([[start, target], right, np.linspace(low, high, _ON_THE_WAY)])
+    count = 101
+    quarters = np.arange(math.ceil(low / _RIGHT), math.floor(high / _RIGHT) + 1)
+    right = _RIGHT * quarters[:count]
+    angles = np.concatenate([[start, target], right, np.linspace(low, high, count)])
     motions = _motions(angles, plant.modes)[:, :: len(_KINDS) - 1]  # forwards and at rest
     _check_finite(plant, motions, next(_evaluate(plant, motions)))
 
@@ -110,15 +107,17 @@ def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
     # an angle at which no motion has a value is none to move to
     defined = np.any(np.isfinite(values).all(axis=2), axis=1)
     if defined.any():
-        motions, values, slopes = motions[defined], values[defined], slopes[defined]
+        motions = motions[defined]
+        values = values[defined]
+        slopes = slopes[defined]
     _check_finite(plant, motions, np.concatenate([values, slopes], axis=2))
     _check_side_by_side(plant, motions, values)
     _check_rest(plant, motions, values)
     # where the angle does not matter, the first is enough
     still, first = np.unique(slopes[:, -1], axis=0, return_index=True)
-    found = motions[first, -1, 0], still.reshape(len(still), motions.shape[2], -1)
-    at_rest.check_stable(plant.name, *found)
-    return found
+    at_angles = motions[first, -1, 0], still.reshape(len(still), motions.shape[2], -1)
+    at_rest.check_stable(plant.name, *at_angles)
+    return at_angles
 
 
 def _angles_of(plant: Plant) -> Array:
@@ -188,8 +187,10 @@ def outputs_of(plant: Plant, arguments: Sequence[Expression]) -> list[Expression
 
     ValueError where a method fails or gives something else than it should.
     """
-    joint, modes = JointMotion(*arguments[:3]), plant.modes
-    W, dW = list(arguments[3 : 3 + modes]), list(arguments[3 + modes :])
+    joint = JointMotion(*arguments[:3])
+    modes = plant.modes
+    W = list(arguments[3 : 3 + modes])
+    dW = list(arguments[3 + modes :])
     ddW = _call(plant, "modal_accelerations", joint, W, dW)
     return [*ddW, _torque(plant, joint, W, dW, ddW), *_tips(plant, joint, W)]
 
@@ -218,21 +219,25 @@ def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
     """What a method returns, as a list."""
     try:
         with warnings.catch_warnings():
-            warnings.filterwarnings("error", r"\s*casadi: a numpy function", FutureWarning)
-            found: Any = getattr(plant, method)(*arguments)
+            warnings.filterwarnings(
+                "error",
+                r"\s*casadi: a numpy function",
+                FutureWarning,
+            )
+            result: Any = getattr(plant, method)(*arguments)
     except Exception as error:
         inside = traceback.extract_tb(error.__traceback__)[1:2]
-        at = "".join(f" at line {one.lineno} of {Path(one.filename).name}" for one in inside)
+        at = "".join(f" at line {frame.lineno} of {Path(frame.filename).name}" for frame in inside)
         text = str(error).strip().partition("\n")[0]
         of_symbol = "to_double" in text or "truth value" in text  # casadi's own words say little
         why = "a symbol is no number" if of_symbol else f"{type(error).__name__}: {text}"
         raise _wrong(plant, method, f"fails{at} ({why})") from None
-    entries = [found] if method == "torque" else found
+    entries = [result] if method == "torque" else result
     entries = list(entries) if isinstance(entries, list | tuple) else []
     count = plant.modes if method == "modal_accelerations" else max(1, len(entries))
     kinds = JointMotion if method == "joints" else Real | ca.SX | ca.MX | ca.DM
     if len(entries) != count or not all(isinstance(entry, kinds) for entry in entries):
-        raise _wrong(plant, method, f"returns {reprlib.repr(found)}")
+        raise _wrong(plant, method, f"returns {reprlib.repr(result)}")
     return entries
 
 
@@ -248,13 +253,18 @@ def _wrong(plant: Plant, method: str, what: str, remedy: str = "") -> ValueError
 def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
     """Many motions that stand side by side in matrices give what each gives alone."""
     outputs = outputs_of(plant, [ca.DM(column.ravel()) for column in np.moveaxis(motions, 2, 0)])
-    each = np.moveaxis(values, 2, 0).reshape(len(outputs), -1)
-    for method, output, alone in zip(_methods(plant), outputs, each):
-        found = ca.DM(output).full().T
+    by_output = np.moveaxis(values, 2, 0).reshape(len(outputs), -1)
+    for method, output, alone in zip(_methods(plant), outputs, by_output):
+        together = ca.DM(output).full().T
         least = 1e-9 * np.abs(alone).max()
-        if len(found) > 1 or not np.allclose(found, alone, rtol=1e-9, atol=least):
+        if len(together) > 1 or not np.allclose(together, alone, rtol=1e-9, atol=least):
             remedy = "compute entry by entry: no sum, dot, mtimes or max over entries"
-            raise _wrong(plant, method, "mixes motions that are side by side in a matrix", remedy)
+            raise _wrong(
+                plant,
+                method,
+                "mixes motions that are side by side in a matrix",
+                remedy,
+            )
 
 
 def _check_rates(plant: Plant) -> None:
@@ -265,7 +275,9 @@ def _check_rates(plant: Plant) -> None:
     """
     size = 4 + 2 * plant.modes
     x = ca.SX.sym("x", size)
-    path, W, dW = JointMotion(*ca.vertsplit(x[:4])), x[4 : 4 + plant.modes], x[4 + plant.modes :]
+    path = JointMotion(*ca.vertsplit(x[:4]))
+    W = x[4 : 4 + plant.modes]
+    dW = x[4 + plant.modes :]
     moving = ca.vertcat(path.angle, path.speed, path.acceleration, W)
     rates = ca.vertcat(path.speed, path.acceleration, path.jerk, dW)
     pairs = list[tuple[str, Expression, Expression]]()
@@ -273,10 +285,16 @@ def _check_rates(plant: Plant) -> None:
         for joint in _call(plant, "joints", path):
             for value, rate in pairwise(joint):
                 if rate is None:
-                    raise _wrong(plant, "joints", "gives no jerk where the path has one", "give it")
+                    raise _wrong(
+                        plant,
+                        "joints",
+                        "gives no jerk where the path has one",
+                        "give it",
+                    )
                 pairs.append(("joints", value, rate))
     if _gives(plant, "tips_at") or _gives(plant, "tip_speeds"):
-        amplitudes, speeds = ca.vertsplit(W), ca.vertsplit(dW)
+        amplitudes = ca.vertsplit(W)
+        speeds = ca.vertsplit(dW)
         tips = _tips(plant, path, amplitudes)
         tip_speeds = _call(plant, "tip_speeds", path, amplitudes, speeds)
         if len(tips) != len(tip_speeds):
@@ -290,18 +308,29 @@ def _check_rates(plant: Plant) -> None:
     random[:, 0] = angles
     methods, values, stated = zip(*pairs)
     due = ca.jtimes(ca.vertcat(*values), moving, rates)
-    both = ca.Function("rates", [x], [ca.densify(due), ca.densify(ca.vertcat(*stated))])
+    both = ca.Function(
+        "rates",
+        [x],
+        [ca.densify(due), ca.densify(ca.vertcat(*stated))],
+    )
     should, are = (table.full() for table in both(random.T))
     largest = np.abs(should).max(axis=1, keepdims=True)
-    for row, column in np.argwhere(~(np.abs(are - should) <= _SAME * np.maximum(largest, 1e-3))):
+    rounding = 1e-9 * np.maximum(largest, 1e-3)
+    for row, column in np.argwhere(~(np.abs(are - should) <= rounding)):
         at = f"at {angles[column]:.4g} of the path"
         what = f"gives a rate of {are[row, column]:.6g} {at} where it is {should[row, column]:.6g}"
-        raise _wrong(plant, methods[row], what, "give the time derivatives along the path")
+        raise _wrong(
+            plant,
+            methods[row],
+            what,
+            "give the time derivatives along the path",
+        )
 
 
 def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
     """Values, and slopes after them, are finite in every motion."""
-    finite, methods = np.isfinite(table), _methods(plant)
+    finite = np.isfinite(table)
+    methods = _methods(plant)
     if not finite.all():
         angle, kind, _ = np.argwhere(~finite)[-1]  # the simplest motion: at rest, if it fails there
         column = finite[angle, kind].argmin()
@@ -316,12 +345,25 @@ def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
 
 def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
     """At rest the structure stays at rest, and there are motions that move every tip."""
-    still, moving = values[:, -1], np.abs(values).max(axis=1)
-    wrong = np.abs(still) > _TINY * moving
+    still = values[:, -1]
+    moving = np.abs(values).max(axis=1)
+    # What counts as nothing, relative to the values of a moving joint.
+    tiny = 1e-12
+    wrong = np.abs(still) > tiny * moving
     wrong[:, plant.modes] = False  # the torque may hold the joint
     for row, column in np.argwhere(wrong):
         at = f"with the joint at rest at {motions[row, -1, 0]:.4g} rad and W = 0"
         what = f"gives {still[row, column]:.4g}, not 0, {at}"
-        raise _wrong(plant, _methods(plant)[column], what, "measure W from the static deflection")
+        raise _wrong(
+            plant,
+            _methods(plant)[column],
+            what,
+            "measure W from the static deflection",
+        )
     if not moving[:, plant.modes + 1 :].any(axis=0).all():
-        raise _wrong(plant, "tip_displacements", "returns a tip that no W moves", "give W a factor")
+        raise _wrong(
+            plant,
+            "tip_displacements",
+            "returns a tip that no W moves",
+            "give W a factor",
+        )

@@ -23,27 +23,14 @@ from quietarm.ocp.limits import JERK, QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion, check_profile
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.cvodes import Run, integrate, integrate_to
+from quietarm.ocp.simulation.cvodes import Integration, integrate, integrate_to
 from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import PEAKS, Motion
 from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
-
-_STEPS, _SMOOTH_STEPS = 500, 250
-"""Least number of steps of the quadrature, in all and where nothing breaks: its nodes are at most a
-thousandth of the move apart, or two. On the paper's conditions energies with 250 are those with
-2000 within 1e-10."""
-_STEPS_OF_A_PART = 2
-"""Of the shortest part between two breaks: there a spline may turn its acceleration."""
-_STEPS_A_RADIAN = 10
-"""Steps for each radian of the plant's fastest mode, where this gives more."""
-_LEAST_STEPS_OF_A_PIECE = 2
-"""So that every piece has the seven samples that `extremes` needs."""
-_RADIANS_A_SAMPLE = 0.003
-"""Phase of the fastest mode between samples after arrival: these miss 1.2e-6 of a peak at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +75,7 @@ class Candidate(Ranged):
         """The move along a profile; ValueError where coefficients or duration do not fit it."""
         check_profile(profile)
         path = PiecewiseMotion.of_profile(task, profile, coefficients)
-        checked = tuple(path.given[: profile.size, 0].tolist())
+        checked = tuple(path.arguments[: profile.size, 0].tolist())
         check_motion(profile, checked, *task.move)
         return cls(task, path, profile=profile, coefficients=checked)
 
@@ -127,18 +114,19 @@ class Candidate(Ranged):
     def residual(self) -> float:
         """Largest tip displacement after arrival from the wanted free vibration, F1 [m]."""
         missed = self.task.missed(self.arrival)
-        each = zip(self.scenarios, missed)
-        return max(float(one._vibration.peak(state)) for one, state in each)
+        pairs = zip(self.scenarios, missed)
+        return max(float(motion._vibration.peak(state)) for motion, state in pairs)
 
     @cached_property
     def arrival(self) -> NDArray[np.float64]:
         """W (m) and then W' (m/s) on arrival, shape (scenarios, 2 * modes)."""
-        return np.array([one._run.arrival for one in self.scenarios])
+        return np.array([motion._run.arrival for motion in self.scenarios])
 
     @cached_property
     def motion(self) -> Motion:
         """All values; peaks include those between the samples."""
-        task, joint = self.task, self._samples.motion
+        task = self.task
+        joint = self._samples.motion
         past_target = (self._largest(joint.angle[None]) - task.target) * np.sign(task.span)
         known = {
             quantity.name: self._range(quantity)
@@ -174,8 +162,8 @@ class Candidate(Ranged):
     def _range(self, quantity: Quantity) -> tuple[float, float]:
         """Least and largest value in the scenarios that count, between the samples as well."""
         counted = self.scenarios if quantity.in_scenarios else (self,)
-        found = np.concatenate([one._ranges(quantity) for one in counted])
-        return float(found.min()), float(found.max())
+        ranges = np.concatenate([motion._ranges(quantity) for motion in counted])
+        return float(ranges.min()), float(ranges.max())
 
     def _ranges(self, quantity: Quantity) -> NDArray[np.float64]:
         """The same of each of its values on this plant."""
@@ -183,17 +171,21 @@ class Candidate(Ranged):
 
     def _largest(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
         """Least and largest value of each row of samples."""
-        return extremes(self._grid.samples, rows)
+        return extremes(self._mesh.samples, rows)
 
     @property
     def trajectory(self) -> Trajectory:
         """The move and the residual window; where two pieces meet, two samples of one time."""
-        lengths, fractions = self.path.given[-1], self._grid.samples
+        lengths = self.path.arguments[-1]
+        fractions = self._mesh.samples
         begins = np.append(0.0, np.cumsum(lengths[:-1]))
         times = (begins[:, None] + np.outer(lengths, fractions)).ravel()
         times = np.minimum(times, self.task.duration)  # beyond it by rounding
         vibration = self._vibration
-        samples = math.ceil(vibration.window * vibration.fastest / _RADIANS_A_SAMPLE) + 2
+        # Phase of the fastest mode between samples after arrival: these miss 1.2e-6 of a peak at
+        # most.
+        radians_a_sample = 0.003
+        samples = math.ceil(vibration.window * vibration.fastest / radians_a_sample) + 2
         later = np.linspace(0.0, vibration.window, samples)
         outputs = np.hstack([self._run.outputs, self._after(later)])
         times = np.append(times, self.task.duration + later)
@@ -212,28 +204,31 @@ class Candidate(Ranged):
         ValueError
             When the times do not increase from 0 or later, or the motion is a free one.
         """
-        at, duration = np.atleast_1d(np.asarray(times, dtype=float)), self.task.duration
+        at = np.atleast_1d(np.asarray(times, dtype=float))
+        duration = self.task.duration
         ordered = at.ndim == 1 and at.size and at[0] >= 0 and np.all(np.diff(at) > 0)
         if not (ordered and np.all(np.isfinite(at))):
             raise ValueError(
                 f"sample times are {reprlib.repr(at.tolist())}; give finite ones that increase "
                 "from 0 or later"
             )
-        if self.path.given.shape[1] > 1:
+        if self.path.arguments.shape[1] > 1:
             raise ValueError("a free motion has samples of its own; take its trajectory")
-        moving, later = at[at <= duration], at[at > duration] - duration
+        moving = at[at <= duration]
+        later = at[at > duration] - duration
         fractions, places = np.unique(np.append(moving / duration, [0.0, 1.0]), return_inverse=True)
-        plant, initial = self.task.plant, self.task.initial_state
+        plant = self.task.plant
+        initial = self.task.initial_state
         outputs = integrate_to(plant, self.errors, self.path, initial, fractions)
         outputs = np.hstack([outputs[:, places[:-2]], self._after(later)])
         return Trajectory.from_outputs(plant, at, outputs)
 
     @cached_property
-    def _run(self) -> Run:
+    def _run(self) -> Integration:
         _ = self._vibration  # refuses a window that is too long
         task = self.task
         return integrate(
-            task.plant, self.errors, self.path, task.initial_state, self._grid.steps, task.energy
+            task.plant, self.errors, self.path, task.initial_state, self._mesh.steps, task.energy
         )
 
     @property
@@ -242,20 +237,35 @@ class Candidate(Ranged):
         return vibration_of(plant, self.task.target, self.task.residual_window)
 
     @cached_property
-    def _grid(self) -> Grid:
+    def _mesh(self) -> Mesh:
         """Steps of the quadrature on every piece."""
-        least = _SMOOTH_STEPS if self.path.smooth else _STEPS
+        # Least number of steps of the quadrature, in all and where nothing breaks: its nodes are
+        # at most a thousandth of the move apart, or two. On the paper's conditions energies with
+        # 250 are those with 2000 within 1e-10.
+        least_steps = 500
+        least_smooth_steps = 250
+        least = least_smooth_steps if self.path.smooth else least_steps
         fastest = fastest_along(self.task.plant, self.task.start, self.task.target)
-        blocks = math.ceil(_STEPS_A_RADIAN * fastest * self.task.duration / least)
-        of_a_piece = math.ceil(least * max(1, blocks) / self.path.given.shape[1])
-        of_a_piece = max(of_a_piece, math.ceil(_STEPS_OF_A_PART / self.path.shortest_part))
-        return Grid(max(of_a_piece, _LEAST_STEPS_OF_A_PIECE))
+        # Steps for each radian of the plant's fastest mode, where this gives more.
+        steps_a_radian = 10
+        blocks = math.ceil(steps_a_radian * fastest * self.task.duration / least)
+        of_a_piece = math.ceil(least * max(1, blocks) / self.path.arguments.shape[1])
+        # Of the shortest part between two breaks: there a spline may turn its acceleration.
+        steps_of_a_part = 2
+        of_a_piece = max(of_a_piece, math.ceil(steps_of_a_part / self.path.shortest_part))
+        # So that every piece has the seven samples that `extremes` needs.
+        least_of_a_piece = 2
+        return Mesh(max(of_a_piece, least_of_a_piece))
 
     @cached_property
     def _samples(self) -> Trajectory:
         """Everything on the way, at the samples of the quadrature."""
         outputs = self._run.outputs
-        return Trajectory.from_outputs(self.task.plant, np.zeros(outputs.shape[1]), outputs)
+        return Trajectory.from_outputs(
+            self.task.plant,
+            np.zeros(outputs.shape[1]),
+            outputs,
+        )
 
     def _after(self, later: NDArray[np.float64]) -> NDArray[np.float64]:
         """`outputs_of` the joint at rest, at times since arrival [s]."""

@@ -68,10 +68,10 @@ def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.
             "coefficients are a masked array; give plain numbers, as of its filled(value)"
         )
     try:
-        given = np.asarray(coefficients)
-        if given.dtype.kind not in "iufO":
+        table = np.asarray(coefficients)
+        if table.dtype.kind not in "iufO":
             raise TypeError
-        table = given.astype(float)
+        table = table.astype(float)
     except (TypeError, ValueError, OverflowError):
         raise ValueError(
             f"coefficients are {reprlib.repr(coefficients)}; give a row of numbers for each motion"
@@ -120,7 +120,7 @@ def _instead_of(value: Any, kind: type[Any]) -> str:
     if isinstance(value, str):
         named = known(kind)
         complete = {name: entry for name, entry in named.items() if not _needed(entry)}
-        # one that needs nothing works as it stands in the message
+        # a class that needs nothing works as it stands in the message
         meant = complete.get(nearest_name(value, complete)) or named.get(nearest_name(value, named))
     if meant is not None:
         return f"an object, as {_construction(meant)}"
@@ -196,25 +196,27 @@ def cut(text: str, most: int) -> str:
     """A text of at most so many letters, without its middle where it is longer."""
     if len(text) <= most:
         return text
-    left = (most - 5) // 2
-    return f"{text[:left]} ... {text[-left:]}"
+    head = (most - 5) // 2
+    return f"{text[:head]} ... {text[-head:]}"
 
 
 def printable(text: str) -> str:
     """A text for a terminal, which would obey the control characters of a stranger's file."""
     if text.isprintable():
         return text
-    kept = "\n\t\N{NO-BREAK SPACE}"
-    return "".join(letter if letter.isprintable() or letter in kept else "?" for letter in text)
+    whitespace = "\n\t\N{NO-BREAK SPACE}"
+    return "".join(
+        letter if letter.isprintable() or letter in whitespace else "?" for letter in text
+    )
 
 
 def known(family: type[T]) -> dict[str, type[T]]:
     """The subclasses that have a name of their own, by it, those of the user's own files too."""
-    found: dict[str, type[T]] = {}
+    classes: dict[str, type[T]] = {}
     for kind in family.__subclasses__():
         name = vars(kind).get("name")
-        found |= ({name: kind} if isinstance(name, str) else {}) | known(kind)
-    return found
+        classes |= ({name: kind} if isinstance(name, str) else {}) | known(kind)
+    return classes
 
 
 NotNegative = Annotated[float, Meta(ge=0)]

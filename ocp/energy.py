@@ -45,15 +45,15 @@ class Energy(ABC):
     @property
     def label(self) -> str:
         """What the energy is called, as it is typed, too, such as ``copper:0.12``."""
-        own: Any = self
-        numbers = ",".join(f"{number:.12g}" for number in astuple(own))
+        energy: Any = self  # every energy is a dataclass
+        numbers = ",".join(f"{number:.12g}" for number in astuple(energy))
         return f"{self.name}:{numbers}" if numbers else self.name
 
-    def __add__(self, other: Energy) -> Mix:
-        return Mix((*_parts(self), *_parts(other)))
+    def __add__(self, energy: Energy) -> Mix:
+        return Mix((*_parts(self), *_parts(energy)))
 
     def __mul__(self, weight: float) -> Mix:
-        return Mix(tuple((weight * own, part) for own, part in _parts(self)))
+        return Mix(tuple((weight * factor, part) for factor, part in _parts(self)))
 
     __rmul__ = __mul__
 
@@ -123,7 +123,11 @@ class Mix(Energy):
             for weight, part in self.parts
         )
         object.__setattr__(self, "parts", parts)
-        object.__setattr__(self, "absolute", sum(weight * part.absolute for weight, part in parts))
+        object.__setattr__(
+            self,
+            "absolute",
+            sum(weight * part.absolute for weight, part in parts),
+        )
 
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
         """The weighted sum of the parts'."""
@@ -135,12 +139,6 @@ class Mix(Energy):
         weights = ("" if weight == 1 else f"{weight:.12g}*" for weight, _ in self.parts)
         labels = (part.label for _, part in self.parts)
         return "+".join(map("".join, zip(weights, labels)))
-
-
-_ROWS = 7
-"""Candidates at which an energy is looked at."""
-_SAME = 1e-9
-"""Share by which an integrand of one candidate may differ from that among others."""
 
 
 def check_energy(energy: Energy) -> None:
@@ -164,11 +162,15 @@ def _check_integrand(energy: Energy) -> None:
     if not isinstance(energy.absolute, Real):
         raise ValueError(f"{name} is {energy.absolute!r}; give a number, 0 or more")
     not_negative(name, energy.absolute)
-    torques, speeds = np.random.default_rng(0).uniform(-2.0, 2.0, (2, _ROWS))
+    # Candidates at which an energy is looked at.
+    rows = 7
+    torques, speeds = np.random.default_rng(0).uniform(-2.0, 2.0, (2, rows))
     together = _integrand(energy, torques, speeds)
-    each = zip(torques[:, None], speeds[:, None])
-    alone = np.concatenate([_integrand(energy, torque, speed) for torque, speed in each])
-    wrong = ~(np.abs(together - alone) <= _SAME * np.abs(alone).max())  # nan is wrong as well
+    pairs = zip(torques[:, None], speeds[:, None])
+    alone = np.concatenate([_integrand(energy, torque, speed) for torque, speed in pairs])
+    # Share by which an integrand of one candidate may differ from that among others.
+    tolerance = 1e-9
+    wrong = ~(np.abs(together - alone) <= tolerance * np.abs(alone).max())  # nan is wrong as well
     if wrong.any():
         k = int(wrong.argmax())
         raise ValueError(
@@ -182,8 +184,9 @@ def _integrand(energy: Energy, torques: NDArray[np.float64], speeds: NDArray[np.
     """The smooth integrand of candidates [W], by symbols, as the solvers evaluate it."""
     torque, speed = (ca.MX.sym(name, len(torques)) for name in ("torque", "speed"))
     try:
-        found = ca.MX.zeros(len(torques)) + energy.smooth(torque, speed)
-        smooth = Compiled(lambda: ca.Function("smooth", [torque, speed], [ca.densify(found)]))
+        integrand = ca.MX.zeros(len(torques)) + energy.smooth(torque, speed)
+        outputs = [ca.densify(integrand)]
+        smooth = Compiled(lambda: ca.Function("smooth", [torque, speed], outputs))
         return smooth(torques, speeds)[0].ravel()
     except Exception as error:  # of any kind: a user's own lines
         text = " ".join(f"{type(error).__name__}: {error}".split())

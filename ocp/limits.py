@@ -146,7 +146,8 @@ def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
     }
 
 
-RESIDUAL, TORQUE_SPEED = "residual", "torque_speed"
+RESIDUAL = "residual"
+TORQUE_SPEED = "torque_speed"
 JERK = 3
 """The derivative of the angle that no plant needs, and that is nowhere where the acceleration
 jumps."""
@@ -268,7 +269,7 @@ class TorqueSpeedLine:
             for torque, speed in pairs
         )  # fmt: skip
         object.__setattr__(self, "points", points)
-        rises = len(points) > 1 and all(one[1] < other[1] for one, other in pairwise(points))
+        rises = len(points) > 1 and all(first[1] < second[1] for first, second in pairwise(points))
         falls = [fall for _, fall in self._pieces] if rises else [0.0]
         if falls[-1] <= 0 or falls != sorted(falls) or falls[0] < 0:
             example = TorqueSpeedLine(((1.5, 0.0), (0.8, 20.0)), self.joint)
@@ -315,7 +316,9 @@ class Ranged:
 
     def exceeded(self, limits: Iterable[Limit], tolerance: float = 0.0) -> dict[str, float]:
         """What exceeds its limit by more than a share: its peak over the limit, by name."""
-        ratios = {one.name: one.peak_of(self) / one.size for one in limits if one.size > 0}
+        ratios = {
+            limit.name: limit.peak_of(self) / limit.size for limit in limits if limit.size > 0
+        }
         return {name: ratio for name, ratio in ratios.items() if ratio > 1 + tolerance}
 
 
@@ -356,7 +359,11 @@ class Limit:
     @classmethod
     def of_line(cls, line: TorqueSpeedLine) -> Limit:
         """Of the torque by a torque-speed line."""
-        return cls(Quantity(TORQUE_SPEED, "", "share of the drive's torque", line), -1.0, 1.0)
+        return cls(
+            Quantity(TORQUE_SPEED, "", "share of the drive's torque", line),
+            -1.0,
+            1.0,
+        )
 
     @property
     def name(self) -> str:

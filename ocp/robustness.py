@@ -20,7 +20,7 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, after_arrival
-from quietarm.ocp.simulation.grid import ROLLOUT_STEPS, default_steps
+from quietarm.ocp.simulation.mesh import ROLLOUT_STEPS, default_steps
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import DAMPING, FREQUENCY, check_ranges
 

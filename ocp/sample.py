@@ -53,8 +53,8 @@ class Sample(NamedTuple):
     def values(self) -> list[Expression]:
         """Every value, in the order of the attributes; a jerk that is None is left out."""
         motions = [value for joint in (self.path, *self.joints) for value in joint]
-        others = [*self.W, *self.dW, *self.ddW, *self.tips, *self.tip_speeds, *self.torques]
-        return [value for value in motions if value is not None] + others
+        columns = [*self.W, *self.dW, *self.ddW, *self.tips, *self.tip_speeds, *self.torques]
+        return [value for value in motions if value is not None] + columns
 
     def with_values(self, values: Iterable[Expression]) -> Sample:
         """The same of other `values`."""
@@ -102,7 +102,7 @@ def symbolic_sample(plant: Plant) -> Sample:
 
 def total(values: Sequence[Expression]) -> Expression:
     """Their sum, which of one is itself: nothing is added that has to be computed."""
-    first, *others = values
-    for value in others:
+    first, *following = values
+    for value in following:
         first = first + value
     return first

@@ -67,19 +67,11 @@ class ModalState:
             )
 
 
-_SAME, _NONE = 1e-9, 1e-15
-"""Relative and absolute difference below which numbers are one: 30deg and pi/6."""
-_APART = "plant", "initial", "final", "energy", "uncertainty"
-"""Fields that are told in another way."""
 _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual window": "s"} | {
     f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()
 }
-_TIMES = {"duration": "s", "residual_window": "s"}
-_CLASSES = {"initial": ModalState, "final": ModalState, "uncertainty": Uncertainty}
-"""What fields hold that may be None."""
-_MOST = 1e6
-"""Beyond this [rad, m, s] no joint moves, and double precision does not follow."""
-LEAST_DURATION, LEAST_MOVE = 1e-6, 1e-6
+LEAST_DURATION = 1e-6
+LEAST_MOVE = 1e-6
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
 
 
@@ -151,18 +143,41 @@ class PointToPoint:
             instance("plant", self.plant, Plant)
         self.plant.validate()
         check_energy(self.energy)
-        for name, kind in _CLASSES.items():
+        optional = {"initial": ModalState, "final": ModalState, "uncertainty": Uncertainty}
+        for name, kind in optional.items():
             if getattr(self, name) is not None:
                 instance(name, getattr(self, name), kind)
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)
-        way = joint_unit("rad", self.plant.joint)
         follows = _is_default(self.residual_window)
-        times = {name: unit for name, unit in _TIMES.items() if name == "duration" or not follows}
-        for name, unit in {"start": way, "target": way, **times}.items():
-            check = positive if name in _TIMES else finite
-            number = check(name.replace("_", " "), getattr(self, name), unit, _MOST)
+        unit = joint_unit("rad", self.plant.joint)
+        # Beyond this [rad, m, s] no joint moves, and double precision does not follow.
+        most = 1e6
+        for name in ("start", "target"):
+            number = finite(name, getattr(self, name), unit, most)
             object.__setattr__(self, name, number)
+        for name in ("duration",) if follows else ("duration", "residual_window"):
+            number = positive(name.replace("_", " "), getattr(self, name), "s", most)
+            object.__setattr__(self, name, number)
+        self._check_limits()
+        for name, angle in (("start", self.start), ("target", self.target)):
+            more = unit == "rad" and abs(angle) > 2 * math.pi
+            if more and (2 * angle).is_integer():  # no multiple of pi is
+                warnings.warn(
+                    f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
+                    f"quietarm.deg({angle:g})",
+                    stacklevel=3,
+                )
+        self._check_move(unit)
+        for plant in self.perturbed_plants:
+            check_contract(plant)
+            check_along(plant, self.start, self.target)
+        if follows:
+            window = min(default_window([(self.plant, self.target)]), DefaultWindow(most))
+            object.__setattr__(self, "residual_window", window)
+
+    def _check_limits(self) -> None:
+        """Read the limits; ValueError where one is out of range."""
         for quantity in quantities_of(self.plant.joint, self.plant.tip_unit).values():
             if getattr(self, quantity.limit) is not None:
                 bounds = _check_bounds(quantity, getattr(self, quantity.limit), self.plant)
@@ -170,18 +185,13 @@ class PointToPoint:
         if self.torque_speed is not None:
             line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
             object.__setattr__(self, "torque_speed", line.points)
-        for name, angle in (("start", self.start), ("target", self.target)):
-            more = way == "rad" and abs(angle) > 2 * math.pi
-            if more and (2 * angle).is_integer():  # no multiple of pi is
-                warnings.warn(
-                    f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
-                    f"quietarm.deg({angle:g})",
-                    stacklevel=3,
-                )
+
+    def _check_move(self, unit: str) -> None:
+        """Refuse a move that is too small, too quick, or beyond the plant's path or modes."""
         if abs(self.span) < LEAST_MOVE:
             raise ValueError(
-                f"target - start is {self.span:g} {way}: there is no move; change one of them by "
-                f"{LEAST_MOVE:g} {way} or more"
+                f"target - start is {self.span:g} {unit}: there is no move; change one of them by "
+                f"{LEAST_MOVE:g} {unit} or more"
             )
         if self.plant.path_range is not None:
             least, largest = self.plant.path_range
@@ -200,12 +210,6 @@ class PointToPoint:
                     f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
                     "give W and W' of each"
                 )
-        for plant in self.perturbed_plants:
-            check_contract(plant)
-            check_along(plant, self.start, self.target)
-        if follows:
-            window = min(default_window([(self.plant, self.target)]), DefaultWindow(_MOST))
-            object.__setattr__(self, "residual_window", window)
 
     @property
     def span(self) -> float:
@@ -258,8 +262,8 @@ class PointToPoint:
     @cached_property
     def perturbed_plants(self) -> tuple[Plant, ...]:
         """The plant in every scenario, the nominal one first."""
-        others = (dict(zip(self.ranges, one)) for one in self.scenarios[1:])
-        return (self.plant, *(perturb_plant(self.plant, errors) for errors in others))
+        by_name = (dict(zip(self.ranges, errors)) for errors in self.scenarios[1:])
+        return (self.plant, *(perturb_plant(self.plant, errors) for errors in by_name))
 
     @property
     def certain(self) -> PointToPoint:
@@ -274,10 +278,10 @@ class PointToPoint:
     def limits(self) -> tuple[Limit, ...]:
         """The limits that are set."""
         quantities = quantities_of(self.plant.joint, self.plant.tip_unit).values()
-        given = [(one, getattr(self, one.limit)) for one in quantities]
+        stated = [(quantity, getattr(self, quantity.limit)) for quantity in quantities]
         limits = [
-            Limit.within(one, bounds, self.plant.joint_names)
-            for one, bounds in given
+            Limit.within(quantity, bounds, self.plant.joint_names)
+            for quantity, bounds in stated
             if bounds is not None
         ]
         if self.torque_speed is not None:
@@ -295,36 +299,36 @@ def _is_default(window: object) -> bool:
     return window is None or isinstance(window, DefaultWindow)
 
 
-def _check_bounds(quantity: Quantity, given: Any, plant: Plant) -> Bounds:
+def _check_bounds(quantity: Quantity, value: Any, plant: Plant) -> Bounds:
     """A positive number, or a negative and a positive one; or such of joints by name."""
     name = quantity.limit.replace("_", " ")
-    if not isinstance(given, Mapping):
-        return _check_sides(name, quantity.unit, given)
+    if not isinstance(value, Mapping):
+        return _check_sides(name, quantity.unit, value)
     if not quantity.of_joints:
         raise ValueError(
-            f"{name} is {given!r}; give one for all, as {quantity.label}s have no joint"
+            f"{name} is {value!r}; give one for all, as {quantity.label}s have no joint"
         )
-    if not given:
-        raise ValueError(f"{name} is {given!r}; give a limit of one joint or more, by name")
-    for joint in given:
+    if not value:
+        raise ValueError(f"{name} is {value!r}; give a limit of one joint or more, by name")
+    for joint in value:
         if joint not in plant.joint_names:
             raise ValueError(has_no(plant.name, "joint", joint, plant.joint_names))
     return ByJoint(
         {
             joint: _check_sides(f"{name} of {joint}", quantity.unit, bounds)
-            for joint, bounds in given.items()
+            for joint, bounds in value.items()
         }
     )
 
 
-def _check_sides(name: str, unit: str, given: Any) -> Sides:
+def _check_sides(name: str, unit: str, value: Any) -> Sides:
     """A positive number, or a negative and a positive one."""
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        return positive(name, given, unit)
-    bounds: list[Any] = list(given)
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        return positive(name, value, unit)
+    bounds: list[Any] = list(value)
     if len(bounds) != 2:
-        raise ValueError(f"{name} is {given!r}; give one number, or the least and the largest")
-    lower, upper = (finite(name, one, unit) for one in bounds)
+        raise ValueError(f"{name} is {value!r}; give one number, or the least and the largest")
+    lower, upper = (finite(name, side, unit) for side in bounds)
     if not lower < 0 < upper:
         raise ValueError(
             f"{name} is {lower:g} to {upper:g} {unit}; give a negative and a positive number"
@@ -332,27 +336,30 @@ def _check_sides(name: str, unit: str, given: Any) -> Sides:
     return upper if lower == -upper else (lower, upper)
 
 
-@takes(one=PointToPoint, other=PointToPoint)
-def task_difference(one: PointToPoint, other: PointToPoint) -> str:
+@takes(task=PointToPoint, reference=PointToPoint)
+def task_difference(task: PointToPoint, reference: PointToPoint) -> str:
     """Every entry in which two tasks differ, in words; empty where they are the same.
 
     Numbers are the same within rounding; states of rest are the same, given or not.
     """
-    if one.plant.name != other.plant.name:
-        return f"plant is {one.plant.name}, not {other.plant.name}"
-    mine, theirs = dict(_entries(_stated(one))), dict(_entries(_stated(other)))
-    joint = one.plant.joint
+    if task.plant.name != reference.plant.name:
+        return f"plant is {task.plant.name}, not {reference.plant.name}"
+    entries = dict(_entries(_stated(task)))
+    expected = dict(_entries(_stated(reference)))
+    joint = task.plant.joint
     return ", ".join(
-        f"{name} is {_words(name, mine.get(name), joint)}, "
-        f"not {_words(name, theirs.get(name), joint)}"
-        for name in mine | theirs
-        if not _same(mine.get(name), theirs.get(name))
+        f"{name} is {_words(name, entries.get(name), joint)}, "
+        f"not {_words(name, expected.get(name), joint)}"
+        for name in entries | expected
+        if not _same(entries.get(name), expected.get(name))
     )
 
 
 def _stated(task: PointToPoint) -> dict[str, object]:
     """All that a task has, by words; states are numbers, given or not."""
-    plain = (entry.name for entry in fields(task) if entry.name not in _APART)
+    # Fields that are told in another way.
+    apart = "plant", "initial", "final", "energy", "uncertainty"
+    plain = (entry.name for entry in fields(task) if entry.name not in apart)
     return {
         "plant parameter": task.plant.parameters,
         **{name.replace("_", " "): getattr(task, name) for name in plain},
@@ -377,10 +384,13 @@ def _entries(value: object, name: str = "") -> Iterator[tuple[str, object]]:
             yield name, value
 
 
-def _same(one: object, other: object) -> bool:
-    if isinstance(one, float | int) and isinstance(other, float | int):
-        return isclose(one, other, rel_tol=_SAME, abs_tol=_NONE)
-    return one == other
+def _same(first: object, second: object) -> bool:
+    # Relative and absolute difference below which numbers are one: 30deg and pi/6.
+    relative = 1e-9
+    absolute = 1e-15
+    if isinstance(first, float | int) and isinstance(second, float | int):
+        return isclose(first, second, rel_tol=relative, abs_tol=absolute)
+    return first == second
 
 
 def _words(name: str, value: object, joint: str) -> str:

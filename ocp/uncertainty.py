@@ -19,7 +19,8 @@ from quietarm.models.joint_motion import Modes
 from quietarm.models.validation import check_contract, outputs_of
 from quietarm.ocp.checks import has_no, positive, takes
 
-FREQUENCY, DAMPING = "frequency", "damping"
+FREQUENCY = "frequency"
+DAMPING = "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
 _SAME = 1e-9
 """How far, as a share, equations may differ between two ways to change a parameter."""
@@ -48,7 +49,8 @@ class ScaledModes(Plant):
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """The plant's own, and what its other stiffness and damping add [m/s^2]."""
-        at_rest, still = JointMotion(joint.angle, 0.0, 0.0), [0.0] * len(W)
+        at_rest = JointMotion(joint.angle, 0.0, 0.0)
+        still = [0.0] * len(W)
         terms = zip(
             self.plant.modal_accelerations(joint, W, dW),
             self.plant.modal_accelerations(at_rest, W, still),
@@ -115,8 +117,8 @@ def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     """
     _by_name(errors)
     refuse_unknown(plant, errors)
-    own = (name for name in errors if name not in _OF_MODES)
-    values = {name: getattr(plant, name) * (1 + errors[name]) for name in own}
+    parameters = (name for name in errors if name not in _OF_MODES)
+    values = {name: getattr(plant, name) * (1 + errors[name]) for name in parameters}
     numbers = all(isinstance(value, Real) for value in values.values())
     changed = replace(plant, **values) if numbers else with_values(plant, values)
     factors = {name: 1 + errors[name] for name in _OF_MODES if name in errors}
@@ -199,9 +201,14 @@ def _check_symbols(plant: Plant, name: str, value: float) -> None:
     motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 2 * plant.modes).tolist()
     expressions = outputs_of(with_values(plant, {name: symbol}), motion)
     outputs = ca.densify(ca.vertcat(*expressions))
-    found = Compiled(lambda: ca.Function("found", [symbol], [outputs]))(value)[0].ravel()
+    computed = Compiled(lambda: ca.Function("found", [symbol], [outputs]))(value)[0].ravel()
     anew = outputs_of(replace(plant, **{name: value}), motion)
-    if not np.allclose(found, [float(entry) for entry in anew], rtol=_SAME, atol=0.0):
+    if not np.allclose(
+        computed,
+        [float(entry) for entry in anew],
+        rtol=_SAME,
+        atol=0.0,
+    ):
         raise ValueError(
             f"plant {plant.name!r} computes with {name} outside its equations or by Python's math; "
             f"compute in them, from self.{name}, with casadi.sqrt and its like"

@@ -10,12 +10,8 @@ from quietarm.models.validation import eigenvalues_at_rest
 
 EQ_11 = 1.0
 """The paper's residual window [s], equation (11)."""
-_PERIODS = 2
-"""Of the slowest mode: a whole swing also where an error of 50 % makes it slower."""
 MOST_RADIANS = 4000
 """Of the fastest mode within a window: to resolve more takes too much memory."""
-_SPARE = 2
-"""A default is this much shorter than these, for plants whose errors make them faster."""
 
 
 class DefaultWindow(float):
@@ -36,10 +32,15 @@ def default_window(moves: Iterable[tuple[Plant, float]]) -> DefaultWindow:
     at the target, where these are longer. A plant that has a far faster mode as well has fewer, as
     many as can be resolved.
     """
-    longest, most = EQ_11, math.inf
+    longest = EQ_11
+    most = math.inf
+    # Of the slowest mode: a whole swing also where an error of 50 % makes it slower.
+    periods = 2
+    # A default is this much shorter than these, for plants whose errors make them faster.
+    spare = 2
     for plant, target in moves:
         modes = eigenvalues_at_rest(plant, target)
         swinging = [abs(mode) for mode in modes if mode.imag > 0]
-        longest = max([longest, *(_PERIODS * math.tau / frequency for frequency in swinging)])
-        most = min(most, MOST_RADIANS / _SPARE / max(map(abs, modes)))
+        longest = max([longest, *(periods * math.tau / frequency for frequency in swinging)])
+        most = min(most, MOST_RADIANS / spare / max(map(abs, modes)))
     return DefaultWindow(max(EQ_11, min(longest, most)))

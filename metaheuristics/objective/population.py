@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 
 CANDIDATE_STEPS, _STEPS_A_TERM, _WITH_LIMITS = 24, 4, 64
 """Steps of every search: the least, those for each coefficient, and the least with limits."""

@@ -27,7 +27,7 @@ from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.record import Record, Verification, number_of_starts
 from quietarm.ocp.saved import MotionAnswer
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.solver import Solver

@@ -21,7 +21,7 @@ from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.sample import sample_plant, total
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, Step, step
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import smooth_power
 from quietarm.ocp.simulation.rollout import march
 from quietarm.ocp.solvers.ipopt import Ipopt
@@ -45,7 +45,7 @@ def first_grid(steps: int) -> Array:
     against it, the motion of least energy starts and stops the joint with a jolt.
     """
     powers = np.arange(3, 0.0, -1)
-    even = Grid(max(2, steps - 2 * len(powers))).boundaries
+    even = Mesh(max(2, steps - 2 * len(powers))).boundaries
     cuts = even[1] * 4.0**-powers
     return np.concatenate([[0.0], cuts, even[1:-1], 1 - cuts[::-1], [1.0]])
 

@@ -18,7 +18,7 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.limits import QUANTITIES, Limit, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.problem import (
     MOST_SOLVER_STEPS,
     STILL,

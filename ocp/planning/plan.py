@@ -26,7 +26,7 @@ from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import REST, Record, Setting, Verification
 from quietarm.ocp.robustness import Sensitivity, Worst, sensitivities, worst_of
 from quietarm.ocp.saved import MotionAnswer, to_html
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.problem import STILL

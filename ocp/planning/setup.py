@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.checks import finite, instance, whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Record, Setting, coefficient_bound, digits, number_of_starts
-from quietarm.ocp.simulation.grid import MOST_STEPS
+from quietarm.ocp.simulation.mesh import MOST_STEPS
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 

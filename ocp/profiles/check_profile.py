@@ -15,8 +15,6 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 
 _FRACTIONS = np.array([0.0, 1.0, *np.random.default_rng(0).uniform(0.02, 0.98, 15)])
 """Where motions are compared: at both ends, then anywhere between."""
-_TOLERANCE = 1e-6
-"""Share of a quantity's largest value by which it may differ from what it has to be."""
 
 Array = NDArray[np.float64]
 
@@ -82,7 +80,7 @@ def _refuse_difference(
     profile: JointProfile, motion: _Comparison, start: float, target: float
 ) -> None:
     """ValueError where a motion is not at rest at the ends, or its derivatives are wrong."""
-    refuse = partial(_refuse_wrong, profile)
+    refuse = partial(_refuse_wrong, getattr(profile, "name", type(profile).__name__))
     ends = np.array([start, target])
     what = f"its end of a move from {start:.4g} to {target:.4g}"
     remedy = "let angle, or input of a cycloid, go from 0 to 1"
@@ -96,20 +94,28 @@ def _refuse_difference(
     what = "the derivative of the angle"
     refuse("speed", motion.speed, motion.exact_speed, what, remedy)
     what = "the derivative of the speed"
-    refuse("acceleration", motion.acceleration, motion.exact_acceleration, what, remedy)
+    refuse(
+        "acceleration",
+        motion.acceleration,
+        motion.exact_acceleration,
+        what,
+        remedy,
+    )
 
 
 def _refuse_wrong(
-    profile: JointProfile, quantity: str, values: Array, expected: Array, what: str, remedy: str
+    name: str, quantity: str, values: Array, expected: Array, what: str, remedy: str
 ) -> None:
     """ValueError where the first values, those at the ends first, are not as expected."""
-    allowed = _TOLERANCE * max(float(np.abs(values).max()), 1e-9)
+    # Share of a quantity's largest value by which it may differ from what it has to be.
+    tolerance = 1e-6
+    allowed = tolerance * max(float(np.abs(values).max()), 1e-9)
     compared = values[: len(expected)]
     wrong = ~(np.abs(compared - expected) <= allowed)  # nan is wrong as well
     if wrong.any():
         k = int(wrong.argmax())
         raise ValueError(
-            f"profile {profile.name!r}: its {quantity} is {compared[k]:.4g} at "
+            f"profile {name!r}: its {quantity} is {compared[k]:.4g} at "
             f"{_FRACTIONS[k]:.3g} of the duration, where {what} is {expected[k]:.4g}; "
             f"{remedy}"
         )

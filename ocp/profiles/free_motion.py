@@ -100,9 +100,9 @@ class FreeMotion:
 
 
 Law = Callable[..., JointMotion]
-"""How the joint moves on a piece, by what it is given there and the fraction of the piece.
+"""How the joint moves on a piece, by its arguments there and the fraction of the piece.
 
-The last of the given numbers is the piece's length [s]; equal laws share a compiled CVODES.
+The last of the arguments is the piece's length [s]; equal laws share a compiled CVODES.
 """
 
 
@@ -127,14 +127,14 @@ def _freely(numbers: Sequence[Expression], fraction: Expression, *, jerk: bool) 
 
 @dataclass(frozen=True, eq=False)
 class PiecewiseMotion:
-    """A joint motion in smooth pieces: its law, and what that is given, a column for each piece.
+    """A joint motion in smooth pieces: its law, and that law's arguments, a column for each piece.
 
     The last row is how long they take [s]. Its acceleration is continuous if it `has_jerk`; it is
     `smooth` if no derivative breaks. The remedy ends the message where CVODES cannot follow it.
     """
 
     law: Law
-    given: NDArray[np.float64]
+    arguments: NDArray[np.float64]
     has_jerk: bool
     smooth: bool
     remedy: str

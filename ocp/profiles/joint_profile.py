@@ -148,7 +148,11 @@ class JointProfile(ABC):
         """The joint from start to target [rad] in the duration [s], by what `derivatives` gives."""
         share, rate, bend = derivatives
         span = target - start
-        return JointMotion(start + span * share, span * rate / duration, span * bend / duration**2)
+        return JointMotion(
+            start + span * share,
+            span * rate / duration,
+            span * bend / duration**2,
+        )
 
     def at_duration(self, duration: Expression) -> Self:
         """The profile in a move that takes so long [s], where its angle depends on that."""
@@ -184,7 +188,13 @@ class JointProfile(ABC):
 
         ValueError where `checked` refuses the coefficients or the duration.
         """
-        return JointPath(self, self.checked(coefficients, duration), start, target, duration)
+        return JointPath(
+            self,
+            self.checked(coefficients, duration),
+            start,
+            target,
+            duration,
+        )
 
     def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
         """The coefficients as a tuple of `size` finite floats; ValueError otherwise.

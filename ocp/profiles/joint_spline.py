@@ -102,5 +102,10 @@ class JointSpline(JointProfile):
         begin = [0.0] * self.points_at_rest
         end = [1.0] * self.points_at_rest
         points = [*begin, *free, *end]
-        share, rate, bend = spline([0.0, *self.knots, 1.0], self.degree, points, fraction)
+        share, rate, bend = spline(
+            [0.0, *self.knots, 1.0],
+            self.degree,
+            points,
+            fraction,
+        )
         return share, rate, bend

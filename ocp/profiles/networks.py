@@ -174,7 +174,8 @@ class CycloidNetwork(CycloidOfUnits):
     @property
     def ranges(self) -> tuple[Range, Range]:
         """Biases; gains, from nearly a straight line to a step that takes a quarter of the move."""
-        gain, steepest = 1.5, 4.0
+        gain = 1.5
+        steepest = 4.0
         biases = Range(gain * self.cells, 0.5, -steepest, steepest)
         return biases, Range(gain, 0.5, 0.3, steepest)
 

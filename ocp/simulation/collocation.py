@@ -23,7 +23,8 @@ NODES = 3
 
 # Plain floats: a numpy number on the left of a casadi symbol would try to make an array of it.
 _points, _weights = np.polynomial.legendre.leggauss(NODES)
-_nodes, _powers = (_points[:, None] + 1) / 2, np.arange(NODES)
+_nodes = (_points[:, None] + 1) / 2
+_powers = np.arange(NODES)
 _to_quadratic = np.linalg.inv(_nodes**_powers)
 _once = np.vstack([_nodes ** (_powers + 1) / (_powers + 1) @ _to_quadratic, _weights / 2])
 GAUSS_NODES: list[float] = _nodes.ravel().tolist()
@@ -47,8 +48,10 @@ class ModalSystem(NamedTuple):
 
 def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
     """The modes' coefficients along a joint motion, by the plant's equations at unit vectors."""
-    modes, zero, acts = range(plant.modes), [0.0] * plant.modes, _acting(plant, joint)
-    units = [[float(other == mode) for other in modes] for mode in modes]
+    modes = range(plant.modes)
+    zero = [0.0] * plant.modes
+    acts = _acting(plant, joint)
+    units = [[float(entry == mode) for entry in modes] for mode in modes]
     g = list(plant.modal_accelerations(joint, zero, zero))
 
     def columns(responses: Sequence[Modes]) -> list[list[Expression]]:
@@ -63,7 +66,8 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
 
 def _acting(plant: Plant, joint: JointMotion) -> list[list[bool]]:
     """Whether mode j is in the equation of mode i at all: else there is no term to compute with."""
-    modes, kind = range(plant.modes), _kind_of(plant)
+    modes = range(plant.modes)
+    kind = _kind_of(plant)
     if isinstance(joint.angle, ca.DM):  # numbers tell by themselves
         return [[True for _ in modes] for _ in modes]
     joint = JointMotion(*(kind.sym("joint") for _ in range(3)))
@@ -75,9 +79,9 @@ def _acting(plant: Plant, joint: JointMotion) -> list[list[bool]]:
 def _kind_of(plant: Plant) -> Any:
     """SX where a parameter of the plant, or of one inside it, is such a symbol, else MX."""
     values = list(vars(plant).values())
-    inside = (one for one in values if isinstance(one, Plant))
-    is_sx = any(isinstance(one, ca.SX) for one in values)
-    return ca.SX if is_sx or any(_kind_of(one) is ca.SX for one in inside) else ca.MX
+    inside = (value for value in values if isinstance(value, Plant))
+    is_sx = any(isinstance(value, ca.SX) for value in values)
+    return ca.SX if is_sx or any(_kind_of(value) is ca.SX for value in inside) else ca.MX
 
 
 class NodeState(NamedTuple):
@@ -116,11 +120,13 @@ class Step:
 
     def end(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> tuple[Modes, Modes]:
         """State after the step, from the state before it and W'' at its nodes."""
-        times, by_mode = [self.h, self.h * self.h], list(zip(*ddW))
-        ends = [(dot(_ONCE[NODES], own), dot(_TWICE[NODES], own)) for own in by_mode]
+        times = [self.h, self.h * self.h]
+        by_mode = list(zip(*ddW))
+        once = [dot(_ONCE[NODES], at_nodes) for at_nodes in by_mode]
+        twice = [dot(_TWICE[NODES], at_nodes) for at_nodes in by_mode]
         return (
-            [w + dot(times, (v, twice)) for w, v, (_, twice) in zip(W, dW, ends)],
-            [v + dot(times[:1], (once,)) for v, (once, _) in zip(dW, ends)],
+            [w + dot(times, (v, change)) for w, v, change in zip(W, dW, twice)],
+            [v + dot(times[:1], (change,)) for v, change in zip(dW, once)],
         )
 
     def transition(self) -> tuple[list[Expression], list[list[Expression]]]:
@@ -136,16 +142,18 @@ class Step:
 
     def nodes(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> list[NodeState]:
         """The modes at the nodes, from the state before the step and W'' at its nodes."""
-        h, square, by_mode = self.h, self.h * self.h, list(zip(*ddW))
-        return [
-            NodeState(
-                [w + c * h * v + square * dot(_TWICE[j], own)
-                 for w, v, own in zip(W, dW, by_mode)],
-                [v + h * dot(_ONCE[j], own) for v, own in zip(dW, by_mode)],
-                list(ddW[j]),
-            )
-            for j, c in enumerate(GAUSS_NODES)
-        ]  # fmt: skip
+        h = self.h
+        square = self.h * self.h
+        by_mode = list(zip(*ddW))
+        nodes = list[NodeState]()
+        for c, once, twice, accelerations in zip(GAUSS_NODES, _ONCE, _TWICE, ddW):
+            amplitudes = [
+                w + c * h * v + square * dot(twice, at_nodes)
+                for w, v, at_nodes in zip(W, dW, by_mode)
+            ]
+            rates = [v + h * dot(once, at_nodes) for v, at_nodes in zip(dW, by_mode)]
+            nodes.append(NodeState(amplitudes, rates, list(accelerations)))
+        return nodes
 
 
 def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
@@ -168,15 +176,22 @@ def collocate(system: ModalSystem, h: Expression, forced: bool = False) -> Step:
     right: list[list[Expression]] = []
     for j in range(NODES):
         for i in modes:
-            own, terms = len(matrix), [(k[j], d[j]) for k, d in zip(K[i], D[i])]
+            place = len(matrix)
+            terms = [(k[j], d[j]) for k, d in zip(K[i], D[i])]
             weights = zip(_ONCE[j], _TWICE[j])
             implicit = [_held(h, k, d, once, twice) for once, twice in weights for k, d in terms]
-            matrix.append([float(own == at) + entry for at, entry in enumerate(implicit)])
+            matrix.append([float(place == at) + entry for at, entry in enumerate(implicit)])
             by_rate = [_negative(d, GAUSS_NODES[j] * h, k) for k, d in terms]
-            unit = [float(own == at) for at in range(count)] if forced else []
+            unit = [float(place == at) for at in range(count)] if forced else []
             right.append([g[i][j], *(-k for k, _ in terms), *by_rate, *unit])
-    rows, size = eliminate(matrix, right), 1 + 2 * len(modes)
-    return Step(h, [row[:size] for row in rows], len(modes), [row[size:] for row in rows])
+    rows = eliminate(matrix, right)
+    size = 1 + 2 * len(modes)
+    return Step(
+        h,
+        [row[:size] for row in rows],
+        len(modes),
+        [row[size:] for row in rows],
+    )
 
 
 def at_each_node(entry: Expression, h: Expression) -> list[Expression]:
@@ -224,6 +239,8 @@ def eliminate(
     return right
 
 
-def _less(row: list[Expression], factor: Expression, other: list[Expression]) -> list[Expression]:
+def _less(
+    row: list[Expression], factor: Expression, subtracted: list[Expression]
+) -> list[Expression]:
     """The row less a multiple of another; entries that are nothing cost nothing."""
-    return [a if is_zero(b) else a - factor * b for a, b in zip(row, other)]
+    return [a if is_zero(b) else a - factor * b for a, b in zip(row, subtracted)]

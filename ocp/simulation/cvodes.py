@@ -24,7 +24,7 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.profiles.free_motion import Law, PiecewiseMotion
 from quietarm.ocp.sample import symbolic_sample
 from quietarm.ocp.simulation.collocation import NODES
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import integrated, spent
 from quietarm.ocp.simulation.trajectory import outputs_of, rates_of
 from quietarm.ocp.uncertainty import perturb_plant
@@ -35,14 +35,11 @@ CVODES = {
     "abstol": 1e-13,
 }
 """Options of every run, but for its steps: see `_options`."""
-_MOST_STEPS, _LEAST_A_SAMPLE = 3_000_000, 1_000
-"""Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of 1000,
-five hundred times those of any plan, take 700 from one of 3500 samples to the next."""
 
 Array = NDArray[np.float64]
 
 
-class Run(NamedTuple):
+class Integration(NamedTuple):
     """`outputs_of` every piece at its ends and nodes, a column each; state on arrival; work [J]."""
 
     outputs: Array
@@ -58,12 +55,19 @@ def integrate(
     initial: Sequence[float],
     steps: int,
     energy: Energy,
-) -> Run:
+) -> Integration:
     """Follow a motion on a plant with errors, by so many steps of the quadrature on a piece."""
     with COST.timed("checks"), _refusing(path.remedy):
-        figures = _figures(plant, path.law, path.given.shape, steps, tuple(errors), energy)
-        outputs, arrival, spent, net_work = figures(path.given, list(errors.values()), initial)
-    return Run(outputs, arrival[:, 0], spent.item(), net_work.item())
+        figures = _figures(
+            plant,
+            path.law,
+            path.arguments.shape,
+            steps,
+            tuple(errors),
+            energy,
+        )
+        outputs, arrival, spent, net_work = figures(path.arguments, list(errors.values()), initial)
+    return Integration(outputs, arrival[:, 0], spent.item(), net_work.item())
 
 
 def integrate_to(
@@ -75,9 +79,10 @@ def integrate_to(
 ) -> Array:
     """`outputs_of` at these fractions of a motion in one piece, 0 the first of them."""
     with _refusing(path.remedy):
-        shape, names = path.given.shape, tuple(errors)
+        shape = path.arguments.shape
+        names = tuple(errors)
         along = Compiled(lambda: _along(plant, path.law, shape, fractions, names), silent=True)
-        return along(path.given, list(errors.values()), initial)[1]
+        return along(path.arguments, list(errors.values()), initial)[1]
 
 
 @contextmanager
@@ -98,8 +103,16 @@ def _figures(
     names: tuple[str, ...],
     definition: Energy,
 ) -> Compiled:
-    """(given, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
-    build = partial(_build_figures, plant, law, shape, steps, names, definition)
+    """(arguments, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
+    build = partial(
+        _build_figures,
+        plant,
+        law,
+        shape,
+        steps,
+        names,
+        definition,
+    )
     return Compiled(build, silent=True)  # the error of `_refusing` is enough
 
 
@@ -111,51 +124,76 @@ def _build_figures(
     names: tuple[str, ...],
     definition: Energy,
 ) -> ca.Function:
-    given, grid = ca.MX.sym("p", *shape), Grid(steps)
-    errors, initial = ca.MX.sym("e", len(names)), ca.MX.sym("x", 2 * plant.modes)
-    states, outputs = _along(plant, law, shape, grid.samples, names)(given, errors, initial)
+    arguments = ca.MX.sym("p", *shape)
+    mesh = Mesh(steps)
+    errors = ca.MX.sym("e", len(names))
+    initial = ca.MX.sym("x", 2 * plant.modes)
+    states, outputs = _along(plant, law, shape, mesh.samples, names)(arguments, errors, initial)
     pieces = [ca.reshape(row, -1, shape[1]) for row in ca.vertsplit(outputs)]
     layout = symbolic_sample(plant)
     nodes = [
         layout.with_values(row[1 + node : -1 : NODES, :].T for row in pieces)
         for node in range(NODES)
     ]
-    h = given[-1, :].T @ grid.columns()[1]
+    h = arguments[-1, :].T @ mesh.columns()[1]
     energy = spent(definition, nodes, h)
     net_work = integrated([sample.power for sample in nodes], h)
     figures = [outputs, states[:, -1], ca.sum1(energy), ca.sum1(net_work)]
     dense = [ca.densify(figure) for figure in figures]  # a plant's output may be zero throughout
-    return ca.Function("figures", [given, errors, initial], dense)
+    return ca.Function("figures", [arguments, errors, initial], dense)
 
 
 def _along(
     plant: Plant, law: Law, shape: tuple[int, int], fractions: Array, names: tuple[str, ...]
 ) -> ca.Function:
-    """(given, errors, state before) -> states and outputs at these fractions of every piece."""
-    (numbers, pieces), count = shape, len(fractions)
-    given, errors = ca.MX.sym("p", numbers, pieces), ca.MX.sym("e", len(names))
+    """(arguments, errors, state before) -> states and outputs at these fractions of every piece."""
+    numbers, pieces = shape
+    count = len(fractions)
+    arguments = ca.MX.sym("p", numbers, pieces)
+    errors = ca.MX.sym("e", len(names))
     initial = ca.MX.sym("x", 2 * plant.modes)
     piece = _over_a_piece(plant, law, numbers, fractions, names)
-    _, states = piece.mapaccum(pieces)(initial, ca.vertcat(given, ca.repmat(errors, 1, pieces)))
+    _, states = piece.mapaccum(pieces)(initial, ca.vertcat(arguments, ca.repmat(errors, 1, pieces)))
     at_samples = [
-        row if pieces == 1 else ca.vec(ca.repmat(row, count, 1)).T for row in ca.vertsplit(given)
+        row if pieces == 1 else ca.vec(ca.repmat(row, count, 1)).T
+        for row in ca.vertsplit(arguments)
     ]
     joint = law(at_samples, ca.DM(np.tile(fractions, pieces)).T, jerk=True)
     outputs = outputs_of(_perturbed(plant, names, errors), joint, states)
-    return ca.Function("along", [given, errors, initial], [states, ca.densify(outputs)])
+    return ca.Function(
+        "along",
+        [arguments, errors, initial],
+        [states, ca.densify(outputs)],
+    )
 
 
 def _over_a_piece(
     plant: Plant, law: Law, numbers: int, fractions: Array, names: tuple[str, ...]
 ) -> ca.Function:
-    """CVODES: (state before, given and errors) -> state after a piece, states along it."""
-    count, state, fraction = numbers + len(names), ca.SX.sym("x", 2 * plant.modes), ca.SX.sym("t")
+    """CVODES: (state before, arguments and errors) -> state after a piece, states along it."""
+    count = numbers + len(names)
+    state = ca.SX.sym("x", 2 * plant.modes)
+    fraction = ca.SX.sym("t")
     both = ca.SX.sym("p", count)
-    given, perturbed = ca.vertsplit(both[:numbers]), _perturbed(plant, names, both[numbers:])
-    rates = given[-1] * rates_of(perturbed, law(given, fraction, jerk=False), state)
-    problem, times = {"t": fraction, "x": state, "p": both, "ode": rates}, fractions[1:]
-    run = ca.integrator("piece", "cvodes", problem, 0.0, times.tolist(), _options(times))
-    before, both = ca.MX.sym("x", state.numel()), ca.MX.sym("p", count)
+    arguments = ca.vertsplit(both[:numbers])
+    perturbed = _perturbed(plant, names, both[numbers:])
+    rates = arguments[-1] * rates_of(
+        perturbed,
+        law(arguments, fraction, jerk=False),
+        state,
+    )
+    problem = {"t": fraction, "x": state, "p": both, "ode": rates}
+    times = fractions[1:]
+    run = ca.integrator(
+        "piece",
+        "cvodes",
+        problem,
+        0.0,
+        times.tolist(),
+        _options(times),
+    )
+    before = ca.MX.sym("x", state.numel())
+    both = ca.MX.sym("p", count)
     states = ca.horzcat(before, run(x0=before, p=both)["xf"])
     return ca.Function("over", [before, both], [states[:, -1], states])
 
@@ -168,4 +206,8 @@ def _options(times: Array) -> dict[str, str | float | int]:
     """Options of a run of some seconds at most; steps are counted from sample to sample."""
     gaps = np.diff(times, prepend=0.0)
     share = float(gaps.max() / gaps.sum())
-    return {**CVODES, "max_num_steps": max(_LEAST_A_SAMPLE, round(_MOST_STEPS * share))}
+    # Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of
+    # 1000, five hundred times those of any plan, take 700 from one of 3500 samples to the next.
+    most_steps = 3_000_000
+    least_a_sample = 1_000
+    return {**CVODES, "max_num_steps": max(least_a_sample, round(most_steps * share))}

@@ -21,14 +21,13 @@ from quietarm.ocp.profiles.check_profile import check_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.free_vibration import FreeVibration, after_arrival
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.rollout import Simulation, places_of
 from quietarm.ocp.simulation.rows import RowFunction, copy_rows, join, widen
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
 Array = NDArray[np.float64]
-_ROWS = (1, 8, 100)
 MOST_STEPS_OF_CSE = 48
 """Common terms are looked for up to these steps: that takes a tenth off a call, but doubles the
 time to build it, and grows with the square of the steps."""
@@ -247,7 +246,11 @@ class Evaluation:
         names = self.evaluator.simulation.errors
         errors = dict(zip(names, map(ca.DM, self.errors.T)))
         targets = [task.target] * len(self.errors)
-        return FreeVibration(perturb_plant(task.plant, errors), targets, task.residual_window)
+        return FreeVibration(
+            perturb_plant(task.plant, errors),
+            targets,
+            task.residual_window,
+        )
 
     @cached_property
     def sampled_residual(self) -> Array:
@@ -286,7 +289,7 @@ class Evaluation:
         """The same without the residual."""
         peaks: dict[str, Array] = {}
         for limit in self.evaluator.tasks[0].limits:
-            sides = [own.sides for own in _limits_of(self.evaluator.tasks, limit.name)]
+            sides = [entry.sides for entry in _limits_of(self.evaluator.tasks, limit.name)]
             below, above = np.array(sides).T[..., None]
             least, largest = np.moveaxis(self.ranges[limit.name], -1, 0)
             by_scenario = np.maximum(least / below, largest / above)
@@ -321,13 +324,17 @@ def simulate(
     """Values of rows that have coefficients, the `row` of a task and errors of their own."""
     COST.candidates += len(coefficients)
     function = _compiled_values(simulation)
-    energy, arrival, limited = function((coefficients, move, errors), copy_rows, threads)
+    energy, arrival, limited = function(
+        (coefficients, move, errors),
+        copy_rows,
+        threads,
+    )
     return Values(energy[:, 0], arrival, limited)
 
 
 @lru_cache(maxsize=32)
 def _compiled_values(simulation: Simulation) -> RowFunction:
-    return RowFunction(partial(_build_values, simulation), _ROWS)
+    return RowFunction(partial(_build_values, simulation), sizes=(1, 8, 100))
 
 
 def _build_values(simulation: Simulation, rows: int) -> ca.Function:
@@ -335,7 +342,7 @@ def _build_values(simulation: Simulation, rows: int) -> ca.Function:
 
     (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
-    steps = len(simulation.grid.lengths)
+    steps = len(simulation.mesh.lengths)
     counts = simulation.profile.size, 3 + 2 * simulation.plant.modes, len(simulation.errors)
     inputs = [ca.MX.sym("x", rows, count) for count in counts]
     a, row, errors = (widen(matrix, NODES * steps) for matrix in inputs)
@@ -344,4 +351,9 @@ def _build_values(simulation: Simulation, rows: int) -> ca.Function:
     limited = [x for quantity in simulation.quantities for x in rollout.values(quantity)]
     outputs = [[rollout.energy], [rollout.arrival], limited]
     options = {"cse": steps <= MOST_STEPS_OF_CSE}
-    return ca.Function("values", inputs, [join(columns, rows) for columns in outputs], options)
+    return ca.Function(
+        "values",
+        inputs,
+        [join(columns, rows) for columns in outputs],
+        options,
+    )

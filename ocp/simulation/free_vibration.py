@@ -18,18 +18,6 @@ from quietarm.ocp.window import MOST_RADIANS
 
 Array = NDArray[np.float64]
 
-_RADIANS_OF_ROWS = 0.02
-"""Phase of the fastest mode between the rows: these miss at most 5e-5 of a peak."""
-_RADIANS_OF_PEAKS = 0.06
-"""The same between samples of a peak: the cubic between two of them misses 3e-8 of it."""
-_STRIDE, _STRIDES_AT_ONCE = 16, 64
-"""Samples of a peak: products of so many rows, and as many states at once."""
-_TIMES_AT_ONCE = 4096
-_SMALL, _TERMS = 0.1, 10
-"""Up to this phase the exponential is its Taylor series of so many terms, to 1e-18."""
-_ANGLES = 49
-"""Of the joint, at which the fastest mode of a move is looked for: both ends and between them."""
-
 
 class FreeVibration:
     """Free vibration of the modes after arrival; states are W [m], then W' [m/s].
@@ -65,7 +53,8 @@ class FreeVibration:
     @takes(plant=Plant)
     def __init__(self, plant: Plant, angle: ArrayLike, window: ArrayLike = 0.0) -> None:
         self.window: Array = np.asarray(window, dtype=float)
-        angles, modes = np.atleast_1d(np.asarray(angle, dtype=float)), plant.modes
+        angles = np.atleast_1d(np.asarray(angle, dtype=float))
+        modes = plant.modes
         of_rates = np.zeros((len(angles), 2 * modes, 2 * modes))
         of_rates[:, :modes, modes:] = np.eye(modes)
         at_rest = JointMotion(ca.DM(angles), 0.0, 0.0)
@@ -76,8 +65,8 @@ class FreeVibration:
         units = np.eye(modes).tolist()
         by_mode = [list(plant.tips_at(at_rest, unit)) for unit in units]
         of_tips[:, :, :modes] = _stacked(by_mode, len(angles)).transpose(0, 2, 1)
-        one = np.ndim(angle) == 0
-        self.matrix, self.tips = (of_rates[0], of_tips[0]) if one else (of_rates, of_tips)
+        single = np.ndim(angle) == 0
+        self.matrix, self.tips = (of_rates[0], of_tips[0]) if single else (of_rates, of_tips)
         self._eigenvalues = np.linalg.eigvals(self.matrix).astype(complex)
         self.fastest: Array = np.abs(self._eigenvalues).max(axis=-1)
         self._most = float(self.fastest.max())
@@ -92,13 +81,14 @@ class FreeVibration:
     @property
     def modes(self) -> list[tuple[float, float]]:
         """Undamped frequency [rad/s] and damping ratio of each oscillating mode, slowest first."""
-        swinging = [complex(one) for one in self._eigenvalues if one.imag > 0]
-        return [(abs(one), -one.real / abs(one)) for one in sorted(swinging, key=abs)]
+        swinging = [complex(value) for value in self._eigenvalues if value.imag > 0]
+        return [(abs(value), -value.real / abs(value)) for value in sorted(swinging, key=abs)]
 
     @cached_property
     def rows(self) -> Array:
         """F1 is the largest absolute product of a row and a state, to 5e-5; (rows, 2 * modes)."""
-        return self.rows_every(_RADIANS_OF_ROWS)
+        # These miss at most 5e-5 of a peak.
+        return self.rows_every(radians=0.02)
 
     def rows_every(self, radians: float) -> Array:
         """The same at another distance [rad of the fastest mode]; the miss is its square by 8."""
@@ -114,30 +104,40 @@ class FreeVibration:
         States on arrival have shape (2 * modes,) or (n, 2 * modes), many of one vibration or one of
         each; the peaks () or (n,), between the samples where a tip turns back there.
         """
-        given = np.asarray(states, dtype=float)
-        state = given.reshape(-1, 1, given.shape[-1])
-        matrix, tips = (one.reshape(-1, *one.shape[-2:]) for one in (self.matrix, self.tips))
-        strides = max(1, math.ceil(self._radians / _RADIANS_OF_PEAKS / _STRIDE))
-        rounds = math.ceil(strides / _STRIDES_AT_ONCE)
+        rows_of_states = np.asarray(states, dtype=float)
+        state = rows_of_states.reshape(-1, 1, rows_of_states.shape[-1])
+        matrix, tips = (
+            matrices.reshape(-1, *matrices.shape[-2:]) for matrices in (self.matrix, self.tips)
+        )
+        # Phase of the fastest mode between samples: the cubic between two misses 3e-8 of a peak.
+        radians = 0.06
+        # Samples are products of so many rows and so many states.
+        samples = 16
+        states_at_once = 64
+        strides = max(1, math.ceil(self._radians / radians / samples))
+        rounds = math.ceil(strides / states_at_once)
         columns = math.ceil(strides / rounds)
-        between = self.window / (rounds * columns * _STRIDE)
+        between = self.window / (rounds * columns * samples)
         step = exponential(matrix, between, self._most)
         outputs = np.concatenate([tips, between[..., None, None] * tips @ matrix], axis=1)
-        rows = powers(outputs, step, _STRIDE + 1)
-        stride = np.linalg.matrix_power(step, _STRIDE).swapaxes(1, 2)
-        starts, round_ = powers(state, stride, columns), np.linalg.matrix_power(stride, columns)
+        rows = powers(outputs, step, samples + 1)
+        stride = np.linalg.matrix_power(step, samples).swapaxes(1, 2)
+        starts = powers(state, stride, columns)
+        following = np.linalg.matrix_power(stride, columns)
         most = np.zeros(len(state))
         for _ in range(rounds):
             moved = rows @ starts.swapaxes(1, 2)
-            moved = moved.reshape(len(state), _STRIDE + 1, 2, -1)
+            moved = moved.reshape(len(state), samples + 1, 2, -1)
             most = np.maximum(most, _largest(moved[:, :, 0], moved[:, :, 1]))
-            starts = starts @ round_
-        return most.reshape(given.shape[:-1])
+            starts = starts @ following
+        return most.reshape(rows_of_states.shape[:-1])
 
     def states(self, state: ArrayLike, times: ArrayLike) -> Array:
         """The states at times since arrival [s], shape (times, 2 * modes), of one vibration."""
-        at, first = np.atleast_1d(np.asarray(times, dtype=float)), np.asarray(state, dtype=float)
-        parts = np.split(at, range(_TIMES_AT_ONCE, len(at), _TIMES_AT_ONCE))
+        at = np.atleast_1d(np.asarray(times, dtype=float))
+        first = np.asarray(state, dtype=float)
+        at_once = 4096
+        parts = np.split(at, range(at_once, len(at), at_once))
         return np.concatenate(
             [exponential(self.matrix, part, self._most) @ first for part in parts]
         )
@@ -145,7 +145,8 @@ class FreeVibration:
 
 def after_arrival(task: PointToPoint) -> list[FreeVibration]:
     """The vibration at a task's target, in each of its scenarios."""
-    plants, window = task.perturbed_plants, task.residual_window
+    plants = task.perturbed_plants
+    window = task.residual_window
     return [vibration_of(plant, task.target, window) for plant in plants]
 
 
@@ -162,7 +163,7 @@ def fastest_along(plant: Plant, start: float, target: float) -> float:
 def fastest_of_moves(plant: Plant, starts: ArrayLike, targets: ArrayLike) -> Array:
     """The same for each of many moves."""
     ends = np.asarray(starts, dtype=float), np.asarray(targets, dtype=float)
-    angles = np.linspace(*ends, _ANGLES)
+    angles = np.linspace(*ends, 49)
     fastest = FreeVibration(plant, angles.ravel()).fastest
     return fastest.reshape(angles.shape).max(axis=0)
 
@@ -171,21 +172,24 @@ def exponential(matrix: Array, times: ArrayLike, fastest: float) -> Array:
     """exp(matrix * time) for each time [s]; fastest is the largest absolute eigenvalue."""
     at = matrix * np.asarray(times, dtype=float)[..., None, None]
     radians = fastest * float(np.max(times, initial=0.0))
-    halvings = max(0, math.ceil(math.log2(max(radians, _SMALL) / _SMALL)))
-    small, unit = at / 2**halvings, np.eye(matrix.shape[-1])
-    found = np.broadcast_to(unit, small.shape)
-    for term in range(_TERMS, 0, -1):
-        found = unit + small @ found / term
+    # Up to a phase of 0.1 ten terms of the Taylor series give it to 1e-18.
+    halvings = max(0, math.ceil(math.log2(max(radians, 0.1) / 0.1)))
+    small = at / 2**halvings
+    unit = np.eye(matrix.shape[-1])
+    result = np.broadcast_to(unit, small.shape)
+    for term in range(10, 0, -1):
+        result = unit + small @ result / term
     for _ in range(halvings):
-        found = found @ found
-    return found
+        result = result @ result
+    return result
 
 
 def powers(rows: Array, step: Array, count: int) -> Array:
     """The products of rows with the first `count` powers of a matrix, one after another."""
     most = count * rows.shape[-2]
     while rows.shape[-2] < most:
-        rows, step = np.concatenate([rows, rows @ step], axis=-2), step @ step
+        rows = np.concatenate([rows, rows @ step], axis=-2)
+        step = step @ step
     return rows[..., :most, :]
 
 
@@ -201,10 +205,19 @@ def _largest(tips: Array, rates: Array) -> Array:
     """Largest absolute value of samples (n, samples, tips), and of the cubics between them."""
     most = np.abs(tips).max(axis=(1, 2))
     turns = np.nonzero(rates[:, :-1] * rates[:, 1:] < 0)
-    (w, after), (v, v_after) = ((one[:, :-1][turns], one[:, 1:][turns]) for one in (tips, rates))
-    at, rise = v / (v - v_after), after - w  # where the rate, nearly a line, is zero
-    second, third = 3 * rise - 2 * v - v_after, v + v_after - 2 * rise
-    np.maximum.at(most, turns[0], np.abs(w + at * (v + at * (second + at * third))))
+    w = tips[:, :-1][turns]
+    after = tips[:, 1:][turns]
+    v = rates[:, :-1][turns]
+    v_after = rates[:, 1:][turns]
+    at = v / (v - v_after)
+    rise = after - w  # where the rate, nearly a line, is zero
+    second = 3 * rise - 2 * v - v_after
+    third = v + v_after - 2 * rise
+    np.maximum.at(
+        most,
+        turns[0],
+        np.abs(w + at * (v + at * (second + at * third))),
+    )
     return most
 
 
@@ -213,14 +226,14 @@ def extreme_rows(rows: Array, tips: int) -> Array:
 
     A tip that one mode moves turns in a plane, and dies away: corners of half a turn suffice.
     """
-    kept: list[Array] = []
+    parts: list[Array] = []
     for tip in range(tips):
-        own = rows[tip::tips]
-        turning, spread, _ = np.linalg.svd(own, full_matrices=False)
+        of_tip = rows[tip::tips]
+        turning, spread, _ = np.linalg.svd(of_tip, full_matrices=False)
         if spread[2:].max(initial=0.0) <= 1e-12 * spread[0]:
-            own = own[_corners(turning[:, 0], turning[:, 1])]
-        kept.append(own)
-    return np.vstack(kept)
+            of_tip = of_tip[_corners(turning[:, 0], turning[:, 1])]
+        parts.append(of_tip)
+    return np.vstack(parts)
 
 
 def _corners(x: Array, y: Array) -> list[int]:
@@ -232,7 +245,8 @@ def _corners(x: Array, y: Array) -> list[int]:
     corners: list[int] = []
     for i, (u, v) in enumerate(points):
         while len(corners) > 1:
-            (a, b), (c, d) = points[corners[-2]], points[corners[-1]]
+            a, b = points[corners[-2]]
+            c, d = points[corners[-1]]
             if (c - a) * (v - b) > (d - b) * (u - a):
                 break
             corners.pop()

@@ -15,11 +15,7 @@ from quietarm.ocp.energy import Energy
 from quietarm.ocp.limits import RESIDUAL, Quantity, Ranged
 from quietarm.ocp.sample import Sample, total
 from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, TO_QUADRATIC
-from quietarm.ocp.simulation.grid import Grid
-
-_TINY = 1e-300
-_RESULTS = (RESIDUAL, "energy")
-"""Figures of a motion that are no peaks of a quantity."""
+from quietarm.ocp.simulation.mesh import Mesh
 
 
 def spent(
@@ -71,10 +67,11 @@ def quadratic(power: Sequence[Expression]) -> list[Expression]:
 def quadratic_zeros(c: Sequence[Expression]) -> list[Expression]:
     """The zeros of that quadratic on a step, in order; without zeros its extreme's place, twice."""
     discriminant = c[1] * c[1] - 4 * c[0] * c[2]
-    root = ca.sqrt(ca.fmax(discriminant, _TINY))  # at 0 its derivative is infinite
+    tiny = 1e-300
+    root = ca.sqrt(ca.fmax(discriminant, tiny))  # at 0 its derivative is infinite
     half = -(c[1] + ca.copysign(root, c[1])) / 2  # no cancellation
     first, second = (
-        ca.fmin(ca.fmax(zero, 0), 1) for zero in (half / (c[2] + _TINY), c[0] / (half + _TINY))
+        ca.fmin(ca.fmax(zero, 0), 1) for zero in (half / (c[2] + tiny), c[0] / (half + tiny))
     )
     second = first + (discriminant > 0) * (second - first)
     return [ca.fmin(first, second), ca.fmax(first, second)]
@@ -86,7 +83,8 @@ def _parted_energy(
     """Mean of |power| on a step whose work is counted separately between two breaks."""
     work = []
     for x in breaks:
-        u, bump = x - 0.5, x * (1 - x)
+        u = x - 0.5
+        bump = x * (1 - x)
         beyond = bump * (cubic * (bump - 0.2) / 4 - quartic * (u * u * u) / 5)
         work.append(x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3))) + beyond)
     whole = c[0] + c[1] / 2 + c[2] / 3
@@ -102,15 +100,16 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
     """
     if steps == 1:
         return ca.DM(NODES, 1), ca.DM(NODES, 1)  # no neighbour
-    grid = Grid(steps)
-    nodes = grid.nodes.T.ravel()
+    mesh = Mesh(steps)
+    nodes = mesh.nodes.T.ravel()
     step = np.arange(steps)[:, None]
     five = np.clip(NODES * step - 1, 0, len(nodes) - 5) + np.arange(5)
-    x = (nodes[five] - grid.boundaries[:-1, None]) / grid.lengths[:, None]
+    x = (nodes[five] - mesh.boundaries[:-1, None]) / mesh.lengths[:, None]
     to_quartic = np.linalg.inv(x[:, :, None] ** np.arange(5))
     # lists: casadi takes twenty times as long over arrays here
     at = (five % NODES * steps + five // NODES).ravel().tolist(), np.repeat(step, 5).tolist()
-    cubic, quartic = to_quartic[:, 3] + 2 * to_quartic[:, 4], to_quartic[:, 4]
+    cubic = to_quartic[:, 3] + 2 * to_quartic[:, 4]
+    quartic = to_quartic[:, 4]
     return (
         ca.DM.triplet(*at, cubic.ravel().tolist(), len(nodes), steps),
         ca.DM.triplet(*at, quartic.ravel().tolist(), len(nodes), steps),
@@ -166,7 +165,7 @@ class Motion(Ranged):
 
     def peak(self, name: str) -> float:
         """The residual, or the peak of a quantity, by name: infinite where it is not known."""
-        if name in _RESULTS:
+        if name in (RESIDUAL, "energy"):
             return float(getattr(self, name))
         value = getattr(self, f"peak_{name}", None)
         if value is not None:

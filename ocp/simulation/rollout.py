@@ -24,7 +24,7 @@ from quietarm.ocp.simulation.collocation import (
     collocate,
     modal_system,
 )
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import spent
 from quietarm.ocp.uncertainty import perturb_plant
 
@@ -96,9 +96,9 @@ class Simulation(NamedTuple):
     breaks: tuple[float, ...] = ()
 
     @property
-    def grid(self) -> Grid:
+    def mesh(self) -> Mesh:
         """Where the steps begin and end."""
-        return Grid(self.steps, self.breaks, self.profile.steps_of_a_piece)
+        return Mesh(self.steps, self.breaks, self.profile.steps_of_a_piece)
 
     def rollout(
         self,
@@ -109,10 +109,17 @@ class Simulation(NamedTuple):
     ) -> SymbolicRollout:
         """As of `symbolic_rollout`, of the `row` of a task and relative errors of its plant."""
         return symbolic_rollout(
-            perturb_plant(self.plant, dict(zip(self.errors, errors))), self.profile,
-            coefficients, row[:3], self.steps, candidates, ask_for_jerk(self.quantities),
-            self.breaks, row[3:], self.energy,
-        )  # fmt: skip
+            perturb_plant(self.plant, dict(zip(self.errors, errors))),
+            self.profile,
+            coefficients,
+            move=row[:3],
+            steps=self.steps,
+            candidates=candidates,
+            jerk=ask_for_jerk(self.quantities),
+            breaks=self.breaks,
+            initial=row[3:],
+            energy=self.energy,
+        )
 
 
 @lru_cache(maxsize=128)
@@ -121,7 +128,7 @@ def places_of(simulation: Simulation) -> Mapping[str, slice]:
     places: dict[str, slice] = {}
     first = 0
     for quantity in simulation.quantities:
-        count = quantity.rows(simulation.plant) * NODES * len(simulation.grid.lengths)
+        count = quantity.rows(simulation.plant) * NODES * len(simulation.mesh.lengths)
         places[quantity.name] = slice(first, first + count)
         first += count
     return places
@@ -152,7 +159,7 @@ def symbolic_rollout(
     steps, candidates : int
         Number of steps, and of rows.
     jerk : bool
-        Whether the joint's jerk is computed as well, at the times of `Grid.stretch`.
+        Whether the joint's jerk is computed as well, at the times of `Mesh.stretch`.
     breaks : tuple of float
         Fractions of the duration at which the motion is not smooth: there a step ends.
     initial : sequence of Expression
@@ -172,13 +179,13 @@ def symbolic_rollout(
         raise ValueError(
             f"got {len(coefficients)} coefficients for a profile of {profile.size}; give one each"
         )
-    grid = Grid(steps, breaks, profile.steps_of_a_piece)
-    times, length = grid.columns(candidates)
-    at = ca.horzcat(*times)
-    joint = profile.motion(coefficients, at, *move)
+    mesh = Mesh(steps, breaks, profile.steps_of_a_piece)
+    times, length = mesh.columns(candidates)
+    fraction = ca.horzcat(*times)
+    joint = profile.motion(coefficients, fraction, *move)
     if jerk:
-        there = profile.motion(coefficients, grid.stretch(at), *move, jerk=True)
-        joint = joint._replace(jerk=there.jerk)
+        stretched = profile.motion(coefficients, mesh.stretch(fraction), *move, jerk=True)
+        joint = joint._replace(jerk=stretched.jerk)
     h = at_each_node(move[2], length)[0] * length
     every_step = collocate(modal_system(plant, joint), h)
     W, dW, arrival = march(*every_step.transition(), h.shape, initial)
@@ -212,13 +219,14 @@ def march(
     Only this recursion is sequential: everything else is computed for all steps at once. With a
     `width` above 1 a row has as many states side by side, and the constant as many columns a step.
     """
-    (rows, steps), size = shape, len(constant)
+    rows, steps = shape
+    size = len(constant)
     acting = tuple((i, k) for k in range(size) for i in range(size) if not is_zero(columns[k][i]))
-    given = [ca.horzsplit(ca.DM.zeros(rows, steps * width) + x, width) for x in constant]
-    given += [ca.horzsplit(ca.DM.zeros(rows, steps) + columns[k][i], 1) for i, k in acting]
+    by_step = [ca.horzsplit(ca.DM.zeros(rows, steps * width) + x, width) for x in constant]
+    by_step += [ca.horzsplit(ca.DM.zeros(rows, steps) + columns[k][i], 1) for i, k in acting]
     affine = _affine_step(rows, width, size, acting)
     states = [[ca.DM.zeros(rows, width) + x for x in initial or [0.0] * size]]
-    for at_step in zip(*given):
+    for at_step in zip(*by_step):
         states.append(affine.call([*states[-1], *at_step], True, False))  # inline
     *before, arrival = states
     by_mode = [ca.horzcat(*state) for state in zip(*before)]
@@ -230,8 +238,9 @@ def _affine_step(
     rows: int, width: int, size: int, acting: tuple[tuple[int, int], ...]
 ) -> ca.Function:
     """(states, constants, entries of the matrix that are not zero) -> states after."""
-    before, given = ([ca.MX.sym("x", rows, width) for _ in range(size)] for _ in range(2))
-    gains, after = [ca.MX.sym("a", rows) for _ in acting], [*given]
+    before, constants = ([ca.MX.sym("x", rows, width) for _ in range(size)] for _ in range(2))
+    gains = [ca.MX.sym("a", rows) for _ in acting]
+    after = [*constants]
     for (i, k), gain in zip(acting, gains):
         after[i] = after[i] + ca.repmat(gain, 1, width) * before[k]
-    return ca.Function("step", [*before, *given, *gains], after)
+    return ca.Function("step", [*before, *constants, *gains], after)

@@ -17,8 +17,6 @@ from quietarm.ocp.cost import COST
 Array = NDArray[np.float64]
 Unpack = Callable[[list[Array], int], tuple[Array, ...]]
 """From outputs whose columns are candidates to copies with a row for each."""
-_PADDED_CALLS = 200
-"""So many times single rows take a larger function before one of their own is built."""
 
 
 class RowFunction:
@@ -58,7 +56,7 @@ class RowFunction:
         if size in self._compiled:
             return size
         larger = [built for built in self._compiled if built > size]
-        if size == 1 and larger and self._padded_calls < _PADDED_CALLS:
+        if size == 1 and larger and self._padded_calls < 200:
             self._padded_calls += 1
             return min(larger)
         compiled = Compiled(lambda: self._build(size), side_by_side=True)

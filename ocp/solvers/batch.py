@@ -25,13 +25,10 @@ from quietarm.ocp.solvers.derivatives import compile_derivatives
 from quietarm.ocp.solvers.node import path_of
 
 Array = NDArray[np.float64]
-_ROWS = (1, 4, 8)
-_LEAST_STRETCH = 1e-3
-"""Share of the largest speed below which a direction in a box counts as this share."""
 
 
 @dataclass(frozen=True)
-class Multipliers:
+class MotionMultipliers:
     """Weights of the sum of energy, arrival and limited values whose Hessian is asked for.
 
     Shapes are those of `Values`; or with an axis of scenarios after the first.
@@ -74,12 +71,13 @@ class Batch:
 
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
-        self._derivatives = RowFunction(partial(compile_derivatives, simulation), _ROWS)
+        build = partial(compile_derivatives, simulation)
+        self._derivatives = RowFunction(build, sizes=(1, 4, 8))
 
     @cached_property
     def _steps(self) -> int:
         """How many there are: some more than asked for where the motion breaks."""
-        return len(self.simulation.grid.lengths)
+        return len(self.simulation.mesh.lengths)
 
     @cached_property
     def places(self) -> Mapping[str, slice]:
@@ -104,7 +102,8 @@ class Batch:
         if columns is None:
             return np.eye(self.simulation.profile.size)
         if boxed:
-            least = _LEAST_STRETCH * np.linalg.norm(columns, 2)
+            # No direction counts for less than this share of the fastest.
+            least = 1e-3 * np.linalg.norm(columns, 2)
             columns = np.concatenate([columns, least * np.eye(self.simulation.profile.size)])
         triangle: Any = np.linalg.qr(columns, mode="r")
         return np.linalg.inv(triangle) * triangle[0, 0]
@@ -112,11 +111,13 @@ class Batch:
     @cached_property
     def _speeds(self) -> Array | None:
         """The path's speed at the nodes by each coefficient; None if it is not linear in them."""
-        size, grid = self.simulation.profile.size, self.simulation.grid
-        path = path_of(self.simulation.profile, grid, False, 1)
+        size = self.simulation.profile.size
+        mesh = self.simulation.mesh
+        path = path_of(self.simulation.profile, mesh, False, 1)
         if not path.linear:
             return None
-        table, weights = path.jacobian([0.0] * size, []), np.sqrt(np.tile(grid.lengths, NODES))
+        table = path.jacobian([0.0] * size, [])
+        weights = np.sqrt(np.tile(mesh.lengths, NODES))
         speeds = [table.get((1, n), ca.DM.zeros(1, len(weights))).full()[0] for n in range(size)]
         return (weights * np.array(speeds)).T
 
@@ -126,7 +127,7 @@ class Batch:
         move: Array,
         errors: Array,
         width: Array | None = None,
-        multipliers: Multipliers | None = None,
+        multipliers: MotionMultipliers | None = None,
     ) -> Derivatives:
         """Evaluate candidates with first derivatives, and second ones of a weighted sum.
 
@@ -134,15 +135,25 @@ class Batch:
         errors of its plant, and the power [W] over which |power| is rounded off; the multipliers
         are those of the sum whose Hessian is asked for.
         """
-        rows, states = len(coefficients), 2 * self.simulation.plant.modes
+        rows = len(coefficients)
+        states = 2 * self.simulation.plant.modes
         COST.gradients += rows
         COST.hessians += rows if multipliers is not None else 0
         width = np.zeros(rows) if width is None else width
-        weights = multipliers or Multipliers(
-            np.zeros(rows), np.zeros((rows, states)), np.zeros((rows, self.limited))
+        weights = multipliers or MotionMultipliers(
+            energy=np.zeros(rows),
+            arrival=np.zeros((rows, states)),
+            limited=np.zeros((rows, self.limited)),
         )
-        inputs = [coefficients, move, errors, width[:, None], weights.energy[:, None],
-                  weights.arrival, weights.limited]  # fmt: skip
+        inputs = [
+            coefficients,
+            move,
+            errors,
+            width[:, None],
+            weights.energy[:, None],
+            weights.arrival,
+            weights.limited,
+        ]
         unpack = self._unpack_first if multipliers is None else self._unpack
         return Derivatives(*self._derivatives(inputs, unpack))
 
@@ -153,8 +164,9 @@ class Batch:
     def _unpack(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
         """What `Derivatives` holds; a column of the outputs is a candidate."""
         size = self.simulation.profile.size
-        left, right = (self._by_coefficient(factor, rows) for factor in outputs[6:8])
-        hessian = left @ right.swapaxes(1, 2)
+        sensitivities = self._by_coefficient(outputs[6], rows)
+        curved = self._by_coefficient(outputs[7], rows)
+        hessian = sensitivities @ curved.swapaxes(1, 2)
         if outputs[8].size:
             hessian += outputs[8][:, :rows].T.reshape(rows, size, size)
         return (*self._unpack_first(outputs, rows)[:-1], hessian)
@@ -165,15 +177,20 @@ class Batch:
         energy, arrival, limited, gradient, arrival_jacobian = copy_rows(outputs[:5], rows)
         limited_jacobian = self._by_coefficient(outputs[5], rows)
         return (
-            energy[:, 0], arrival, limited, gradient, arrival_jacobian.reshape(rows, -1, size),
-            limited_jacobian.swapaxes(1, 2), np.zeros((rows, size, size)),
-        )  # fmt: skip
+            energy[:, 0],
+            arrival,
+            limited,
+            gradient,
+            arrival_jacobian.reshape(rows, -1, size),
+            limited_jacobian.swapaxes(1, 2),
+            np.zeros((rows, size, size)),
+        )
 
     def _by_coefficient(self, output: Array, rows: int) -> Array:
-        """From (value, coefficient, step; candidate) to (candidate; coefficient; others)."""
+        """From (value, coefficient, step; candidate) to (candidate; coefficient; value, step)."""
         size = self.simulation.profile.size
-        apart = output.reshape(-1, size, self._steps, output.shape[1])[..., :rows]
-        return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
+        by_axis = output.reshape(-1, size, self._steps, output.shape[1])[..., :rows]
+        return by_axis.transpose(3, 1, 0, 2).reshape(rows, size, -1)
 
 
 batch_of = lru_cache(maxsize=32)(Batch)

@@ -32,12 +32,6 @@ from quietarm.ocp.simulation.rows import join, widen
 from quietarm.ocp.solvers.node import Node, Table, path_of, product, transpose
 from quietarm.ocp.uncertainty import perturb_plant
 
-_ROWS_OF_CSE = 4
-"""Common terms are looked for where there are more rows than these."""
-_LEAST_SLOPE = 1e-4
-"""Smaller slopes of the power at its zeros count as this share of its root mean square."""
-_TINY = 1e-300
-
 
 class MovingZero(NamedTuple):
     """A zero of the power: its weights of the power at the nodes; twice the inverse of the slope.
@@ -71,23 +65,38 @@ def differentiate_energy(
 
     Where the width is positive, |p| is rounded off: the root of p^2 + width^2, at the nodes.
     """
-    steps, share = h.shape[1], energy.absolute
+    steps = h.shape[1]
+    share = energy.absolute
     of_nodes = ca.horzcat(*(w * h for w in GAUSS_WEIGHTS))
-    rms = ca.sqrt(ca.sum2(power * power) / power.shape[1]) + _TINY
+    tiny = 1e-300  # where the power is zero
+    rms = ca.sqrt(ca.sum2(power * power) / power.shape[1]) + tiny
+    # Smaller slopes of the power at its zeros count as this share of its root mean square.
+    least_slope = 1e-4
     of_sharp, zeros = differentiate_absolute(
-        ca.horzsplit(power, steps), _LEAST_SLOPE * ca.repmat(rms, 1, steps) * length
+        ca.horzsplit(power, steps), least_slope * ca.repmat(rms, 1, steps) * length
     )
-    rounded, is_rounded = ca.sqrt(power * power + width * width), width > 0
+    rounded = ca.sqrt(power * power + width * width)
+    is_rounded = width > 0
     sharp_slope = ca.repmat(h, 1, NODES) * ca.horzcat(*of_sharp)
-    slope = ca.if_else(is_rounded, of_nodes * power / (rounded + _TINY), sharp_slope)
+    slope = ca.if_else(
+        is_rounded,
+        of_nodes * power / (rounded + tiny),
+        sharp_slope,
+    )
     # of |p| itself Euler's theorem: it is homogeneous
-    absolute = ca.sum2(ca.if_else(is_rounded, of_nodes * rounded, sharp_slope * power))
+    absolute = ca.sum2(
+        ca.if_else(
+            is_rounded,
+            of_nodes * rounded,
+            sharp_slope * power,
+        )
+    )
     factor = ca.if_else(is_rounded[:, :steps], 0.0, share * h)
     return EnergyDerivatives(
-        value=share * absolute + sum(ca.sum2(of_nodes * one) for one in smooth),
+        value=share * absolute + sum(ca.sum2(of_nodes * value) for value in smooth),
         by_power=share * slope,
         by_smooth=of_nodes,
-        by_power_twice=share * of_nodes * width**2 / (rounded**3 + _TINY),
+        by_power_twice=share * of_nodes * width**2 / (rounded**3 + tiny),
         zeros=[zero._replace(bend=factor * zero.bend) for zero in zeros],
     )
 
@@ -102,7 +111,8 @@ def differentiate_absolute(
     meet, that curvature is without bound, though only there: the slope counts as `least_slope` at
     least.
     """
-    c, basis = quadratic(power), list(zip(*TO_QUADRATIC))
+    c = quadratic(power)
+    basis = list(zip(*TO_QUADRATIC))
     places = quadratic_zeros(c)
     integrals = [[x * (a + x * (b / 2 + x * (d / 3))) for a, b, d in basis] for x in places]
     gradient: list[Expression] = [0.0] * NODES
@@ -136,21 +146,32 @@ class _Differentiated:
     """The expressions of `compile_derivatives`, from the motion to the Hessian."""
 
     def __init__(self, simulation: Simulation, rows: int) -> None:
-        plant, profile, _, quantities, names, self.definition, _ = simulation
-        grid = simulation.grid
-        steps = len(grid.lengths)
+        plant = simulation.plant
+        profile = simulation.profile
+        names = simulation.errors
+        self.definition = simulation.energy
+        mesh = simulation.mesh
+        steps = len(mesh.lengths)
         nodes = NODES * steps
-        self.size, self.modes, self.shape = profile.size, plant.modes, (rows, steps)
-        self.path = path_of(profile, grid, ask_for_jerk(quantities), rows)
-        self.node = Node(plant, self.path, quantities, names, self.definition, (rows, nodes))
-        limited = (self.node.count - self.node.own) * nodes
+        self.size = profile.size
+        self.modes = plant.modes
+        self.shape = (rows, steps)
+        self.path = path_of(
+            profile,
+            mesh,
+            ask_for_jerk(simulation.quantities),
+            rows,
+        )
+        self.node = Node(simulation, self.path, (rows, nodes))
+        limited = (self.node.count - self.node.of_energy) * nodes
         counts = [self.size, 3 + 2 * plant.modes, len(names), 1, 1, 2 * plant.modes, limited]
         self.inputs = [ca.MX.sym("x", rows, count) for count in counts]
         self.a, row, errors, (self.width,), (self.of_energy,) = (
-            widen(one, nodes) for one in self.inputs[:5]
+            widen(column, nodes) for column in self.inputs[:5]
         )
-        self.move, self.initial = row[:3], ca.horzsplit(self.inputs[1], 1)[3:]
-        _, self.length = grid.columns(rows)
+        self.move = row[:3]
+        self.initial = ca.horzsplit(self.inputs[1], 1)[3:]
+        _, self.length = mesh.columns(rows)
         self.h = self.move[2][:, :steps] * self.length
         self.simulate(perturb_plant(plant, dict(zip(names, errors))), errors)
         self.differentiate()
@@ -161,14 +182,22 @@ class _Differentiated:
         system = modal_system(plant, self.path.motion(y, self.move))
         self.step = collocate(system, self.h, forced=True)
         constant, self.columns = self.step.transition()
-        W, dW, self.arrival = march(constant, self.columns, self.shape, self.initial)
+        W, dW, self.arrival = march(
+            constant,
+            self.columns,
+            self.shape,
+            self.initial,
+        )
         v = [*y, *_modes_at_nodes(self.step, W, dW)]
-        self.count, self.point = len(v), [*v, *self.move, *errors]
+        self.count = len(v)
+        self.point = [*v, *self.move, *errors]
         self.outputs, self.f_y, self.o_v = self.node.evaluate(self.point)
 
     def differentiate(self) -> None:
         """Forward sensitivities: the same steps for each coefficient, driven by f_y y_a."""
-        y_a, f_y, o_v = self.path_sensitivity(), self.along(self.f_y), self.along(self.o_v)
+        y_a = self.path_sensitivity()
+        f_y = self.along(self.f_y)
+        o_v = self.along(self.o_v)
         along = self.steps_along_coefficients().driven_by(
             [force for j in range(NODES) for force in product(f_y[j], y_a[j], self.modes)]
         )
@@ -179,7 +208,8 @@ class _Differentiated:
 
     def path_sensitivity(self) -> list[list[ca.MX]]:
         """Derivatives of y by one coefficient beside another, of each node a value each."""
-        table, zero = self.path.jacobian(self.a, self.move), ca.DM.zeros(*self.width.shape)
+        table = self.path.jacobian(self.a, self.move)
+        zero = ca.DM.zeros(*self.width.shape)
         by_node = [
             [ca.horzsplit(table.get((k, n), zero), self.shape[1]) for n in range(self.size)]
             for k in range(self.path.count)
@@ -221,7 +251,8 @@ class _Differentiated:
         What a step changes of the Lagrangian is linear in its state and forcing, so that CasADi's
         gradients are coefficients; that by the state drives the multipliers backwards.
         """
-        (rows, steps), m = self.shape, self.modes
+        rows, steps = self.shape
+        m = self.modes
         state = ca.MX.sym("z", rows * 2 * m, steps)
         forcing = ca.MX.sym("f", rows, NODES * m * steps)
         z = ca.vertsplit(state, rows)
@@ -239,8 +270,8 @@ class _Differentiated:
         )
         of_after = [_reverse(x) for x in (*W, *dW)]
         after = sum(ca.dot(w, x) for w, x in zip(of_after, driven.column(0)))
-        found = ca.horzsplit(ca.gradient(here + after, forcing), steps)
-        return [ca.horzcat(*found[i::m]) for i in range(m)]
+        by_forcing = ca.horzsplit(ca.gradient(here + after, forcing), steps)
+        return [ca.horzcat(*by_forcing[i::m]) for i in range(m)]
 
     def point_multipliers(self, of_outputs: Sequence[ca.MX]) -> list[ca.MX]:
         """Multipliers of the point v, from those of the outputs there."""
@@ -253,11 +284,12 @@ class _Differentiated:
         of_forcing: list[ca.MX],
     ) -> tuple[list[ca.MX], list[ca.MX]]:
         """Sensitivities, and what second derivatives make of them: their product is the Hessian."""
-        steps, pairs = self.shape[1], list[tuple[Any, Any]]()
+        steps = self.shape[1]
+        pairs = list[tuple[Any, Any]]()
         l_vv = self.node.hessian(self.point, [*of_forcing, *of_outputs])
         for v_a, table in zip(self.v_a, self.along(l_vv)):
-            turned = product(table, v_a, self.count)
-            pairs += [(v_a[i], turned[i]) for i in sorted({row for row, _ in table})]
+            by_v = product(table, v_a, self.count)
+            pairs += [(v_a[i], by_v[i]) for i in sorted({row for row, _ in table})]
         bends = list[tuple[Any, Any]]()
         for joint, energy in enumerate(energies):
             power_a = [outputs[joint] for outputs in self.o_a]
@@ -267,7 +299,8 @@ class _Differentiated:
                 terms = zip(map(self.repeat, weights), power_a)
                 bends.append((self.of_energy[:, :steps] * bend, sum(w * x for w, x in terms)))
         pairs += [(x, self.repeat(bend) * x) for bend, x in bends]
-        return [left for left, _ in pairs], [right for _, right in pairs]
+        factors, turned = zip(*pairs)
+        return list(factors), list(turned)
 
     def path_hessian(self, of_outputs: list[ca.MX], of_forcing: list[ca.MX]) -> list[ca.MX]:
         """What the path's own second derivatives add to the Hessian."""
@@ -277,40 +310,43 @@ class _Differentiated:
         by_outputs = self.point_multipliers(of_outputs)[:count]
         by_forcing = product(transpose(self.f_y), of_forcing, count)
         of_y = [x + y for x, y in zip(by_outputs, by_forcing)]
-        y_aa, zero = self.path.hessian(self.a, self.move, of_y), ca.MX.zeros(self.shape[0], 1)
-        every = range(self.size)
-        return [ca.sum2(y_aa[i, k]) if (i, k) in y_aa else zero for i in every for k in every]
+        y_aa = self.path.hessian(self.a, self.move, of_y)
+        zero = ca.MX.zeros(self.shape[0], 1)
+        places = [(i, k) for i in range(self.size) for k in range(self.size)]
+        return [ca.sum2(y_aa[place]) if place in y_aa else zero for place in places]
 
     def compile(self) -> ca.Function:
         """All of it as a function."""
-        (rows, steps), own = self.shape, self.node.own
+        rows, steps = self.shape
+        of_energy = self.node.of_energy
         powers = self.outputs[: self.node.powers]
-        smooth = self.outputs[self.node.powers : own]
+        smooth = self.outputs[self.node.powers : of_energy]
         energies = [  # the smooth part, of all joints, counts with the first
             differentiate_energy(
                 self.definition, power, [] if joint else smooth, self.h, self.length, self.width
             )
             for joint, power in enumerate(powers)
         ]
-        energy_o = [*(energy.by_power for energy in energies), energies[0].by_smooth][:own]
+        energy_o = [*(energy.by_power for energy in energies), energies[0].by_smooth][:of_energy]
         of_outputs = [self.of_energy * x for x in energy_o]
         of_outputs += ca.horzsplit(self.inputs[6], NODES * steps)
         of_forcing = self.forcing_multipliers(of_outputs)
         along = [[self.repeat(x) for x in ca.horzsplit(by, steps)] for by in energy_o]
-        energy_a = sum(along[i][j] * self.o_a[j][i] for i in range(own) for j in range(NODES))
-        limited_a = zip(*(outputs[own:] for outputs in self.o_a))
-        found = [
+        energy_a = sum(along[i][j] * self.o_a[j][i] for i in range(of_energy) for j in range(NODES))
+        limited_a = zip(*(outputs[of_energy:] for outputs in self.o_a))
+        blocks = [
             [total([energy.value for energy in energies])],
             [self.arrival],
-            self.outputs[own:],
+            self.outputs[of_energy:],
             [ca.sum2(x) for x in ca.horzsplit(energy_a, steps)],
             [self.arrival_a],
             [x for of_value in limited_a for x in of_value],
             *self.hessian_factors(energies, of_outputs, of_forcing),
             self.path_hessian(of_outputs, of_forcing),
         ]
-        outputs = [join(x, rows) for x in found]
-        options = {"cse": rows > _ROWS_OF_CSE and steps <= MOST_STEPS_OF_CSE}
+        outputs = [join(x, rows) for x in blocks]
+        # Common terms are looked for where there are more rows than these.
+        options = {"cse": rows > 4 and steps <= MOST_STEPS_OF_CSE}
         return ca.Function("derivatives", self.inputs, outputs, options)
 
 
@@ -325,7 +361,7 @@ def _reverse(by_step: Any) -> Any:
     return by_step[:, ::-1] if several else by_step
 
 
-def _modes_at_nodes(one: Step, W: list[ca.MX], dW: list[ca.MX]) -> list[ca.MX]:
+def _modes_at_nodes(step: Step, W: list[ca.MX], dW: list[ca.MX]) -> list[ca.MX]:
     """W, W' and W'' at the nodes, from those before the steps."""
-    state = modes_at_nodes(one.nodes(W, dW, one.accelerations(W, dW)))
+    state = modes_at_nodes(step.nodes(W, dW, step.accelerations(W, dW)))
     return [*state.W, *state.dW, *state.ddW]

@@ -18,10 +18,9 @@ evaluated in one call; each solves a quadratic program of its own within a trust
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,32 +35,37 @@ WIDTHS = (0.5, 0.15, 0.05, 0.015, 0.005, 0.0)
 """Widths over which the objective is rounded off, stage by stage."""
 SHARP = (0.0,)
 """The widths for a start next to a minimum."""
-_FINE = 1e-2
-"""A stage ends where the model promises less than this share of its width."""
-_MET = 1e-10
-"""A row is solved with no larger violation."""
-FEASIBLE = 1e-7
-"""A row that ends otherwise is feasible with no larger violation."""
-_NEAR = 1e-3
-"""A stage ends with no larger violation."""
-_FUNNEL, _DESCENT, _SWITCH = 0.9, 1e-4, 0.1
-"""Share of the funnel's width to stay within, of the promised descent to reach, and of the squared
-violation that a promise has to exceed for the descent to count."""
-_SMALLEST, _SHRINK, _GROW = 1e-9, (0.1, 0.5), 2.5
-"""Least radius of a trust region; limits of the factor by which it shrinks; by which it grows."""
-_PATIENCE, _CREEP = 40, 1e-5
-"""A row creeps where in so many iterations f falls by less than this share."""
-_ALIKE = 1e-6
-"""Rows whose f differ by no more than this share agree."""
-_MEETING = 2e-3
-"""Rows whose points are no farther apart in the same stage, past the first, go on as one."""
-
-Evaluate = Callable[[Index, Array, Multipliers, Array], Model]
-"""(rows, points, multipliers, widths) -> model at these points."""
 
 
-_LOG_HEAD = "iter  starts   objective  violation     radius  smoothing"
-_LOG_LINE = "{:4}{:8}{:12.6f}{:11.1e}{:11.1e}{:11.3f}"
+class RowPrograms(Protocol):
+    """The programs to solve, a row each: so many equalities c = 0, and lower <= v <= upper.
+
+    The last `linear` entries of v are linear.
+    """
+
+    @property
+    def equalities(self) -> int:
+        """The number of entries of c."""
+        ...
+
+    @property
+    def linear(self) -> int:
+        """The number of linear entries of v."""
+        ...
+
+    @property
+    def lower(self) -> Array:
+        """Shape (rows, entries of v)."""
+        ...
+
+    @property
+    def upper(self) -> Array:
+        """Shape (rows, entries of v)."""
+        ...
+
+    def evaluate(self, rows: Index, x: Array, multipliers: Multipliers, width: Array) -> Model:
+        """Models of these rows at points, of the objectives rounded off over widths."""
+        ...
 
 
 class End(Enum):
@@ -90,9 +94,6 @@ class Course(NamedTuple):
     log: bool = False
 
 
-COURSE = Course()
-
-
 @dataclass(frozen=True)
 class Ended:
     """Where the rows ended: points (rows, n), multipliers, why, after how many iterations (rows,).
@@ -108,236 +109,346 @@ class Ended:
 
 
 def minimise(
-    evaluate: Evaluate,
+    programs: RowPrograms,
     x: Array,
-    lower: Array,
-    upper: Array,
     *,
-    equalities: int = 0,
-    linear: int = 0,
     groups: Index | None = None,
-    course: Course = COURSE,
+    course: Course | None = None,
 ) -> Ended:
-    """Minimise every row from its start, with so many equalities and lower <= v <= upper.
+    """Minimise every row from its start.
 
-    The last `linear` entries of v are linear and kept from the start on. Rows of one number in
-    `groups` are starts of one program: once half of them, and more than one, agree on the least f,
-    the others are stopped.
+    Parameters
+    ----------
+    programs : RowPrograms
+        What is minimised. The linear entries of v are within their bounds from the start on.
+    x : ndarray, shape (rows, n)
+        The starts.
+    groups : ndarray, shape (rows,), optional
+        Rows of one number are starts of one program: once half of them, and more than one, agree on
+        the least f, the others are stopped.
+    course : Course, optional
+        How they are led.
     """
-    run = _Run(evaluate, x, lower, upper, equalities, linear, groups, course)
+    course = course or Course()
+    descent = _Descent(programs, x, groups, course)
     if course.log:
-        print(_LOG_HEAD)
+        print("iter  starts   objective  violation     radius  smoothing")
     for number in range(course.iterations):
-        if not len(run.going):
+        if not len(descent.going):
             break
         if course.log:
-            print(run.log_line(number))
-        run.iterate()
-    ends = [End.UNFINISHED if end is None else end for end in run.ends]
-    return Ended(run.x, run.violation, run.multipliers, ends, run.iterations)
+            print(descent.log_line(number))
+        descent.iterate()
+    ends = [End.UNFINISHED if end is None else end for end in descent.ends]
+    return Ended(
+        descent.x,
+        descent.violation,
+        descent.multipliers,
+        ends,
+        descent.iterations,
+    )
 
 
-class _Run:
+class _Attempt(NamedTuple):
+    """A step of each row that is going, and what comes of it.
+
+    `promised` is the descent of the quadratic model, `sharper` whether the row goes on to the next
+    stage, `trial` the model after the step, `for_f` whether the objective has to fall, and `good`
+    whether the step is accepted. A correction changes step, trial and good in place.
+    """
+
+    step: Steps
+    promised: Array
+    sharper: Flags
+    trial: Model
+    for_f: Flags
+    good: Flags
+
+    @property
+    def size(self) -> Array:
+        """The largest change of an unknown."""
+        return np.abs(self.step.d).max(axis=1)
+
+
+class _Descent:
     """The rows on their way. Arrays by row; `model` has those of the rows still `going`."""
 
+    fine: ClassVar[float] = 1e-2
+    """A stage ends where the model promises less than this share of its width,"""
+    near: ClassVar[float] = 1e-3
+    """and with no larger violation."""
+    met: ClassVar[float] = 1e-10
+    """A row is solved with no larger violation."""
+    feasible: ClassVar[float] = 1e-7
+    """A row that ends otherwise is feasible with no larger violation."""
+    within: ClassVar[float] = 0.9
+    """Share of the funnel's width to stay within, where f may rise."""
+    least_descent: ClassVar[float] = 1e-4
+    """Share of the promised descent to reach."""
+    switch: ClassVar[float] = 0.1
+    """Share of the squared violation that a promise has to exceed for the descent to count."""
+    smallest: ClassVar[float] = 1e-9
+    """Least radius of a trust region."""
+    shrink: ClassVar[tuple[float, float]] = (0.1, 0.5)
+    """Least and largest factor by which it shrinks."""
+    grow: ClassVar[float] = 2.5
+    """Factor by which it grows."""
+    patience: ClassVar[int] = 40
+    creep: ClassVar[float] = 1e-5
+    """A row creeps where in so many iterations f falls by less than this share."""
+    alike: ClassVar[float] = 1e-6
+    """Rows whose f differ by no more than this share agree."""
+    meeting: ClassVar[float] = 2e-3
+    """Rows whose points are no farther apart in the same stage, past the first, go on as one."""
+
     def __init__(
-        self,
-        evaluate: Evaluate,
-        x: Array,
-        lower: Array,
-        upper: Array,
-        equalities: int,
-        linear: int,
-        groups: Index | None,
-        course: Course,
+        self, programs: RowPrograms, x: Array, groups: Index | None, course: Course
     ) -> None:
-        self.evaluate, self.x, self.lower, self.upper = evaluate, x.copy(), lower, upper
-        self.linear = linear
+        self.programs = programs
+        self.x = x.copy()
         self.groups = groups
         self.widths = np.array(course.widths)
         self.tolerance = course.tolerance
-        rows, k = lower.shape
-        self.going, self.stage = np.arange(rows), np.zeros(rows, dtype=int)
+        rows, bounded = programs.lower.shape
+        self.going = np.arange(rows)
+        self.stage = np.zeros(rows, dtype=int)
         self.ends: list[End | None] = [None] * rows
         self.iterations = np.zeros(rows, dtype=int)
         self.count = np.ones(rows, dtype=int)  # of the starts that lead here
-        self.multipliers = Multipliers(np.zeros((rows, equalities)), np.zeros((rows, k)))
-        self.model = evaluate(self.going, x, self.multipliers, self.width(self.going))
+        self.multipliers = Multipliers(
+            np.zeros((rows, programs.equalities)),
+            np.zeros((rows, bounded)),
+        )
+        self.model = programs.evaluate(
+            self.going,
+            x,
+            self.multipliers,
+            self.width(self.going),
+        )
         self.f = self.model.objective.copy()
         self.violation = self._violation(self.going, self.model)
         self.funnel = np.maximum(0.1, 1.1 * self.violation)
         self.radius = np.full(rows, course.reach)
-        self.mark, self.marked = self.f.copy(), np.zeros(rows, dtype=int)
+        # f, and the number of the iteration, since when a row may creep
+        self.mark = self.f.copy()
+        self.marked = np.zeros(rows, dtype=int)
 
     def width(self, rows: Index) -> Array:
         return self.widths[self.stage[rows]]
 
     def log_line(self, number: int) -> str:
         """Of the row with the least objective, scaled; and how many are going."""
-        row = self.going[[np.argmin(self.f[self.going])]]
-        values = *self.f[row], *self.violation[row], *self.radius[row], *self.width(row)
-        return _LOG_LINE.format(number, len(self.going), *values)
+        row = self.going[np.argmin(self.f[self.going])]
+        return (
+            f"{number:4}{len(self.going):8}{self.f[row]:12.6f}{self.violation[row]:11.1e}"
+            f"{self.radius[row]:11.1e}{self.widths[self.stage[row]]:11.3f}"
+        )
 
     def iterate(self) -> None:
         """One iteration of all rows that are going."""
-        rows, model = self.going, self.model
+        rows = self.going
         self.iterations[rows] += 1
-        hessian = convexify(model)
-        every = np.arange(len(rows))
+        hessian = convexify(self.model)
+        attempt = self._attempt(hessian)
+        self._correct(hessian, attempt)
+        at_side = attempt.size > 0.99 * self.radius[rows]
+        self._resize(attempt, at_side)
+        self._move(attempt)
+        scale = np.abs(self.model.objective)
+        small = (np.abs(attempt.promised) <= self.tolerance * scale) & ~at_side & attempt.step.met
+        last = ~attempt.sharper & (self.width(rows) == 0)
+        self._end(small & last & (self.violation[rows] <= self.met))
+
+    def _attempt(self, hessian: Array) -> _Attempt:
+        """The step of least quadratic model, and whether it is accepted."""
+        rows = self.going
+        model = self.model
         step = self._steps(rows, model._replace(hessian=hessian))
         promised = -np.einsum("rn,rn->r", model.gradient, step.d)
         promised -= 0.5 * np.einsum("rn,rnm,rm->r", step.d, hessian, step.d)
         sharper = self._sharper(step, promised)
         width = self.widths[self.stage[rows] + sharper]
-        trial = self.evaluate(rows, self.x[rows] + step.d, step.multipliers, width)
-        good = self._accepted(every, step, step.d, promised, trial)
+        trial = self.programs.evaluate(
+            rows,
+            self.x[rows] + step.d,
+            step.multipliers,
+            width,
+        )
+        good = self._accepted(np.arange(len(rows)), step, step.d, promised, trial)
         # of another width f says nothing; so small a step need not lower it
-        after = self._violation(rows, trial)
-        good = np.where(sharper, after <= np.maximum(self.funnel[rows], _MET), good)
-        self._correct(hessian, step, promised, trial, good)
-        for_f = (promised > _SWITCH * self.violation[rows] ** 2) & ~sharper
-        size = np.abs(step.d).max(axis=1)
-        bound = size > 0.99 * self.radius[rows]
-        self._resize(good, for_f, bound, size, promised, self.model.objective - trial.objective)
-        self._move(good, for_f, step, trial)
-        self.stage[rows] += sharper & good
-        self.mark[rows[sharper]] = np.inf
-        small = (np.abs(promised) <= self.tolerance * np.abs(model.objective)) & ~bound & step.met
-        self._end(small & ~sharper & (self.violation[rows] <= _MET) & (width == 0))
+        violation = self._violation(rows, trial)
+        good = np.where(
+            sharper,
+            violation <= np.maximum(self.funnel[rows], self.met),
+            good,
+        )
+        for_f = (promised > self.switch * self.violation[rows] ** 2) & ~sharper
+        return _Attempt(step, promised, sharper, trial, for_f, good)
 
     def _sharper(self, step: Steps, promised: Array) -> Flags:
         """Which rows go on to the next stage with this step."""
         rows = self.going
         width = self.width(rows)
-        little = np.abs(promised) <= _FINE * width * np.abs(self.model.objective)
-        return step.met & (width > 0) & (self.violation[rows] <= _NEAR) & little
+        little = np.abs(promised) <= self.fine * width * np.abs(self.model.objective)
+        return step.met & (width > 0) & (self.violation[rows] <= self.near) & little
 
     def _violation(self, rows: Index, model: Model) -> Array:
-        return _farthest(model.equality, model.bounded, self.lower[rows], self.upper[rows])
+        return self._farthest(rows, model.equality, model.bounded)
+
+    def _farthest(self, rows: Index, c: Array, v: Array) -> Array:
+        """The largest distance from c = 0 and from the bounds of v."""
+        lower = self.programs.lower[rows]
+        upper = self.programs.upper[rows]
+        beyond = np.maximum(np.maximum(v - upper, lower - v), 0.0)
+        return np.maximum(np.abs(c).max(axis=1, initial=0.0), beyond.max(axis=1, initial=0.0))
 
     def _accepted(
-        self, which: Index, step: Steps, d: Array, promised: Array, trial: Model
+        self,
+        places: Index,
+        step: Steps,
+        d: Array,
+        promised: Array,
+        trial: Model,
     ) -> Flags:
         """Whether the rows at these places of the model accept their steps d."""
-        rows, model = self.going[which], self.model.take(which)
-        before, after = self.violation[rows], self._violation(rows, trial)
+        rows = self.going[places]
+        model = self.model.take(places)
+        before = self.violation[rows]
+        after = self._violation(rows, trial)
         with np.errstate(invalid="ignore"):
             size = np.abs(model.objective)
-            descends = model.objective - trial.objective >= _DESCENT * promised - 1e-13 * size
-            within = after <= np.maximum(self.funnel[rows], _MET)
-            nearer = after <= np.maximum(_FUNNEL * self.funnel[rows], _MET)
+            descends = (
+                model.objective - trial.objective >= self.least_descent * promised - 1e-13 * size
+            )
+            within = after <= np.maximum(self.funnel[rows], self.met)
+            nearer = after <= np.maximum(self.within * self.funnel[rows], self.met)
             # far from feasible a large step may cost any f, and lead to another minimum
             cheap = trial.objective <= model.objective + size + 0.5
-            for_f = promised > _SWITCH * before**2
+            for_f = promised > self.switch * before**2
             good = np.where(for_f, within & descends, nearer & cheap)
-            linearised = _farthest(
+            linearised = self._farthest(
+                rows,
                 model.equality + _times(model.equality_jacobian, d),
                 model.bounded + _times(model.bounded_jacobian, d),
-                self.lower[rows],
-                self.upper[rows],
             )
             restores = (after < before) & (before - after >= 0.1 * (before - linearised))
-            good = np.where(step.met[which], good, restores)
+            good = np.where(step.met[places], good, restores)
         return good & np.isfinite(trial.objective) & np.isfinite(after)
 
-    def _correct(
-        self, hessian: Array, step: Steps, promised: Array, trial: Model, good: Flags
-    ) -> None:
+    def _correct(self, hessian: Array, attempt: _Attempt) -> None:
         """Second-order corrections of the steps that are not good."""
-        missed = self._violation(self.going, trial) > _MET
-        again = np.flatnonzero(~good & missed & np.isfinite(trial.objective))
+        step = attempt.step
+        trial = attempt.trial
+        missed = self._violation(self.going, trial) > self.met
+        again = np.flatnonzero(~attempt.good & missed & np.isfinite(trial.objective))
         if not again.size:
             return
-        rows, d, model = self.going[again], step.d[again], self.model.take(again)
+        rows = self.going[again]
+        d = step.d[again]
+        model = self.model.take(again)
         bent = model._replace(
             equality=trial.equality[again] - _times(model.equality_jacobian, d),
             bounded=trial.bounded[again] - _times(model.bounded_jacobian, d),
             hessian=hessian[again],
         )
         corrected = self._steps(rows, bent)
-        multipliers = step.multipliers.take(again)
-        second = self.evaluate(rows, self.x[rows] + corrected.d, multipliers, self.width(rows))
-        better = self._accepted(again, step, corrected.d, promised[again], second)
+        second = self.programs.evaluate(
+            rows,
+            self.x[rows] + corrected.d,
+            step.multipliers.take(again),
+            self.width(rows),
+        )
+        promised = attempt.promised[again]
+        better = self._accepted(again, step, corrected.d, promised, second)
         better &= corrected.met | ~step.met[again]
-        good[again[better]] = True
+        attempt.good[again[better]] = True
         step.d[again[better]] = corrected.d[better]
         trial.put(again[better], second.take(better))
 
-    def _resize(
-        self, good: Flags, for_f: Flags, bound: Flags, size: Array, promised: Array, gained: Array
-    ) -> None:
+    def _resize(self, attempt: _Attempt, at_side: Flags) -> None:
         """Trust regions that shrink to where a parabola through f has its least, or grow."""
-        share = np.where(for_f, gained / np.where(promised == 0, 1.0, promised), -1.0)
+        good = attempt.good
+        for_f = attempt.for_f
+        gained = self.model.objective - attempt.trial.objective
+        promised = np.where(attempt.promised == 0, 1.0, attempt.promised)
+        share = np.where(for_f, gained / promised, -1.0)
         share = np.nan_to_num(share, nan=-1e3, posinf=1.0, neginf=-1e3)
-        shrunk = size * np.clip(0.5 / (1 - np.minimum(share, 0.5)), *_SHRINK)
+        shrunk = attempt.size * np.clip(0.5 / (1 - np.minimum(share, 0.5)), *self.shrink)
         radius = self.radius[self.going]
-        growing = good & bound & ((share > 0.75) | ~for_f)
+        growing = good & at_side & ((share > 0.75) | ~for_f)
         poor = good & for_f & (share < 0.25)
-        kept = np.where(growing, _GROW * radius, np.where(poor, 0.5 * radius, radius))
-        self.radius[self.going] = np.where(good, kept, np.minimum(shrunk, radius))
+        following = np.where(poor, 0.5 * radius, radius)
+        following = np.where(growing, self.grow * radius, following)
+        self.radius[self.going] = np.where(good, following, np.minimum(shrunk, radius))
 
-    def _move(self, good: Flags, for_f: Flags, step: Steps, trial: Model) -> None:
+    def _move(self, attempt: _Attempt) -> None:
+        """Take the good steps."""
         rows = self.going
-        self.multipliers.put(rows, step.multipliers)
+        good = attempt.good
+        reached = attempt.trial.take(good)
+        self.multipliers.put(rows, attempt.step.multipliers)
         moved = rows[good]
-        self.x[moved] += step.d[good]
-        self.model.put(np.flatnonzero(good), trial.take(good))
-        self.violation[moved] = self._violation(moved, trial.take(good))
-        self.f[moved] = trial.objective[good]
-        nearer = rows[good & ~for_f]
+        self.x[moved] += attempt.step.d[good]
+        self.model.put(np.flatnonzero(good), reached)
+        self.violation[moved] = self._violation(moved, reached)
+        self.f[moved] = reached.objective
+        nearer = rows[good & ~attempt.for_f]
         self.funnel[nearer] = 0.45 * self.funnel[nearer] + 0.5 * self.violation[nearer]
+        self.stage[rows] += attempt.sharper & good
+        self.mark[rows[attempt.sharper]] = np.inf
 
     def _end(self, solved: Flags) -> None:
         """Drop the rows that are solved, stuck, creeping, or left because others agree."""
         rows = self.going
         for row in rows[solved]:
             self.ends[row] = End.SOLVED
-        for row in rows[~solved & (self.radius[rows] < _SMALLEST)]:
-            kept = self.violation[row] <= FEASIBLE
-            self.ends[row] = End.VANISHED if kept else End.INFEASIBLE
-        due = rows[self.iterations[rows] - self.marked[rows] >= _PATIENCE]
-        slow = due[self.mark[due] - self.f[due] <= _CREEP * np.abs(self.f[due])]
-        for row in slow[self.violation[slow] <= FEASIBLE]:
+        for row in rows[~solved & (self.radius[rows] < self.smallest)]:
+            is_feasible = self.violation[row] <= self.feasible
+            self.ends[row] = End.VANISHED if is_feasible else End.INFEASIBLE
+        due = rows[self.iterations[rows] - self.marked[rows] >= self.patience]
+        slow = due[self.mark[due] - self.f[due] <= self.creep * np.abs(self.f[due])]
+        for row in slow[self.violation[slow] <= self.feasible]:
             self.ends[row] = self.ends[row] or End.CREEPING
-        self.mark[due], self.marked[due] = self.f[due], self.iterations[due]
+        self.mark[due] = self.f[due]
+        self.marked[due] = self.iterations[due]
         if self.groups is not None:
-            self._leave(bool(solved.any()))
+            for group in np.unique(self.groups[rows]):
+                self._leave(np.flatnonzero(self.groups == group), bool(solved.any()))
         stays = np.array([self.ends[row] is None for row in rows])
         if not stays.all():
-            self.going, self.model = rows[stays], self.model.take(stays)
+            self.going = rows[stays]
+            self.model = self.model.take(stays)
 
-    def _leave(self, anew: bool) -> None:
-        """Leave rows that have met another of their group, or whose others agree."""
-        assert self.groups is not None
-        for group in np.unique(self.groups[self.going]):
-            own = np.flatnonzero(self.groups == group)
-            going = [row for row in own if self.ends[row] is None]
-            going.sort(key=self.f.__getitem__)
-            for row in going[1:]:
-                first = going[0]
-                same = self.stage[row] == self.stage[first] > 0
-                near = np.abs(self.x[row] - self.x[first]).max() <= _MEETING
-                if same and near and self.f[row] <= self.f[first] * (1 + _MEETING):
-                    self.ends[row] = End.AGREED
-                    self.count[first] += self.count[row]
-            done = [row for row in own if self.ends[row] is End.SOLVED]
-            least = self.f[done].min(initial=np.inf)
-            agree = self.count[done][self.f[done] <= least * (1 + _ALIKE)].sum()
-            if anew and agree >= max(2, len(own) / 2):
-                for row in going:
-                    self.ends[row] = self.ends[row] or End.AGREED
+    def _leave(self, group: Index, anew: bool) -> None:
+        """Leave rows of a group that have met another of it, or whose others agree."""
+        going = [row for row in group if self.ends[row] is None]
+        going.sort(key=self.f.__getitem__)
+        for row in going[1:]:
+            first = going[0]
+            same = self.stage[row] == self.stage[first] > 0
+            near = np.abs(self.x[row] - self.x[first]).max() <= self.meeting
+            if same and near and self.f[row] <= self.f[first] * (1 + self.meeting):
+                self.ends[row] = End.AGREED
+                self.count[first] += self.count[row]
+        done = [row for row in group if self.ends[row] is End.SOLVED]
+        least = self.f[done].min(initial=np.inf)
+        agree = self.count[done][self.f[done] <= least * (1 + self.alike)].sum()
+        if anew and agree >= max(2, len(group) / 2):
+            for row in going:
+                self.ends[row] = self.ends[row] or End.AGREED
 
     def _steps(self, rows: Index, model: Model) -> Steps:
         """Solve the quadratic programs of rows whose models these are."""
-        bounds = self.lower[rows], self.upper[rows]
-        return least_steps(model, *bounds, self.radius[rows], self.linear)
+        lower = self.programs.lower[rows]
+        upper = self.programs.upper[rows]
+        return least_steps(
+            model,
+            lower,
+            upper,
+            self.radius[rows],
+            self.programs.linear,
+        )
 
 
 def _times(matrices: Array, d: Array) -> Array:
     return np.einsum("rkn,rn->rk", matrices, d)
-
-
-def _farthest(c: Array, v: Array, lower: Array, upper: Array) -> Array:
-    """The largest distance from c = 0 and from the bounds of v."""
-    beyond = np.maximum(np.maximum(v - upper, lower - v), 0.0)
-    return np.maximum(np.abs(c).max(axis=1, initial=0.0), beyond.max(axis=1, initial=0.0))

@@ -17,7 +17,7 @@ sides of its limit.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple
@@ -39,23 +39,30 @@ from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.uncertainty import Scenario
 
 Array = NDArray[np.float64]
-_WIDTHS = (0.5, 0.05, 0.0)
-"""Shares of the plain motion's mean power over which |power| is rounded off, run by run."""
 _OPTIONS = {
     **OPTIONS,
     # Where zeros of the power meet, exact second derivatives are without bound.
-    "hessian_approximation": "limited-memory", "limited_memory_max_history": 50,
+    "hessian_approximation": "limited-memory",
+    "limited_memory_max_history": 50,
     # There a second-order correction leads to and fro across the kink, for hundreds of iterations.
     "max_soc": 0,
     # And there it ends within the constraints when the objective has hardly changed three times:
     # by less than a tenth of the tolerance.
-    "acceptable_tol": 1e3, "acceptable_dual_inf_tol": 1e10, "acceptable_constr_viol_tol": 1e-9,
-    "acceptable_compl_inf_tol": 1e-5, "acceptable_iter": 3,
-}  # fmt: skip
+    "acceptable_tol": 1e3,
+    "acceptable_dual_inf_tol": 1e10,
+    "acceptable_constr_viol_tol": 1e-9,
+    "acceptable_compl_inf_tol": 1e-5,
+    "acceptable_iter": 3,
+}
 _WARM = {
-    **_OPTIONS, "mu_strategy": "monotone", "mu_init": 1e-8, "bound_push": 1e-9,
-    "bound_frac": 1e-9, "slack_bound_push": 1e-9, "slack_bound_frac": 1e-9,
-}  # fmt: skip
+    **_OPTIONS,
+    "mu_strategy": "monotone",
+    "mu_init": 1e-8,
+    "bound_push": 1e-9,
+    "bound_frac": 1e-9,
+    "slack_bound_push": 1e-9,
+    "slack_bound_frac": 1e-9,
+}
 """A thin barrier, which does not drive a start beside a minimum away from it."""
 
 
@@ -80,7 +87,7 @@ class Ipopt(Solver):
         """Solve each problem from its start; see `Solver.solve`. Groups are not used."""
         del groups
         pairs = zip(problems, starts)
-        return [_Run(problem, warm, self).solve(start) for problem, start in pairs]
+        return [_Numbers(problem, warm, self).solve(start) for problem, start in pairs]
 
 
 class _Program(NamedTuple):
@@ -110,13 +117,13 @@ class _Form(NamedTuple):
     @classmethod
     def of(cls, problem: Problem) -> _Form:
         """The form of a problem."""
-        transcription, asked = problem
+        transcription, scalarization = problem
         return cls(
             scenarios=transcription.task.scenarios,
             tip_rows=tuple(map(len, transcription.tip_rows)),
-            at_rest=asked.at_rest,
-            bounds_residual=asked.bounds_residual,
-            peak=asked.peak,
+            at_rest=scalarization.at_rest,
+            bounds_residual=scalarization.bounds_residual,
+            peak=scalarization.peak,
         )
 
 
@@ -128,29 +135,36 @@ def compile_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bo
 
 def _build_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bool) -> _Program:
     """The program in symbols; whatever else differs between problems is a parameter of it."""
-    modes, quantities = 2 * simulation.plant.modes, simulation.quantities
-    a, p = ca.MX.sym("a", simulation.profile.size), ca.MX.sym("p", form.peak is not None)
-    row, wanted = ca.MX.sym("row", 3 + modes), ca.MX.sym("wanted", modes, len(form.scenarios))
+    modes = 2 * simulation.plant.modes
+    quantities = simulation.quantities
+    a = ca.MX.sym("a", simulation.profile.size)
+    p = ca.MX.sym("p", form.peak is not None)
+    row = ca.MX.sym("row", 3 + modes)
+    wanted = ca.MX.sym("wanted", modes, len(form.scenarios))
     tips = [ca.MX.sym("tips", rows, modes) for rows in form.tip_rows]
-    scale, scales = ca.MX.sym("scale", modes), ca.MX.sym("scales", 1 + len(quantities))
-    sides, weights, width = ca.MX.sym("sides", 2), ca.MX.sym("weights", 2), ca.MX.sym("width")
+    scale = ca.MX.sym("scale", modes)
+    scales = ca.MX.sym("scales", 1 + len(quantities))
+    sides = ca.MX.sym("sides", 2)
+    weights = ca.MX.sym("weights", 2)
+    width = ca.MX.sym("width")
 
     rollouts = [simulation.rollout(a, ca.vertsplit(row), errors) for errors in form.scenarios]
-    nominal, arrival = rollouts[0], ca.horzcat(*(one.arrival.T for one in rollouts))
-    missed = arrival - wanted
-    energy = ca.if_else(width > 0, _round_off(simulation.energy, nominal, width), nominal.energy)
+    nominal = rollouts[0]
+    missed = ca.horzcat(*(rollout.arrival.T for rollout in rollouts)) - wanted
+    energy = ca.if_else(
+        width > 0,
+        _round_off(simulation.energy, nominal, width),
+        nominal.energy,
+    )
     values = {RESIDUAL: ca.vertcat(*(rows @ missed[:, i] for i, rows in enumerate(tips)))}
     for quantity in quantities:
         counted = rollouts if quantity.in_scenarios else rollouts[:1]
-        values[quantity.name] = ca.veccat(*(ca.horzcat(*one.values(quantity)) for one in counted))
+        by_scenario = (ca.horzcat(*rollout.values(quantity)) for rollout in counted)
+        values[quantity.name] = ca.veccat(*by_scenario)
 
-    constraints = {"arrival": missed[:, 0] / scale if form.at_rest else ca.MX(0, 1)}
-    for k, (name, value) in enumerate(values.items()):
-        if name == form.peak:
-            constraints["below peak"] = value / scales[k] - sides[1] * p
-            constraints["above peak"] = value / scales[k] - sides[0] * p
-        elif name != RESIDUAL or form.bounds_residual:
-            constraints[name] = value / scales[k]
+    scaled = {name: value / scales[k] for k, (name, value) in enumerate(values.items())}
+    arrival = missed[:, 0] / scale if form.at_rest else ca.MX(0, 1)
+    constraints = {"arrival": arrival, **_bounded(form, scaled, p, sides)}
     nlp = {
         "x": ca.veccat(a, p),
         "p": ca.veccat(row, wanted, *tips, scale, scales, sides, weights, width),
@@ -164,12 +178,28 @@ def _build_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: boo
     }
     compiled_solver = compile_nlp(nlp, options)
     outputs = [nominal.energy, missed.T, *values.values()]
-    figures = ca.Function("figures", [a, row, wanted, *tips], list(map(ca.densify, outputs)))
+    figures = ca.Function(
+        "figures",
+        [a, row, wanted, *tips],
+        list(map(ca.densify, outputs)),
+    )
     return _Program(
         Compiled(lambda: compiled_solver, silent=True),  # casadi warns of every failure
         {name: value.numel() for name, value in constraints.items()},
         Compiled(lambda: figures),
     )
+
+
+def _bounded(form: _Form, scaled: Mapping[str, ca.MX], p: ca.MX, sides: ca.MX) -> dict[str, ca.MX]:
+    """The inequalities, of scaled values by name: of the peak p that is minimised two."""
+    constraints = dict[str, ca.MX]()
+    for name, value in scaled.items():
+        if name == form.peak:
+            constraints["below peak"] = value - sides[1] * p
+            constraints["above peak"] = value - sides[0] * p
+        elif name != RESIDUAL or form.bounds_residual:
+            constraints[name] = value
+    return constraints
 
 
 def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
@@ -182,31 +212,37 @@ def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
     return energy.absolute * integrated(rounded, rollout.h) + integrated(smooth, rollout.h)
 
 
-class _Run:
+class _Numbers:
     """A problem's numbers: parameters and bounds of its program, and what its solution means."""
 
     def __init__(self, problem: Problem, warm: bool, solver: Ipopt) -> None:
-        self.problem, self.widths = problem, _WIDTHS[-1:] if warm else _WIDTHS
-        (transcription, asked), task = problem, problem.transcription.task
-        tips = transcription.tip_rows
+        self.problem = problem
+        # Shares of the plain motion's mean power over which |power| is rounded off, run by run.
+        widths = (0.5, 0.05, 0.0)
+        self.widths = widths[-1:] if warm else widths
+        transcription, scalarization = problem
+        task = transcription.task
         simulation = transcription.batch.simulation
         self.program = compile_program(simulation, _Form.of(problem), solver, warm)
         shape = len(task.scenarios), transcription.wanted.size
-        wanted = np.broadcast_to(transcription.wanted - asked.offset, shape)
-        self.given = [task.row, wanted.T, *tips]
+        wanted = np.broadcast_to(transcription.wanted - scalarization.offset, shape)
+        self.of_motion = [task.row, wanted.T, *transcription.tip_rows]
         energy, missed, peaks = self.figures(transcription.profile.plain)
         swing = np.abs(missed).max(axis=0)
-        self.scale, self.energy = np.where(swing > 0, swing, 1.0), energy or 1.0
+        self.scale = np.where(swing > 0, swing, 1.0)
+        self.energy = energy or 1.0
         self.scales = {name: peak or 1.0 for name, peak in peaks.items()}
-        of_energy, of_peak = asked.weights(self.energy, self.scales.get(asked.peak or "", 0.0))
+        peak_scale = self.scales.get(scalarization.peak or "", 0.0)
+        of_energy, of_peak = scalarization.weights(self.energy, peak_scale)
         self.of_energy = of_energy / self.energy
-        sides = transcription.limits[asked.peak or RESIDUAL].sides
-        numbers = self.scale, [*self.scales.values()], sides, [self.of_energy, of_peak]
-        self.parameters = [*self.given, *numbers]
+        sides = transcription.limits[scalarization.peak or RESIDUAL].sides
+        scales = list(self.scales.values())
+        weights = [self.of_energy, of_peak]
+        self.parameters = [*self.of_motion, self.scale, scales, sides, weights]
 
     def figures(self, coefficients: Array) -> tuple[float, Array, dict[str, float]]:
         """Energy [J], what is missed on arrival in every scenario, residual and peaks by name."""
-        energy, missed, *values = self.program.figures(coefficients, *self.given)
+        energy, missed, *values = self.program.figures(coefficients, *self.of_motion)
         transcription = self.problem.transcription
         names = RESIDUAL, *(limit.name for limit in transcription.task.limits)
         peaks = {
@@ -217,23 +253,34 @@ class _Run:
 
     def solve(self, start: Array) -> Solution:
         """Run IPOPT for one width after another."""
-        transcription, asked = self.problem
-        box = transcription.profile.box(asked.bound)
-        x, (lower, upper), iterations, stop = np.clip(start, *box), box, 0, None
-        if asked.peak is not None:
-            x = np.append(x, self.figures(x)[-1][asked.peak] / self.scales[asked.peak])
-            lower, upper = np.append(lower, -np.inf), np.append(upper, np.inf)
+        transcription, scalarization = self.problem
+        box = transcription.profile.box(scalarization.bound)
+        x = np.clip(start, *box)
+        lower, upper = box
+        iterations = 0
+        stop = None
+        if scalarization.peak is not None:
+            peak = self.figures(x)[-1][scalarization.peak]
+            x = np.append(x, peak / self.scales[scalarization.peak])
+            lower = np.append(lower, -np.inf)
+            upper = np.append(upper, np.inf)
         for width in self.widths:
-            given = [*self.parameters, [width * self.energy / transcription.task.duration]]
-            parameters = np.concatenate([np.ravel(one, order="F") for one in given])
-            bounds = (lower, upper), self.bounds()
-            stop = run_ipopt(self.program.solver, x, *bounds, parameters)
-            x, iterations = stop.unknowns, iterations + stop.iterations
+            mean_power = self.energy / transcription.task.duration
+            parameters = [*self.parameters, [width * mean_power]]
+            stop = run_ipopt(
+                self.program.solver,
+                x,
+                (lower, upper),
+                self.bounds(),
+                np.concatenate([np.ravel(numbers, order="F") for numbers in parameters]),
+            )
+            x = stop.unknowns
+            iterations += stop.iterations
         assert stop is not None
         coefficients = np.clip(x[: transcription.profile.size], *box)
         energy, missed, peaks = self.figures(coefficients)
         status = SolveStatus.from_ipopt(stop.return_status)
-        if asked.at_rest and status.solved:
+        if scalarization.at_rest and status.solved:
             peaks[RESIDUAL] = 0.0
         return Solution(
             coefficients,
@@ -249,20 +296,36 @@ class _Run:
     def bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the constraints."""
         bounds = {
-            "arrival": (0.0, 0.0), "below peak": (-np.inf, 0.0), "above peak": (0.0, np.inf),
-            **{one.name: (one.lower / self.scales[one.name], one.upper / self.scales[one.name])
-               for one in self.problem.scalarization.limits},
-        }  # fmt: skip
-        counts, free = self.program.counts, (-np.inf, np.inf)
-        each = np.array([bounds.get(name, free) for name in counts])
-        lower, upper = np.repeat(each, list(counts.values()), axis=0).T
+            "arrival": (0.0, 0.0),
+            "below peak": (-np.inf, 0.0),
+            "above peak": (0.0, np.inf),
+        }
+        for limit in self.problem.scalarization.limits:
+            scale = self.scales[limit.name]
+            bounds[limit.name] = (limit.lower / scale, limit.upper / scale)
+        counts = self.program.counts
+        free = (-np.inf, np.inf)
+        by_constraint = np.array([bounds.get(name, free) for name in counts])
+        lower, upper = np.repeat(by_constraint, list(counts.values()), axis=0).T
         return lower, upper
 
     def prices(self, multipliers: Array) -> dict[str, float]:
         """What the least energy falls by if a limit is widened [J by its unit]."""
-        counts, (transcription, asked) = self.program.counts, self.problem
+        counts = self.program.counts
+        transcription, scalarization = self.problem
         parts = np.split(multipliers, np.cumsum(list(counts.values()))[:-1])
-        own = dict(zip(counts, parts))
-        bounded = {name: own[name] / self.scales[name] for name in own.keys() & self.scales.keys()}
-        of_arrival = own["arrival"] / self.scale if asked.at_rest else own["arrival"]
-        return shadow_prices(asked, self.of_energy, bounded, of_arrival, transcription.tip_rows[0])
+        by_name = dict(zip(counts, parts))
+        bounded = {
+            name: by_name[name] / self.scales[name] for name in by_name.keys() & self.scales.keys()
+        }
+        of_arrival = by_name["arrival"]
+        if scalarization.at_rest:
+            of_arrival = of_arrival / self.scale
+        tips = transcription.tip_rows[0]
+        return shadow_prices(
+            scalarization,
+            self.of_energy,
+            bounded,
+            of_arrival,
+            tips,
+        )

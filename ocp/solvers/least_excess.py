@@ -19,27 +19,6 @@ from quietarm.ocp.solvers.batch import Derivatives
 from quietarm.ocp.solvers.problem import Problem
 
 Array = NDArray[np.float64]
-_TIE = 1e-3
-"""Curvature that makes a linear program a quadratic one, whose answer is unique; the excess differs
-by less than 1e-5 from that of the linear program."""
-_REACH = 3.0
-_SHRINK = 0.3
-"""How far coefficients may move at first, and the share that is left where that went wrong."""
-_ROUNDS = 12
-_FUNNEL = 0.2
-_NARROWER = 0.5
-"""What a step may miss of the state on arrival, as a share of its scale; less with every step."""
-_AGREEMENT = 1e-4
-"""Linearised and true excess of a motion that is the answer differ by no more."""
-_MISSED = 1e-4
-"""And it misses no more of the state on arrival, or of the residual's limit, as shares."""
-_ROWS_AT_FIRST = 200
-_MOST_ROUNDS_OF_ROWS = 20
-_EXCEEDED = 1e-5
-"""Rows that are exceeded by more join the linear program."""
-_EQUALITY = 5
-_SOLVED = 1
-"""DAQP's mark of an equality, and its word for a solution."""
 
 
 class Excess(NamedTuple):
@@ -54,23 +33,31 @@ class Excess(NamedTuple):
     holds: bool
 
 
-def least_excess(problem: Problem, start: Array, reach: float = _REACH) -> Excess:
-    """The least share by which all limits but the residual's have to be widened, from a start."""
+def least_excess(problem: Problem, start: Array, reach: float = 3.0) -> Excess:
+    """The least share by which all limits but the residual's have to be widened, from a start.
+
+    Coefficients may move by the reach at first.
+    """
     linearised = _Linearised(problem, start)
-    funnel = _FUNNEL
-    for _ in range(_ROUNDS):
+    # What a step may miss of the state on arrival, as a share of its scale; less with every step.
+    funnel = 0.2
+    # Of a motion that is the answer: how far linearised and true excess may differ, and what it
+    # misses of the state on arrival, or of the residual's limit, as shares.
+    agreement = 1e-4
+    most_missed = 1e-4
+    for _ in range(12):
         step = linearised.step_of_least_excess(reach)
         if step is None:
             break
         following = _Linearised(problem, linearised.coefficients + step[:-1])
-        near = following.missed <= _MISSED
-        if near and abs(following.excess - step[-1]) <= _AGREEMENT:
+        near = following.missed <= most_missed
+        if near and abs(following.excess - step[-1]) <= agreement:
             return Excess(following.excess, following.coefficients, True)
         if following.missed <= max(linearised.missed, funnel):
             linearised = following
-            funnel *= _NARROWER
+            funnel *= 0.5
         else:
-            reach = _SHRINK * float(np.abs(step[:-1]).max())
+            reach = 0.3 * float(np.abs(step[:-1]).max())
     return Excess(linearised.excess, linearised.coefficients, False)
 
 
@@ -87,7 +74,10 @@ class _Linearised:
 
     def _limit_rows(self, problem: Problem, motions: Derivatives) -> None:
         """Values and their Jacobian as shares of the limits' sizes, and both bounds."""
-        values, tables, uppers, lowers = [], [], [], []
+        values = []
+        tables = []
+        uppers = []
+        lowers = []
         for limit in problem.scalarization.limits:
             if limit.name == RESIDUAL or not np.isfinite(limit.size):
                 continue
@@ -107,16 +97,16 @@ class _Linearised:
     def _arrival_rows(self, problem: Problem, motions: Derivatives) -> None:
         """What has to be 0, or within 1: scaled states on arrival, or displacements after it."""
         transcription = problem.transcription
-        asked = problem.scalarization
-        missed = motions.arrival - transcription.wanted + asked.offset
-        if asked.at_rest:
+        scalarization = problem.scalarization
+        missed = motions.arrival - transcription.wanted + scalarization.offset
+        if scalarization.at_rest:
             scale = transcription.arrival_scale
             self.arrival = missed[0] / scale
             self.arrival_table = motions.arrival_jacobian[0] / scale[:, None]
             self.allowed = 0.0
             return
         rows = list(zip(transcription.tip_rows, missed, motions.arrival_jacobian))
-        limit = asked.residual_limit
+        limit = scalarization.residual_limit
         self.arrival = np.concatenate([tips @ state / limit for tips, state, _ in rows])
         self.arrival_table = np.concatenate([tips @ table / limit for tips, _, table in rows])
         self.allowed = 1.0
@@ -141,16 +131,18 @@ class _Linearised:
         limits = above.and_(below)
         count = len(limits.room)
         chosen = np.zeros(count, dtype=bool)
-        chosen[:: max(1, count // _ROWS_AT_FIRST)] = True
-        solution = needed = None
-        for _ in range(_MOST_ROUNDS_OF_ROWS):
+        chosen[:: max(1, count // 200)] = True  # some 200 at first
+        solution = None
+        needed = None
+        tolerated = 1e-5
+        for _ in range(20):
             solution = self._solve(limits, np.flatnonzero(chosen), reach)
             if solution is None:
                 return None
             needed = limits.excess_at(solution[:-1])
-            if needed.max() <= solution[-1] + _EXCEEDED:
+            if needed.max() <= solution[-1] + tolerated:
                 break
-            chosen |= _peaks(needed, solution[-1] + _EXCEEDED)
+            chosen |= _peaks(needed, solution[-1] + tolerated)
         assert solution is not None  # there is a round
         assert needed is not None
         return np.append(solution[:-1], needed.max())
@@ -166,17 +158,22 @@ class _Linearised:
         upper = [most, [np.inf], self.allowed - self.arrival, limits.room[chosen]]
         lower = [least, [-1.0], -self.allowed - self.arrival, -unlimited]
         marks = np.zeros(size + 1 + len(arrival) + len(chosen), dtype=np.int32)
+        equality = 5  # by DAQP's convention, as is `solved`
         if self.allowed == 0:
-            marks[size + 1 : size + 1 + len(arrival)] = _EQUALITY
+            marks[size + 1 : size + 1 + len(arrival)] = equality
+        # Curvature that makes a linear program a quadratic one, whose answer is unique; the
+        # excess differs by less than 1e-5 from that of the linear program.
+        tie = 1e-3
         solution, _, flag, _ = daqp.solve(
-            _TIE * np.eye(size + 1),
+            tie * np.eye(size + 1),
             np.append(np.zeros(size), 1.0),
             np.vstack([arrival, rows]),
             np.concatenate(upper),
             np.concatenate(lower),
             marks,
         )
-        return np.asarray(solution) if flag == _SOLVED else None
+        solved = 1
+        return np.asarray(solution) if flag == solved else None
 
 
 class _Rows(NamedTuple):

@@ -32,11 +32,6 @@ OPTIONS: dict[str, str | int | float] = {
     "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
-_THREADS = "OPENBLAS_NUM_THREADS"
-
-
-_SHOWS_ITERATIONS = 5
-"""IPOPT's print level."""
 
 
 def options_of(solver: Solver) -> dict[str, str | int | float]:
@@ -44,7 +39,7 @@ def options_of(solver: Solver) -> dict[str, str | int | float]:
     return {
         "tol": solver.tolerance,
         "max_iter": solver.iterations,
-        "print_level": _SHOWS_ITERATIONS if solver.log else 0,
+        "print_level": 5 if solver.log else 0,  # 5 has a line for each iteration
     }
 
 
@@ -61,7 +56,12 @@ def compile_nlp(problem: Mapping[str, ca.MX], options: Options) -> ca.Function:
     """IPOPT for a nonlinear program, with casadi's derivatives."""
     chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
     with _on_one_thread():
-        return ca.nlpsol("program", "ipopt", dict(problem), {**chosen, "ipopt": dict(options)})
+        return ca.nlpsol(
+            "program",
+            "ipopt",
+            dict(problem),
+            {**chosen, "ipopt": dict(options)},
+        )
 
 
 @contextmanager
@@ -71,14 +71,15 @@ def _on_one_thread() -> Iterator[None]:
     Its matrices are small: a second thread shortens nothing, and keeps a core from other processes.
     OpenBLAS reads the variable once, when it is loaded with the first solver.
     """
-    asked = os.environ.get(_THREADS)
-    os.environ[_THREADS] = asked or os.environ.get("OMP_NUM_THREADS", "1")
+    name = "OPENBLAS_NUM_THREADS"
+    chosen = os.environ.get(name)
+    os.environ[name] = chosen or os.environ.get("OMP_NUM_THREADS", "1")
     try:
         yield
     finally:
-        del os.environ[_THREADS]
-        if asked is not None:
-            os.environ[_THREADS] = asked
+        del os.environ[name]
+        if chosen is not None:
+            os.environ[name] = chosen
 
 
 Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -93,10 +94,19 @@ def run_ipopt(
 ) -> Stop:
     """Run IPOPT from a point, within lower and upper bounds of unknowns and of constraints."""
     result, stats = solver.solve(
-        x0=start, lbx=bounds[0], ubx=bounds[1], lbg=constraint_bounds[0],
-        ubg=constraint_bounds[1], p=parameters,
-    )  # fmt: skip
+        x0=start,
+        lbx=bounds[0],
+        ubx=bounds[1],
+        lbg=constraint_bounds[0],
+        ubg=constraint_bounds[1],
+        p=parameters,
+    )
     COST.candidates += int(stats.get("n_call_nlp_f", 0))
     COST.gradients += int(stats.get("n_call_nlp_grad_f", 0))
     COST.hessians += int(stats.get("n_call_nlp_hess_l", 0))
-    return Stop(result["x"], result["lam_g"], str(stats["return_status"]), int(stats["iter_count"]))
+    return Stop(
+        result["x"],
+        result["lam_g"],
+        str(stats["return_status"]),
+        int(stats["iter_count"]),
+    )

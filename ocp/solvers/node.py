@@ -14,14 +14,13 @@ from typing import Any
 
 import casadi as ca
 
-from quietarm.models import JointMotion, Plant
+from quietarm.models import JointMotion
 from quietarm.models.joint_motion import is_zero
-from quietarm.ocp.energy import Energy
-from quietarm.ocp.limits import Quantity
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.sample import sample_plant
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import smooth_power
+from quietarm.ocp.simulation.rollout import Simulation
 from quietarm.ocp.uncertainty import perturb_plant
 
 Shape = tuple[int, int]
@@ -35,12 +34,14 @@ def symbols(count: int, shape: Shape) -> list[ca.MX]:
 
 def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
     """First derivatives of a column of expressions, entry by entry."""
-    one, none = ca.MX.ones(*column[0].shape), ca.MX(*column[0].shape)
-    seeds = [[one if k == other else none for other in range(len(by))] for k in range(len(by))]
-    found = ca.forward([*column], [*by], seeds)
+    unit = ca.MX.ones(*column[0].shape)
+    zero = ca.MX(*column[0].shape)
+    places = range(len(by))
+    seeds = [[unit if place == k else zero for place in places] for k in places]
+    columns = ca.forward([*column], [*by], seeds)
     return {
         (i, k): entry
-        for k, along in enumerate(found)
+        for k, along in enumerate(columns)
         for i, entry in enumerate(along)
         if not entry.is_zero()
     }
@@ -48,7 +49,11 @@ def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
 
 def hessian(expression: Any, by: Sequence[ca.MX]) -> Table:
     """Second derivatives of an expression."""
-    (gradient,) = ca.reverse([expression], [*by], [[ca.MX.ones(*expression.shape)]])
+    (gradient,) = ca.reverse(
+        [expression],
+        [*by],
+        [[ca.MX.ones(*expression.shape)]],
+    )
     upper = {
         place: entry for place, entry in jacobian(gradient, by).items() if place[0] <= place[1]
     }
@@ -62,12 +67,12 @@ def transpose(table: Table) -> Table:
 
 def product(table: Table, column: Sequence[ca.MX], rows: int) -> list[ca.MX]:
     """A table of so many rows times a column."""
-    found = dict[int, ca.MX]()
+    sums = dict[int, ca.MX]()
     for (i, k), entry in table.items():
         term = entry * column[k]
-        found[i] = found[i] + term if i in found else term
+        sums[i] = sums[i] + term if i in sums else term
     zero = ca.MX.zeros(*column[0].shape)
-    return [found.get(i, zero) for i in range(rows)]
+    return [sums.get(i, zero) for i in range(rows)]
 
 
 class Tables:
@@ -80,34 +85,41 @@ class Tables:
 
     def __call__(self, *arguments: Sequence[Any]) -> list[dict[tuple[int, int], Any]]:
         """The tables in expressions, or in numbers."""
-        given = [x for part in arguments for x in part]
-        inline = any(isinstance(x, ca.MX) for x in given)
-        entries = iter(self._function.call(given, inline, False))
+        inputs = [x for part in arguments for x in part]
+        inline = any(isinstance(x, ca.MX) for x in inputs)
+        entries = iter(self._function.call(inputs, inline, False))
         return [{place: next(entries) for place in places} for places in self._places]
 
 
 class Path:
     """The values y(a, t) through which a profile's coefficients a enter the joint's motion.
 
-    Where the jerk is asked for, y stands once more at the times of `Grid.stretch`, with its rates
+    Where the jerk is asked for, y stands once more at the times of `Mesh.stretch`, with its rates
     by the fraction of the duration. Coefficients and the move are arrays like the times. There are
     `count` values, `linear` in the coefficients or not: then the Jacobian depends on time alone.
     """
 
-    def __init__(self, profile: JointProfile, grid: Grid, jerk: bool, rows: int) -> None:
-        times, _ = grid.columns(rows)
-        self._profile, self._jerk, self._times = profile, jerk, ca.horzcat(*times)
+    def __init__(self, profile: JointProfile, mesh: Mesh, jerk: bool, rows: int) -> None:
+        times, _ = mesh.columns(rows)
+        self._profile = profile
+        self._jerk = jerk
+        self._times = ca.horzcat(*times)
         shape = self._times.shape
-        a, move, at = symbols(profile.size, shape), symbols(3, shape), ca.MX.sym("t", *shape)
+        a = symbols(profile.size, shape)
+        move = symbols(3, shape)
+        at = ca.MX.sym("t", *shape)
         derivatives = profile.at_duration(move[2]).derivatives(a, at)
         y = [ca.MX.zeros(*shape) + value for value in derivatives]
-        self._own = len(y)
+        self._count = len(y)
         if jerk:
             rates = product(jacobian(y, [at]), [ca.MX.ones(*shape)], len(y))
-            y += ca.substitute([*y, *rates], [at], [grid.stretch(at)])
-        self.count, inputs, y_a = len(y), [*a, at, *move], jacobian(y, a)
+            y += ca.substitute([*y, *rates], [at], [mesh.stretch(at)])
+        self.count = len(y)
+        inputs = [*a, at, *move]
+        y_a = jacobian(y, a)
         self.linear = not ca.depends_on(ca.veccat(*y_a.values()), ca.veccat(*a, *move))
-        self._value, self._jacobian = ca.Function("y", inputs, y), Tables(inputs, y_a)
+        self._value = ca.Function("y", inputs, y)
+        self._jacobian = Tables(inputs, y_a)
         if not self.linear:
             multipliers = symbols(self.count, shape)
             lagrangian = sum(w * x for w, x in zip(multipliers, y))
@@ -117,11 +129,13 @@ class Path:
         """The values y at the nodes."""
         return self._value.call([*a, self._times, *move], True, False)
 
-    def jacobian(self, a: Sequence[Any], move: Sequence[ca.MX]) -> dict[tuple[int, int], Any]:
+    def jacobian(self, a: Sequence[Any], move: Sequence[Any]) -> dict[tuple[int, int], Any]:
         """Derivatives of y by the coefficients; numbers where y is linear."""
-        one = [ca.DM.ones(*self._times.shape)]
-        given = (one * len(a), [self._times], one * 3) if self.linear else (a, [self._times], move)
-        (table,) = self._jacobian(*given)
+        if self.linear:  # in them it depends on time alone
+            unit = ca.DM.ones(*self._times.shape)
+            a = [unit] * len(a)
+            move = [unit] * 3
+        (table,) = self._jacobian(a, [self._times], move)
         return table
 
     def hessian(
@@ -133,7 +147,7 @@ class Path:
 
     def motion(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:
         """The joint's motion, without its jerk."""
-        value, rate, bend = y[: self._own]
+        value, rate, bend = y[: self._count]
         return self._profile.motion_of((value, rate, bend), *move)
 
     def motion_with_jerk(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:
@@ -141,8 +155,13 @@ class Path:
         joint = self.motion(y, move)
         if not self._jerk:
             return joint
-        there, rates = y[self._own : 2 * self._own], y[2 * self._own :]
-        (jerk,) = product(jacobian([self.motion(there, move).acceleration], there), rates, 1)
+        there = y[self._count : 2 * self._count]
+        rates = y[2 * self._count :]
+        (jerk,) = product(
+            jacobian([self.motion(there, move).acceleration], there),
+            rates,
+            1,
+        )
         return joint._replace(jerk=jerk / move[2])
 
 
@@ -154,34 +173,39 @@ class Node:
     """A Gauss node: what forces the modes, f, and the outputs o of the point v = (y, W, W', W'').
 
     The outputs are the joints' `powers`, the energy's smooth part where it has one, and the values
-    of the limited quantities: `count` in all, of which the first `own` belong to the energy.
+    of the limited quantities: `count` in all, of which the first `of_energy` belong to the energy.
     """
 
     def __init__(
         self,
-        plant: Plant,
+        simulation: Simulation,
         path: Path,
-        quantities: Sequence[Quantity],
-        names: Sequence[str],
-        energy: Energy,
         shape: Shape,
     ) -> None:
-        m, zero = plant.modes, ca.MX.zeros(*shape)
-        y, modes, move = symbols(path.count, shape), symbols(3 * m, shape), symbols(3, shape)
-        errors = symbols(len(names), shape)
-        W, dW, ddW = modes[:m], modes[m : 2 * m], modes[2 * m :]
-        joint, v = path.motion_with_jerk(y, move), [*y, *modes]
-        perturbed = perturb_plant(plant, dict(zip(names, errors)))
+        m = simulation.plant.modes
+        zero = ca.MX.zeros(*shape)
+        y = symbols(path.count, shape)
+        modes = symbols(3 * m, shape)
+        move = symbols(3, shape)
+        errors = symbols(len(simulation.errors), shape)
+        W = modes[:m]
+        dW = modes[m : 2 * m]
+        ddW = modes[2 * m :]
+        joint = path.motion_with_jerk(y, move)
+        v = [*y, *modes]
+        perturbed = perturb_plant(simulation.plant, dict(zip(simulation.errors, errors)))
         f = [zero + x for x in perturbed.modal_accelerations(joint, W, dW)]
         sample = sample_plant(perturbed, joint, W, dW, ddW)
-        smooth = smooth_power(energy, sample)
-        own = [*sample.powers, *([] if is_zero(smooth) else [smooth])]
-        limited = [x for quantity in quantities for x in quantity.values(sample)]
-        o, inputs = [zero + x for x in (*own, *limited)], [*v, *move, *errors]
-        self.powers, self.own, self.count = len(sample.powers), len(own), len(o)
-        self._first = Tables(
-            inputs, {(i, 0): x for i, x in enumerate(o)}, jacobian(f, y), jacobian(o, v)
-        )
+        smooth = smooth_power(simulation.energy, sample)
+        of_energy = [*sample.powers, *([] if is_zero(smooth) else [smooth])]
+        limited = [x for quantity in simulation.quantities for x in quantity.values(sample)]
+        o = [zero + x for x in (*of_energy, *limited)]
+        inputs = [*v, *move, *errors]
+        self.powers = len(sample.powers)
+        self.of_energy = len(of_energy)
+        self.count = len(o)
+        outputs = {(i, 0): x for i, x in enumerate(o)}
+        self._first = Tables(inputs, outputs, jacobian(f, y), jacobian(o, v))
         multipliers = symbols(m + self.count, shape)
         lagrangian = sum(w * x for w, x in zip(multipliers, [*f, *o]))
         self._second = Tables([*inputs, *multipliers], hessian(lagrangian, v))

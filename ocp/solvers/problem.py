@@ -16,18 +16,16 @@ from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, Values
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.batch import Derivatives, batch_of
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 ENERGY = "energy"
-_LEAST_STEPS, _LIMITED_STEPS, _STEPS_A_TERM = 48, 80, 8
-"""Steps that resolve a profile: more with more terms, since the power changes sign more often, but
-within the first two; with limits the second, since limits hold only at the nodes."""
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
-STILL, STILL_SHARE = 1e-8, 1e-7
+STILL = 1e-8
+STILL_SHARE = 1e-7
 """A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
 the plain cycloid's residual, whichever is larger."""
 
@@ -50,7 +48,9 @@ class Transcription:
     """
 
     def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
-        self.task, self.profile, self.steps = task, profile, steps
+        self.task = task
+        self.profile = profile
+        self.steps = steps
         self.wanted = np.array(task.final_state)
         self.evaluator = Evaluator(task, profile, steps)
         self.errors = self.evaluator.scenarios
@@ -109,9 +109,11 @@ class Transcription:
 
 def first_steps(task: PointToPoint, profile: JointProfile) -> int:
     """Steps of the solver to begin with; ValueError where the move is too long for it."""
-    fewest = _LIMITED_STEPS if task.limits else _LEAST_STEPS
-    least = min(max(fewest, _STEPS_A_TERM * (profile.size - 2)), _LIMITED_STEPS)
-    steps = default_steps(task, least=least)
+    # 8 for each term, since the power then changes sign more often, within 48 and 80; with limits
+    # 80, since these hold only at the nodes.
+    fewest = 80 if task.limits else 48
+    of_profile = 8 * (profile.size - 2)
+    steps = default_steps(task, least=min(max(fewest, of_profile), 80))
     if steps > MOST_SOLVER_STEPS:
         raise ValueError(
             f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
@@ -125,24 +127,28 @@ def evaluate(transcriptions: Sequence[Transcription], coefficients: Array) -> li
 
     Coefficients have shape (transcriptions, profile.size).
     """
-    counts = [len(one.errors) for one in transcriptions]
-    found = transcriptions[0].batch.derivatives(
+    counts = [len(transcription.errors) for transcription in transcriptions]
+    derivatives = transcriptions[0].batch.derivatives(
         np.repeat(coefficients, counts, axis=0),
-        np.repeat([one.task.row for one in transcriptions], counts, axis=0),
-        np.concatenate([one.errors for one in transcriptions]),
+        np.repeat(
+            [transcription.task.row for transcription in transcriptions],
+            counts,
+            axis=0,
+        ),
+        np.concatenate([transcription.errors for transcription in transcriptions]),
     )
-    return [found.take(slice(*ends)) for ends in pairwise(np.cumsum([0, *counts]))]
+    return [derivatives.take(slice(*ends)) for ends in pairwise(np.cumsum([0, *counts]))]
 
 
 def transcribe(
     tasks: Sequence[PointToPoint], profile: JointProfile, steps: int
 ) -> list[Transcription]:
     """Many tasks of one plant, whose plain motions are evaluated in one call."""
-    made = [Transcription(task, profile, steps) for task in tasks]
-    plain = np.repeat(profile.plain[None], len(made), axis=0)
-    for one, motion in zip(made, evaluate(made, plain)):
-        one.__dict__["plain"] = motion
-    return made
+    transcriptions = [Transcription(task, profile, steps) for task in tasks]
+    plain = np.repeat(profile.plain[None], len(transcriptions), axis=0)
+    for transcription, motion in zip(transcriptions, evaluate(transcriptions, plain)):
+        transcription.__dict__["plain"] = motion
+    return transcriptions
 
 
 LEAST_ENERGY = {ENERGY: 1.0}
@@ -183,7 +189,7 @@ class Scalarization(NamedTuple):
     @property
     def residual_limit(self) -> float:
         """Largest residual [m]; infinite where it is not limited."""
-        return max((one.size for one in self.limits if one.name == RESIDUAL), default=np.inf)
+        return max((limit.size for limit in self.limits if limit.name == RESIDUAL), default=np.inf)
 
     @property
     def at_rest(self) -> bool:
@@ -214,10 +220,6 @@ class Problem(NamedTuple):
         task = transcription.task
         limits = Limit.of_residual(residual_limit, task.plant.tip_unit), *task.limits
         return cls(transcription, Scalarization(limits, bound, minimise))
-
-
-_LITTLE = 1e-8
-"""Curvature that makes a linear program a quadratic one."""
 
 
 @dataclass(frozen=True)
@@ -266,7 +268,7 @@ class Solution:
 
 
 def shadow_prices(
-    asked: Scalarization,
+    scalarization: Scalarization,
     of_energy: float,
     bounded: Mapping[str, NDArray[np.float64]],
     of_arrival: NDArray[np.float64],
@@ -281,10 +283,10 @@ def shadow_prices(
         return {}
     prices = {
         limit.name: limit.price(bounded[limit.name]) / of_energy
-        for limit in asked.limits
-        if limit.name in bounded and limit.name != asked.peak
+        for limit in scalarization.limits
+        if limit.name in bounded and limit.name != scalarization.peak
     }
-    if asked.at_rest:
+    if scalarization.at_rest:
         prices[RESIDUAL] = price_of_rest(of_arrival, tips) / of_energy
     return prices
 
@@ -297,7 +299,17 @@ def price_of_rest(multipliers: NDArray[np.float64], rows: NDArray[np.float64]) -
     for the solver of quadratic ones.
     """
     scale = np.abs(rows).max(axis=0)
-    slope, table = multipliers / scale, rows / scale
-    limit, steepest = np.ones(len(table)), np.abs(slope).max() or 1.0
-    state, *_ = daqp.solve(_LITTLE * np.eye(len(slope)), -slope / steepest, table, limit, -limit)
+    slope = multipliers / scale
+    table = rows / scale
+    limit = np.ones(len(table))
+    steepest = np.abs(slope).max() or 1.0
+    # Curvature that makes a linear program a quadratic one.
+    little = 1e-8
+    state, *_ = daqp.solve(
+        little * np.eye(len(slope)),
+        -slope / steepest,
+        table,
+        limit,
+        -limit,
+    )
     return float(slope @ np.asarray(state))

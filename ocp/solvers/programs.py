@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.solvers.batch import Derivatives
-from quietarm.ocp.solvers.batch import Multipliers as MotionMultipliers
+from quietarm.ocp.solvers.batch import Derivatives, MotionMultipliers
 from quietarm.ocp.solvers.problem import Problem
 from quietarm.ocp.solvers.quadratic import Model, Multipliers
 
@@ -55,17 +54,27 @@ class _ResidualLimit(_Constraint):
     def __init__(self, tips: Array, limit: Array) -> None:
         """Tips have shape (problems, scenarios, times, 2 * modes), scaled; limits (problems,)."""
         self._tips = tips
-        self.upper = np.repeat(limit[:, None], tips.shape[1] * tips.shape[2], axis=1)
+        self.upper = np.repeat(
+            limit[:, None],
+            tips.shape[1] * tips.shape[2],
+            axis=1,
+        )
         self.lower = -self.upper
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
-        tips, count, n = self._tips[rows], len(rows), x.shape[1]
+        tips = self._tips[rows]
+        count = len(rows)
+        n = x.shape[1]
         values = np.einsum("rstk,rsk->rst", tips, motions.arrival).reshape(count, self.count)
         return values, (tips @ motions.arrival_jacobian).reshape(count, self.count, n)
 
     def pull_back(self, rows: Index, multipliers: Array, onto: MotionMultipliers) -> None:
         tips = self._tips[rows]
-        onto.arrival[:] += np.einsum("rst,rstk->rsk", multipliers.reshape(tips.shape[:3]), tips)
+        onto.arrival[:] += np.einsum(
+            "rst,rstk->rsk",
+            multipliers.reshape(tips.shape[:3]),
+            tips,
+        )
 
 
 class _QuantityLimit(_Constraint):
@@ -73,7 +82,9 @@ class _QuantityLimit(_Constraint):
 
     def __init__(self, place: slice, scenarios: int, bounds: Array, scale: Array) -> None:
         """Where it stands among the limited; bounds (problems, 2) and scales (problems,)."""
-        self._scenarios, self._place, self._scale = slice(0, scenarios), place, scale[:, None]
+        self._scenarios = slice(0, scenarios)
+        self._place = place
+        self._scale = scale[:, None]
         values = scenarios * (place.stop - place.start)
         self.lower, self.upper = (
             np.repeat(side[:, None], values, axis=1) for side in (bounds / self._scale).T
@@ -81,7 +92,8 @@ class _QuantityLimit(_Constraint):
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
         del x
-        count, scale = len(rows), self._scale[rows]
+        count = len(rows)
+        scale = self._scale[rows]
         values = motions.limited[:, self._scenarios, self._place].reshape(count, self.count) / scale
         jacobian = motions.limited_jacobian[:, self._scenarios, self._place]
         return values, jacobian.reshape(*values.shape, jacobian.shape[-1]) / scale[:, :, None]
@@ -95,15 +107,20 @@ class _Peak(_Constraint):
     """A constraint whose peak p is the last unknown: v - p <= 0 <= v + p, as of `Limit.peak`."""
 
     def __init__(self, of: _Constraint, limit: Limit) -> None:
-        self._of, self._limit = of, limit
-        zero, free = np.zeros(of.upper.shape), np.full(of.upper.shape, np.inf)
-        self.upper, self.lower = np.hstack([zero, free]), np.hstack([-free, zero])
+        self._of = of
+        self._limit = limit
+        zero = np.zeros(of.upper.shape)
+        free = np.full(of.upper.shape, np.inf)
+        self.upper = np.hstack([zero, free])
+        self.lower = np.hstack([-free, zero])
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
         values, jacobian = self._of.evaluate(rows, motions, x)
-        one, peak, (below, above) = np.ones((*values.shape, 1)), x[:, -1:], self._limit.sides
+        unit = np.ones((*values.shape, 1))
+        peak = x[:, -1:]
+        below, above = self._limit.sides
         by_peak = [
-            np.concatenate([jacobian[:, :, :-1], -side * one], axis=2) for side in (above, below)
+            np.concatenate([jacobian[:, :, :-1], -side * unit], axis=2) for side in (above, below)
         ]
         bounded = np.hstack([values - above * peak, values - below * peak])
         return bounded, np.concatenate(by_peak, axis=1)
@@ -124,7 +141,9 @@ class _Box(_Constraint):
     def __init__(self, lower: Array, upper: Array, axes: Array) -> None:
         """Bounds have shape (problems, profile.size); coefficients are axes @ unknowns."""
         bounded = np.isfinite(np.stack([lower, upper])).any(axis=(0, 1))
-        self.lower, self.upper, self._axes = lower[:, bounded], upper[:, bounded], axes[bounded]
+        self.lower = lower[:, bounded]
+        self.upper = upper[:, bounded]
+        self._axes = axes[bounded]
 
     def evaluate(self, rows: Index, motions: Derivatives, x: Array) -> tuple[Array, Array]:
         jacobian = np.repeat(self._axes[None], len(rows), axis=0)
@@ -145,82 +164,104 @@ class Programs:
     def __init__(self, problems: Sequence[Problem]) -> None:
         self._transcriptions = [problem.transcription for problem in problems]
         self._scalarizations = [problem.scalarization for problem in problems]
-        one, asked = problems[0]
-        self._batch, self._size, self._scenarios = one.batch, one.profile.size, len(one.errors)
-        self._peak, self._at_rest = asked.peak, asked.at_rest
+        transcription, scalarization = problems[0]
+        self._batch = transcription.batch
+        self._size = transcription.profile.size
+        self._scenarios = len(transcription.errors)
+        self._peak = scalarization.peak
+        self._at_rest = scalarization.at_rest
         self.unknowns = self._size + (self._peak is not None)
-        self.equalities = one.wanted.size if self._at_rest else 0
-        self._move = np.array([each.task.row for each in self._transcriptions])
-        self._errors = np.array([each.errors for each in self._transcriptions])
-        self._energy = np.array([each.energy_scale for each in self._transcriptions])
-        self._arrival = np.array([each.arrival_scale for each in self._transcriptions])
-        shape = self._scenarios, one.wanted.size
-        self._offset = np.array(
-            [np.broadcast_to(asked.offset - each.wanted, shape) for each, asked in problems]
-        )
-        self.weights = np.array([
-            asked.weights(each.energy_scale, each.scale_of(self._peak) if self._peak else 0.0)
-            for each, asked in problems
-        ])  # fmt: skip
-        self._constrain(asked.bounds_residual)
+        self.equalities = transcription.wanted.size if self._at_rest else 0
+        shape = self._scenarios, transcription.wanted.size
+        moves = list[tuple[float, ...]]()
+        errors = list[Array]()
+        energies = list[float]()
+        arrivals = list[Array]()
+        offsets = list[Array]()
+        weights = list[tuple[float, float]]()
+        for transcription, scalarization in problems:
+            energy = transcription.energy_scale
+            peak = transcription.scale_of(self._peak) if self._peak else 0.0
+            moves.append(transcription.task.row)
+            errors.append(transcription.errors)
+            energies.append(energy)
+            arrivals.append(transcription.arrival_scale)
+            offsets.append(np.broadcast_to(scalarization.offset - transcription.wanted, shape))
+            weights.append(scalarization.weights(energy, peak))
+        self._move = np.array(moves)
+        self._errors = np.array(errors)
+        self._energy = np.array(energies)
+        self._arrival = np.array(arrivals)
+        self._offset = np.array(offsets)
+        self.weights = np.array(weights)
+        self._constrain(problems[0].scalarization.bounds_residual)
 
     def _constrain(self, bounds_residual: bool) -> None:
         """Everything that is bounded, the box last."""
         constraints = dict[str, _Constraint]()
         if bounds_residual:
-            limit = np.array([each.residual_limit for each in self._scalarizations])
+            limit = np.array([entry.residual_limit for entry in self._scalarizations])
             constraints[RESIDUAL] = _ResidualLimit(self._tips(), limit / self._scales(RESIDUAL))
         limits = self._transcriptions[0].limits
         for name, place in self._batch.places.items():
             scenarios = self._scenarios if limits[name].quantity.in_scenarios else 1
-            own = place, scenarios, self._bounds(name), self._scales(name)
-            constraints[name] = _QuantityLimit(*own)
+            bounds = self._bounds(name)
+            constraints[name] = _QuantityLimit(place, scenarios, bounds, self._scales(name))
         if self._peak is not None:
             constraints[self._peak] = _Peak(constraints[self._peak], limits[self._peak])
-        boxes = [each.profile.box(asked.bound) for each, asked in zip(
-            self._transcriptions, self._scalarizations)]  # fmt: skip
+        pairs = zip(self._transcriptions, self._scalarizations)
+        boxes = [transcription.profile.box(entry.bound) for transcription, entry in pairs]
         self._box = np.array(boxes).transpose(1, 0, 2)
         self._axes = self._batch.even_axes(boxed=bool(np.isfinite(self._box).any()))
         # the coefficients by all unknowns
         self._along = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
         box = _Box(self._box[0], self._box[1], self._along)
-        self.linear, self.constraints = box.count, {**constraints, "box": box}
-        stops = np.cumsum([each.count for each in self.constraints.values()]).tolist()
-        ends = pairwise([0, *stops])
-        self._places = dict(zip(self.constraints, (slice(*one) for one in ends)))
-        self.lower, self.upper = (
-            np.hstack([getattr(each, name) for each in self.constraints.values()])
-            for name in ("lower", "upper")
-        )
+        self.linear = box.count
+        self.constraints = {**constraints, "box": box}
+        stops = np.cumsum([entry.count for entry in self.constraints.values()]).tolist()
+        places = (slice(begin, end) for begin, end in pairwise([0, *stops]))
+        self._places = dict(zip(self.constraints, places))
+        self.lower = np.hstack([entry.lower for entry in self.constraints.values()])
+        self.upper = np.hstack([entry.upper for entry in self.constraints.values()])
 
     def _bounds(self, name: str) -> Array:
         """Least and largest value in each problem, infinite where it is not limited."""
         bounds = np.array([[-np.inf, np.inf]] * len(self._scalarizations))
-        for i, asked in enumerate(self._scalarizations):
-            for limit in asked.limits:
+        for i, scalarization in enumerate(self._scalarizations):
+            for limit in scalarization.limits:
                 if limit.name == name:
                     bounds[i] = limit.lower, limit.upper
         return bounds
 
     def _scales(self, name: str) -> Array:
-        return np.array([each.scale_of(name) for each in self._transcriptions])
+        return np.array([transcription.scale_of(name) for transcription in self._transcriptions])
 
     def _tips(self) -> Array:
         """Rows that give the scaled tip displacements of every scenario, filled up with zeros."""
-        most = max(len(rows) for each in self._transcriptions for rows in each.tip_rows)
-        return np.array([
-            [np.pad(rows, ((0, most - len(rows)), (0, 0))) / scale for rows in each.tip_rows]
-            for each, scale in zip(self._transcriptions, self._scales(RESIDUAL))
-        ])  # fmt: skip
+        most = max(
+            len(rows) for transcription in self._transcriptions for rows in transcription.tip_rows
+        )
+        tips = list[list[Array]]()
+        for transcription, scale in zip(self._transcriptions, self._scales(RESIDUAL)):
+            padded = (
+                np.pad(rows, ((0, most - len(rows)), (0, 0))) for rows in transcription.tip_rows
+            )
+            tips.append([rows / scale for rows in padded])
+        return np.array(tips)
 
     def start(self, coefficients: Array) -> Array:
         """Unknowns of given coefficients, one row each."""
         x: Any = np.linalg.solve(self._axes, coefficients.T).T
         if self._peak is not None:
-            rows, peak = np.arange(len(x)), self.constraints[self._peak]
+            rows = np.arange(len(x))
+            peak = self.constraints[self._peak]
             x = np.column_stack([x, np.zeros(len(x))])
             assert isinstance(peak, _Peak)
-            x[:, -1] = peak.largest(rows, self._simulate(rows, x, None, np.zeros(len(x))), x)
+            x[:, -1] = peak.largest(
+                rows,
+                self._simulate(rows, x, None, np.zeros(len(x))),
+                x,
+            )
         return x
 
     def coefficients(self, x: Array) -> Array:
@@ -232,12 +273,14 @@ class Programs:
         return {name: bounded[:, place] for name, place in self._places.items()}
 
     def evaluate(self, rows: Index, x: Array, multipliers: Multipliers, width: Array) -> Model:
-        """The model of rows at their unknowns, as `funnel.Evaluate`."""
+        """The model of rows at their unknowns, as of `funnel.RowPrograms`."""
         motions = self._simulate(rows, x, multipliers, width)
-        scale, weights = self._arrival[rows], self.weights[rows]
-        of_energy, at = weights[:, 0] / self._energy[rows], slice(0, int(self._at_rest))
-        found = [each.evaluate(rows, motions, x) for each in self.constraints.values()]
-        bounded, jacobians = zip(*found)
+        scale = self._arrival[rows]
+        weights = self.weights[rows]
+        of_energy = weights[:, 0] / self._energy[rows]
+        at = slice(0, int(self._at_rest))
+        constraints = self.constraints.values()
+        bounded, jacobians = zip(*(entry.evaluate(rows, motions, x) for entry in constraints))
         objective = of_energy * motions.energy[:, 0]
         gradient = of_energy[:, None] * motions.gradient[:, 0]
         if self._peak is not None:
@@ -260,37 +303,39 @@ class Programs:
         self, rows: Index, x: Array, multipliers: Multipliers | None, width: Array
     ) -> Derivatives:
         """Motions in all scenarios with derivatives by the unknowns; of arrivals what is missed."""
-        scenarios, coefficients = self._scenarios, x[:, : self._size] @ self._axes.T
-        weights = None if multipliers is None else self._pull_back(rows, multipliers)
-        found = self._batch.derivatives(
+        scenarios = self._scenarios
+        coefficients = x[:, : self._size] @ self._axes.T
+        of_motions = None if multipliers is None else self._pull_back(rows, multipliers)
+        derivatives = self._batch.derivatives(
             np.repeat(coefficients, scenarios, axis=0),
             np.repeat(self._move[rows], scenarios, axis=0),
             np.concatenate(self._errors[rows]),
             np.repeat(width * self._energy[rows] / self._move[rows, 2], scenarios),
-            weights,
+            of_motions,
         ).by_scenario(scenarios)
         along = self._along
         return Derivatives(
-            energy=found.energy,
-            arrival=found.arrival + self._offset[rows],
-            limited=found.limited,
-            gradient=found.gradient @ along,
-            arrival_jacobian=found.arrival_jacobian @ along,
-            limited_jacobian=found.limited_jacobian @ along,
-            hessian=along.T @ found.hessian @ along,
+            energy=derivatives.energy,
+            arrival=derivatives.arrival + self._offset[rows],
+            limited=derivatives.limited,
+            gradient=derivatives.gradient @ along,
+            arrival_jacobian=derivatives.arrival_jacobian @ along,
+            limited_jacobian=derivatives.limited_jacobian @ along,
+            hessian=along.T @ derivatives.hessian @ along,
         )
 
     def _pull_back(self, rows: Index, multipliers: Multipliers) -> MotionMultipliers:
         """Multipliers of every motion's energy, arrival and limited values."""
-        count, scenarios = len(rows), self._scenarios
+        count = len(rows)
+        scenarios = self._scenarios
         onto = MotionMultipliers(
-            np.zeros((count, scenarios)),
-            np.zeros((count, scenarios, self._arrival.shape[1])),
-            np.zeros((count, scenarios, self._batch.limited)),
+            energy=np.zeros((count, scenarios)),
+            arrival=np.zeros((count, scenarios, self._arrival.shape[1])),
+            limited=np.zeros((count, scenarios, self._batch.limited)),
         )
         onto.energy[:, 0] = self.weights[rows, 0] / self._energy[rows]
         if self._at_rest:
             onto.arrival[:, 0] += multipliers.equality / self._arrival[rows]
-        for name, own in self.split(multipliers.bounded).items():
-            self.constraints[name].pull_back(rows, own, onto)
+        for name, of_constraint in self.split(multipliers.bounded).items():
+            self.constraints[name].pull_back(rows, of_constraint, onto)
         return onto.by_row()

@@ -16,12 +16,6 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 _EXACT = {"primal_tol": 1e-11, "dual_tol": 1e-11, "iter_limit": 300}
-_LOOSER, _STIFFER = {"primal_tol": 1e-9, "dual_tol": 1e-9}, 1e-6
-"""Settings of the quadratic programs, and where these fail."""
-_TIE = 1e-3
-"""Curvature that settles which of the steps of least violation is taken: a short one."""
-_EQUALITY, _OPTIMUM, _EMPTY = 5, 1, -1
-"""DAQP's mark of one; its words for a solution, and for constraints that cannot be met."""
 
 
 class Multipliers(NamedTuple):
@@ -37,9 +31,10 @@ class Multipliers(NamedTuple):
         """Some rows."""
         return Multipliers(self.equality[rows], self.bounded[rows])
 
-    def put(self, rows: Index, other: Multipliers) -> None:
+    def put(self, rows: Index, following: Multipliers) -> None:
         """Replace rows."""
-        self.equality[rows], self.bounded[rows] = other
+        self.equality[rows] = following.equality
+        self.bounded[rows] = following.bounded
 
 
 class Model(NamedTuple):
@@ -57,9 +52,9 @@ class Model(NamedTuple):
     bounded_jacobian: Array
     hessian: Array
 
-    def put(self, rows: Index, other: Model) -> None:
+    def put(self, rows: Index, following: Model) -> None:
         """Replace rows."""
-        for part, new in zip(self, other):
+        for part, new in zip(self, following):
             part[rows] = new
 
     def take(self, rows: Index | NDArray[np.bool_]) -> Model:
@@ -83,36 +78,66 @@ def least_steps(model: Model, lower: Array, upper: Array, radius: Array, linear:
     the same.
     """
     rows, n = model.gradient.shape
-    m, k = model.equality.shape[1], model.bounded.shape[1]
-    above, below = upper - model.bounded, lower - model.bounded
+    m = model.equality.shape[1]
+    k = model.bounded.shape[1]
+    above = upper - model.bounded
+    below = lower - model.bounded
     reach = np.abs(model.bounded_jacobian).sum(axis=2) * radius[:, None]
     near = (above <= reach) | (-below <= reach)
-    found = Steps(
+    steps = Steps(
         np.zeros((rows, n)),
         Multipliers(np.zeros((rows, m)), np.zeros((rows, k))),
         np.zeros(rows, dtype=bool),
     )
     for i in range(rows):
-        own = np.flatnonzero(near[i])
+        chosen = np.flatnonzero(near[i])
         box = np.full(n, radius[i])
-        table = np.concatenate([model.equality_jacobian[i], model.bounded_jacobian[i, own]])
-        most = np.concatenate([box, -model.equality[i], above[i, own]])
-        least = np.concatenate([-box, -model.equality[i], below[i, own]])
-        marks = np.zeros(len(most), dtype=np.int32)
-        marks[n : n + m] = _EQUALITY
-        one = model.hessian[i], model.gradient[i], table, most, least
-        d, _, flag, info = daqp.solve(*one, marks, **_EXACT)
-        if flag not in (_OPTIMUM, _EMPTY):  # it cycles: with a little more curvature it ends
-            stiffer = one[0] + _STIFFER * np.trace(one[0]) * np.eye(n)
-            d, _, flag, info = daqp.solve(stiffer, *one[1:], marks, **_LOOSER)
-        if flag == _OPTIMUM:
-            found.met[i], multipliers = True, info["lam"][n:]
-            found.multipliers.equality[i] = multipliers[:m]
-            found.multipliers.bounded[i, own] = multipliers[m:]
+        table = np.concatenate([model.equality_jacobian[i], model.bounded_jacobian[i, chosen]])
+        most = np.concatenate([box, -model.equality[i], above[i, chosen]])
+        least = np.concatenate([-box, -model.equality[i], below[i, chosen]])
+        solution = _solve(
+            model.hessian[i],
+            model.gradient[i],
+            table,
+            most,
+            least,
+            m,
+        )
+        if solution is not None:
+            steps.met[i] = True
+            steps.d[i], multipliers = solution
+            steps.multipliers.equality[i] = multipliers[:m]
+            steps.multipliers.bounded[i, chosen] = multipliers[m:]
         else:
-            d = _least_violation(table, most[n:], least[n:], radius[i], m, own >= k - linear)
-        found.d[i] = d
-    return found
+            hard = chosen >= k - linear
+            steps.d[i] = _least_violation(table, most[n:], least[n:], radius[i], m, hard)
+    return steps
+
+
+def _solve(
+    hessian: Array, gradient: Array, table: Array, most: Array, least: Array, m: int
+) -> tuple[Array, Array] | None:
+    """The step of one program and its multipliers; None where the constraints cannot be met.
+
+    Bounds are of the step, and then of the table times the step, whose first m rows are equalities.
+    """
+    n = len(gradient)
+    optimum = 1
+    empty = -1
+    equality = 5
+    marks = np.zeros(len(most), dtype=np.int32)
+    marks[n : n + m] = equality
+    program = gradient, table, most, least, marks
+    d, _, flag, info = daqp.solve(hessian, *program, **_EXACT)
+    if flag not in (optimum, empty):  # it cycles: with a little more curvature it ends
+        stiffer = hessian + 1e-6 * np.trace(hessian) * np.eye(n)
+        d, _, flag, info = daqp.solve(
+            stiffer,
+            *program,
+            primal_tol=1e-9,
+            dual_tol=1e-9,
+        )
+    return (d, info["lam"][n:]) if flag == optimum else None
 
 
 def _least_violation(
@@ -124,7 +149,8 @@ def _least_violation(
     """
     n = table.shape[1]
     give = np.concatenate([np.ones(m), (~hard).astype(float)])
-    above, below = np.isfinite(most), np.isfinite(least)
+    above = np.isfinite(most)
+    below = np.isfinite(least)
     rows = np.block([
         [table[above], -give[above, None]],
         [table[below], give[below, None]],
@@ -132,7 +158,9 @@ def _least_violation(
     free = np.inf
     upper = np.concatenate([np.full(n, radius), [free], most[above], np.full(below.sum(), free)])
     lower = np.concatenate([np.full(n, -radius), [0.0], np.full(above.sum(), -free), least[below]])
-    hessian = np.diag([*[_TIE] * n, _TIE])
+    # Curvature that settles which of the steps of least violation is taken: a short one.
+    tie = 1e-3
+    hessian = np.diag([*[tie] * n, tie])
     cost = np.append(np.zeros(n), 1.0)
     marks = np.zeros(len(upper), dtype=np.int32)
     d, *_ = daqp.solve(hessian, cost, rows, upper, lower, marks, **_EXACT)
@@ -159,6 +187,6 @@ def convexify(model: Model) -> Array:
     if m:
         mixed = hessian[:, m:, :m]
         inverse = (vectors / values[:, None, :]) @ turned
-        own = values.mean(axis=1)[:, None, None] * np.eye(m)
-        hessian[:, :m, :m] = mixed.swapaxes(-1, -2) @ inverse @ mixed + own
+        curvature = values.mean(axis=1)[:, None, None] * np.eye(m)
+        hessian[:, :m, :m] = mixed.swapaxes(-1, -2) @ inverse @ mixed + curvature
     return np.ascontiguousarray(basis @ hessian @ basis.swapaxes(-1, -2))

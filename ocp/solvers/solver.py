@@ -13,8 +13,6 @@ from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.problem import Problem, Solution
 
-_MOST_TOLERANCE = 0.01
-_MOST_ITERATIONS = 1_000_000
 NAME = "solver"
 """What a record calls it; an option that is not the default stands beside, as solver_tolerance."""
 OPTIONS = ("tolerance", "iterations")
@@ -53,9 +51,14 @@ class Solver:
 
     def __post_init__(self) -> None:
         tolerance = positive(
-            "tolerance of the solver", self.tolerance, "", _MOST_TOLERANCE, "it is a share"
+            "tolerance of the solver", self.tolerance, most=0.01, why="it is a share"
         )
-        iterations = whole("iterations of the solver", self.iterations, 1, _MOST_ITERATIONS)
+        iterations = whole(
+            "iterations of the solver",
+            self.iterations,
+            1,
+            1_000_000,
+        )
         object.__setattr__(self, "tolerance", tolerance)
         object.__setattr__(self, "iterations", iterations)
 

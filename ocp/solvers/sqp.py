@@ -17,13 +17,6 @@ from quietarm.ocp.solvers.programs import Programs
 from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
-Prices = dict[str, float]
-_NOTHING = np.zeros(0)
-_NONE = 1e-8
-"""A scaled state on arrival that is no larger counts as rest."""
-_REACH, _WARM_REACH = 0.25, 0.02
-"""How far the unknowns may move at first: minima of the paper's conditions lie within 0.2 of the
-cycloid; and from a neighbouring minimum."""
 _STATUS = {
     End.SOLVED: SolveStatus.OPTIMAL,
     End.CREEPING: SolveStatus.ACCEPTABLE,
@@ -53,37 +46,41 @@ class Sqp(Solver):
     ) -> list[Solution]:
         """Solve each problem from its start; see `Solver.solve`."""
         solutions: dict[int, Solution] = {}
+        course = Course(
+            widths=SHARP if warm else WIDTHS,
+            # Minima of the paper's conditions lie within 0.2 of the cycloid.
+            reach=0.02 if warm else 0.25,
+            tolerance=self.tolerance,
+            iterations=self.iterations,
+            log=self.log,
+        )
         for places in _group_by_form(problems):
-            own = [problems[i] for i in places]
-            transcription = own[0].transcription
-            transcription.batch.prepare(len(own) * len(transcription.errors))
-            programs = Programs(own)
+            alike = [problems[i] for i in places]
+            transcription = alike[0].transcription
+            transcription.batch.prepare(len(alike) * len(transcription.errors))
+            programs = Programs(alike)
             x = programs.start(np.array([starts[i] for i in places]))
             ended = minimise(
-                programs.evaluate,
+                programs,
                 x,
-                programs.lower,
-                programs.upper,
-                equalities=programs.equalities,
-                linear=programs.linear,
                 groups=None if groups is None else np.array([groups[i] for i in places]),
-                course=Course(
-                    widths=SHARP if warm else WIDTHS,
-                    reach=_WARM_REACH if warm else _REACH,
-                    tolerance=self.tolerance,
-                    iterations=self.iterations,
-                    log=self.log,
-                ),
+                course=course,
             )
-            solutions.update(zip(places, _in_units(programs, ended, own)))
+            solutions.update(zip(places, _in_units(programs, ended, alike)))
         return [solutions[i] for i in range(len(problems))]
 
 
 def _group_by_form(problems: Sequence[Problem]) -> Iterable[list[int]]:
     """The places of the problems that are solved together."""
     forms: dict[tuple[object, ...], list[int]] = {}
-    for i, (one, asked) in enumerate(problems):
-        form = one.batch, len(one.errors), asked.peak, asked.at_rest, asked.bounds_residual
+    for i, (transcription, scalarization) in enumerate(problems):
+        form = (
+            transcription.batch,
+            len(transcription.errors),
+            scalarization.peak,
+            scalarization.at_rest,
+            scalarization.bounds_residual,
+        )
         forms.setdefault(form, []).append(i)
     return forms.values()
 
@@ -92,11 +89,13 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     """The solutions in SI units."""
     coefficients = programs.coefficients(ended.x)
     motions = evaluate([problem.transcription for problem in problems], coefficients)
-    prices, solutions = _shadow_prices(programs, ended, problems), list[Solution]()
-    for i, ((transcription, asked), motion) in enumerate(zip(problems, motions)):
-        peaks = transcription.measure(motion, asked.offset).peaks_of(0)
+    prices = _shadow_prices(programs, ended, problems)
+    solutions = list[Solution]()
+    for i, ((transcription, scalarization), motion) in enumerate(zip(problems, motions)):
+        peaks = transcription.measure(motion, scalarization.offset).peaks_of(0)
         end = ended.ends[i]
-        if asked.at_rest and ended.violation[i] <= _NONE:
+        # A scaled state on arrival that is no larger counts as rest.
+        if scalarization.at_rest and ended.violation[i] <= 1e-8:
             peaks[RESIDUAL] = 0.0
         solutions.append(
             Solution(
@@ -105,7 +104,7 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
                 peaks,
                 _STATUS[end],
                 int(ended.iterations[i]),
-                arrival=motion.arrival + asked.offset,
+                arrival=motion.arrival + scalarization.offset,
                 shadow_prices=prices[i],
                 reason=end.value,
             )
@@ -113,15 +112,30 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
     return solutions
 
 
-def _shadow_prices(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> list[Prices]:
+def _shadow_prices(
+    programs: Programs, ended: Ended, problems: Sequence[Problem]
+) -> list[dict[str, float]]:
     """What each least energy falls by if a limit is widened [J by its unit]."""
-    every, prices = programs.split(ended.multipliers.bounded), list[Prices]()
-    for i, (each, asked) in enumerate(problems):
-        bounded = {one.name: every[one.name][i] / each.scale_of(one.name)
-                   for one in asked.limits if one.name in every}  # fmt: skip
-        of_energy = programs.weights[i, 0] / each.energy_scale
-        of_arrival = (
-            ended.multipliers.equality[i] / each.arrival_scale if asked.at_rest else _NOTHING
+    multipliers = programs.split(ended.multipliers.bounded)
+    prices = list[dict[str, float]]()
+    for i, (transcription, scalarization) in enumerate(problems):
+        bounded = {
+            limit.name: multipliers[limit.name][i] / transcription.scale_of(limit.name)
+            for limit in scalarization.limits
+            if limit.name in multipliers
+        }
+        of_energy = programs.weights[i, 0] / transcription.energy_scale
+        of_arrival = np.zeros(0)
+        if scalarization.at_rest:
+            of_arrival = ended.multipliers.equality[i] / transcription.arrival_scale
+        tips = transcription.tip_rows[0]
+        prices.append(
+            shadow_prices(
+                scalarization,
+                of_energy,
+                bounded,
+                of_arrival,
+                tips,
+            )
         )
-        prices.append(shadow_prices(asked, of_energy, bounded, of_arrival, each.tip_rows[0]))
     return prices

@@ -9,7 +9,7 @@ import numpy as np
 
 from quietarm.ocp import FreeVibration, Motion, symbolic_rollout
 from quietarm.ocp.limits import QUANTITIES
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.objective import PEAKS, integrated
 
 

@@ -14,7 +14,7 @@ from parts.population.one_by_one import integrate, rates_in_floats, rates_in_num
 
 from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
 from quietarm.ocp.simulation.evaluator import Evaluator
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 
 CANDIDATES = 200
 FEW, TUNING = 5, 40  # candidates of solve_ivp: to time, to choose its samples
@@ -30,7 +30,7 @@ def even(steps: int) -> NDArray[np.float64]:
 
 
 def graded(steps: int) -> NDArray[np.float64]:
-    return Grid(steps).boundaries
+    return Mesh(steps).boundaries
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Candidate, PointToPoint
 from quietarm.studies.reproduce.paper import CONDITIONS
 
-FINE = 140  # ocp.simulation.grid.ROLLOUT_STEPS
+FINE = 140  # ocp.simulation.mesh.ROLLOUT_STEPS
 EACH_CASE = pytest.mark.parametrize("case", CONDITIONS, ids=lambda case: case.name)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import quietarm as qa
 from quietarm.ocp.profiles.cycloid import Cycloid
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.solvers.node import Path
 
 pi = math.pi
@@ -145,7 +145,7 @@ def test_numbers_symbols_and_populations_have_the_same_motion(kind):
 )
 def test_it_is_seen_whether_the_coefficients_enter_linearly(kind, linear):
     # the Jacobian of what they enter then depends on time alone, and is computed once
-    assert Path(kind(4), Grid(8), False, 1).linear == linear
+    assert Path(kind(4), Mesh(8), False, 1).linear == linear
 
 
 def test_plans_do_not_depend_on_how_a_profile_is_written(tasks, tmp_path):

@@ -12,7 +12,7 @@ from numpy.polynomial import Polynomial
 import quietarm as qa
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS
-from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import beyond_quadratic, resolved_energy
 from quietarm.ocp.solvers.derivatives import differentiate_absolute
 
@@ -99,7 +99,7 @@ def test_terms_beyond_the_quadratic_move_work_across_its_zeros(c0, c1, c2, cubic
 @pytest.mark.parametrize("steps", [2, 10])
 def test_a_power_of_degree_four_is_told_exactly(steps):
     quartic_power = Polynomial([0.3, -2.0, 5.0, 7.0, -11.0])
-    grid = Grid(steps)
+    grid = Mesh(steps)
     at_nodes = quartic_power(grid.nodes).reshape(1, -1)  # horzcat(*power): node after node
     found = [(ca.DM(at_nodes) @ weights).full().ravel() for weights in beyond_quadratic(steps)]
     for step in range(steps):

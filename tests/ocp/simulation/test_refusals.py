@@ -5,7 +5,7 @@ import math
 import pytest
 
 import quietarm as qa
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 
 TASK = qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8)
 PROFILE = qa.CycloidPolynomial(2)

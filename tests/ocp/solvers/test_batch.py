@@ -12,7 +12,7 @@ from quietarm.ocp import ModalState, perturb_plant
 from quietarm.ocp.limits import QUANTITIES as BY_NAME
 from quietarm.ocp.simulation.evaluator import simulate
 from quietarm.ocp.simulation.rollout import Simulation
-from quietarm.ocp.solvers.batch import Multipliers, batch_of
+from quietarm.ocp.solvers.batch import MotionMultipliers, batch_of
 
 QUANTITIES = tuple(BY_NAME.values())
 LIMITS = tuple(one.limit for one in QUANTITIES)
@@ -33,7 +33,7 @@ def _candidates(rows, simulation, seed=0):
 
 def _weights(made, rows, energy=1.0, seed=1):
     random = np.random.default_rng(seed)
-    return Multipliers(
+    return MotionMultipliers(
         np.full(rows, energy),
         random.normal(size=(rows, 2 * made.simulation.plant.modes)),
         random.normal(size=(rows, made.limited)),
@@ -78,7 +78,7 @@ def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
     for row in {0, rows // 2, rows - 1}:
         only = slice(row, row + 1)
         alone = [one[only] for one in candidates]
-        own = Multipliers(**{name: one[only] for name, one in vars(weights).items()})
+        own = MotionMultipliers(**{name: one[only] for name, one in vars(weights).items()})
         expected = _derivatives(made, alone, 0.1, own)
         for name, part in vars(together).items():
             whole = vars(expected)[name][0]
@@ -93,7 +93,7 @@ def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants,
     made = batch_of(Simulation(plants[name], qa.CycloidPolynomial(3), 30))
     candidates = _candidates(2, made.simulation, seed=5)
     none = np.zeros((2, 2 * made.simulation.plant.modes))
-    weights = Multipliers(np.ones(2), none, np.zeros((2, 0)))
+    weights = MotionMultipliers(np.ones(2), none, np.zeros((2, 0)))
     found = _derivatives(made, candidates, 0.0, weights).hessian
     (a, *others), h = candidates, 1e-6
     expected = np.stack([

@@ -10,7 +10,7 @@ from quietarm.ocp.energy import ABSOLUTE_POWER, CopperLoss, PositivePower
 from quietarm.ocp.limits import QUANTITIES, Limit, TorqueSpeedLine
 from quietarm.ocp.simulation.objective import integrated, resolved_energy
 from quietarm.ocp.simulation.rollout import Simulation, symbolic_rollout
-from quietarm.ocp.solvers.batch import Multipliers, batch_of
+from quietarm.ocp.solvers.batch import MotionMultipliers, batch_of
 
 STEPS = 10
 LINE = Limit.of_line(TorqueSpeedLine(((1.5, 0.0), (1.2, 2.0), (0.2, 4.0))))
@@ -120,7 +120,9 @@ def test_the_hessian_of_the_lagrangian(case, candidate, share, width):
     made, symbols = case
     random, a = np.random.default_rng(3), symbols["a"]
     weights = {name: random.normal(size=symbols[name].numel()) for name in ("arrival", "limited")}
-    multipliers = Multipliers(np.full(1, share), weights["arrival"][None], weights["limited"][None])
+    multipliers = MotionMultipliers(
+        np.full(1, share), weights["arrival"][None], weights["limited"][None]
+    )
     lagrangian = share * symbols["rounded"] + sum(
         ca.dot(ca.DM(weight), symbols[name]) for name, weight in weights.items()
     )

@@ -5,6 +5,7 @@ with their published minima.
 """
 
 from functools import partial
+from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
@@ -45,10 +46,15 @@ class Problem:
 
     def solved(self, starts, **settings):
         starts = np.atleast_2d(np.array(starts, dtype=float))
-        lower, upper = (np.tile(side, (len(starts), 1)) for side in (self.lower, self.upper))
         course = Course(settings.pop("widths", SHARP), settings.pop("reach", Course().reach))
-        settings = {"equalities": self.function.size1_in(1)} | settings
-        return minimise(self.evaluate, starts, lower, upper, course=course, **settings)
+        programs = SimpleNamespace(
+            evaluate=self.evaluate,
+            equalities=self.function.size1_in(1),
+            linear=settings.pop("linear", 0),
+            lower=np.tile(self.lower, (len(starts), 1)),
+            upper=np.tile(self.upper, (len(starts), 1)),
+        )
+        return minimise(programs, starts, course=course, **settings)
 
     def objective(self, found):
         rows = np.arange(len(found.x))

@@ -24,7 +24,7 @@ ROLLOUT_STEPS = 140
 
 
 @dataclass(frozen=True)
-class Grid:
+class Mesh:
     """Steps of a move, or of a smooth piece of it, as fractions of its duration.
 
     Steps are finer at the ends, where the powers of T in the profile change fastest: in the paper's
@@ -45,7 +45,7 @@ class Grid:
             return even / 2 + (1 - np.cos(np.pi * even)) / 4
         pieces = [np.zeros(1)]
         for start, end in pairwise((0.0, *self.breaks, 1.0)):
-            piece = Grid(max(self.of_a_piece, math.ceil((end - start) * self.steps)))
+            piece = Mesh(max(self.of_a_piece, math.ceil((end - start) * self.steps)))
             pieces.append(start + (end - start) * piece.boundaries[1:])
         return np.concatenate(pieces)
 
@@ -83,7 +83,7 @@ class Grid:
 def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
     """Steps for the profile (`least`), and 2 a radian of the fastest mode of all scenarios."""
     plants = task.perturbed_plants
-    radians = task.duration * max(fastest_along(one, task.start, task.target) for one in plants)
+    radians = task.duration * max(fastest_along(plant, task.start, task.target) for plant in plants)
     if 2 * radians > MOST_STEPS:
         raise ValueError(
             f"duration {task.duration:g} s is {radians:.3g} radians of the plant's fastest mode; "

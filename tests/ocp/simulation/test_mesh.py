@@ -9,7 +9,7 @@ import pytest
 from fixed_steps import rollout
 
 import quietarm as qa
-from quietarm.ocp.simulation.grid import default_steps
+from quietarm.ocp.simulation.mesh import default_steps
 
 PLAIN = qa.CycloidPolynomial(0)
 
