@@ -15,7 +15,7 @@ from .problems.catalogue import PROBLEMS as PROBLEMS
 from .problems.catalogue import NamedProblem as NamedProblem
 from .problems.catalogue import problem_of as problem_of
 from .problems.function import MoveFunction as MoveFunction
-from .problems.pymoo_problem import MoveProblem as MoveProblem
+from .problems.pymoo_problem import PymooProblem as PymooProblem
 from .problems.recorded import RecordedFunction as RecordedFunction
 from .run_search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
 from .run_search import SearchProgress as SearchProgress

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from dataclasses import replace
 from importlib import metadata
 
 import moocore
@@ -15,7 +15,7 @@ from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, reference_corner
 from quietarm.ocp.cost import COST
 from quietarm.ocp.front.points import Entries, evaluated
-from quietarm.ocp.record import Record, Setting, versions
+from quietarm.ocp.record import Record, versions
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -37,6 +37,7 @@ class Archive:
     """
 
     def __init__(self, task: PointToPoint, variables: int) -> None:
+        self.task = task
         self.evaluations = 0
         self.marks = list[Mark]()
         self.corner = reference_corner(task)
@@ -95,7 +96,12 @@ class Archive:
             np.concatenate(column).tolist() for column in zip(*self._entered)
         )
         residuals, energies = zip(*objectives)
-        return Entries(tuple(numbers), tuple(map(tuple, coefficients)), residuals, energies)
+        return Entries(
+            tuple(numbers),
+            tuple(map(tuple, coefficients)),
+            residuals,
+            energies,
+        )
 
     def _let_enter(self) -> None:
         """Compare what waits with what entered before, and with what waits before it."""
@@ -119,30 +125,40 @@ class Archive:
 
     def front(
         self,
-        task: PointToPoint,
         profile: JointProfile,
+        record: Record,
         *,
-        method: str,
-        settings: Mapping[str, Setting],
-        bound: float,
-        seed: int | None,
         failed: int = 0,
         infeasible: int = 0,
     ) -> Front:
-        """What was found, at most 100 points of it by CVODES, with every candidate that entered."""
+        """What was found, at most 100 points of it by CVODES, with every candidate that entered.
+
+        The record states the method and its settings; here it gets the effort and the versions.
+        """
         searched = self.seconds
         if not self.marks or self.marks[-1].evaluations < self.evaluations:
             self.mark(searched)
         coefficients, objectives = self.non_dominated()
         began = time.thread_time()
-        points = evaluated(task, profile, coefficients[thinned(objectives)], bound).points
+        shown = coefficients[thinned(objectives)]
+        points = evaluated(self.task, profile, shown, record.bound).points
+        record = replace(
+            record,
+            evaluations=self.evaluations,
+            versions=search_versions(),
+            seconds=searched + time.thread_time() - began,
+        )
         return Front(
-            task, profile, points,
-            Record(method, settings, bound, seed, self.evaluations, versions=search_versions(),
-                   seconds=searched + time.thread_time() - began),
-            self.corner, failed=failed, infeasible=infeasible, history=tuple(self.marks),
+            self.task,
+            profile,
+            points,
+            record,
+            self.corner,
+            failed=failed,
+            infeasible=infeasible,
+            history=tuple(self.marks),
             entries=self.entries,
-        )  # fmt: skip
+        )
 
 
 def entering(front: Array, candidates: Array) -> Places:

@@ -40,12 +40,15 @@ def multistart_front(
     began = time.perf_counter()
     curve = Curve.begin(task, profile, Setup(solver, bound, 1, seed))
     random = np.random.default_rng(seed)
-    begins = random.uniform(*profile.box(bound), (starts, profile.size))
-    (cheapest,) = curve.solver.solve([curve.problem()], [begins[0]])
+    guesses = random.uniform(*profile.box(bound), (starts, profile.size))
+    (cheapest,) = curve.solver.solve([curve.problem()], [guesses[0]])
     limits = random.uniform(0.0, cheapest.residual, starts - 1)
-    found = curve.solver.solve([curve.problem(float(one)) for one in limits], list(begins[1:]))
+    problems = [curve.problem(float(limit)) for limit in limits]
+    solutions = curve.solver.solve(problems, list(guesses[1:]))
     solved = [
-        (one, {RESIDUAL_LIMIT: one.residual}) for one in [cheapest, *found] if one.status.solved
+        (solution, {RESIDUAL_LIMIT: solution.residual})
+        for solution in [cheapest, *solutions]
+        if solution.status.solved
     ]
     front = curve.to_front("multistart", curve.certify(solved), starts)
     return front.restated(seconds=time.perf_counter() - began)
@@ -57,7 +60,9 @@ _FRONTS: Mapping[str, tuple[Callable[..., Front], str]] = {
     "multistart": (multistart_front, "starts"),
 }
 """By name, and what each may be set to."""
-GRADIENT = tuple(f"{name}{'' if s == 'sqp' else ':' + s}" for name in _FRONTS for s in SOLVERS)
+GRADIENT = tuple(
+    name if solver == Sqp.name else f"{name}:{solver}" for name in _FRONTS for solver in SOLVERS
+)
 """Names of the methods of the gradient; without a solver it is the own SQP."""
 SOLVER_OPTIONS = tuple(f"{NAME}_{option}" for option in OPTIONS)
 """Settings of a method that are options of its solver."""
@@ -75,13 +80,28 @@ def gradient_front(
     """The front of a method of `GRADIENT`, with its cost as its only mark."""
     name, _, solver_name = method.partition(":")
     find, size = _FRONTS[name]
-    options, others = split_solver_options(settings)
-    for setting in others:
+    options, method_settings = split_solver_options(settings)
+    for setting in method_settings:
         if setting != size:
-            raise ValueError(has_no(method, "setting", setting, [size, *SOLVER_OPTIONS]))
+            raise ValueError(
+                has_no(
+                    method,
+                    "setting",
+                    setting,
+                    [size, *SOLVER_OPTIONS],
+                )
+            )
     solver = solver_with(options, solver_name)
-    before, began = COST.copy(), time.thread_time()
-    front = find(task, profile, bound=bound, seed=seed, solver=solver, **others)
+    before = COST.copy()
+    began = time.thread_time()
+    front = find(
+        task,
+        profile,
+        bound=bound,
+        seed=seed,
+        solver=solver,
+        **method_settings,
+    )
     return _with_cost(front.restated(method=method), before, began)
 
 
@@ -90,8 +110,10 @@ def split_solver_options(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Options of a method's solver, as solver_tolerance, and the method's other settings."""
     options = {name: value for name, value in settings.items() if name in SOLVER_OPTIONS}
-    others = {name: value for name, value in settings.items() if name not in SOLVER_OPTIONS}
-    return options, others
+    method_settings = {
+        name: value for name, value in settings.items() if name not in SOLVER_OPTIONS
+    }
+    return options, method_settings
 
 
 def solver_with(options: Mapping[str, Any], name: str = "") -> Solver:
@@ -101,17 +123,24 @@ def solver_with(options: Mapping[str, Any], name: str = "") -> Solver:
 
 def polished(front: Front, solver: Solver = Sqp()) -> Front:
     """The front of a search, each point improved at its own residual; one mark more."""
-    before, began = COST.copy(), time.thread_time()
+    before = COST.copy()
+    began = time.thread_time()
     method = f"{front.record.method}+polish"
     if not front.points:
         return front.restated(method=method)
     better = polish_front(front, solver=solver).front
-    return _with_cost(better.restated(method=method), before, began, front.record.seconds)
+    return _with_cost(
+        better.restated(method=method),
+        before,
+        began,
+        front.record.seconds,
+    )
 
 
 def _with_cost(front: Front, before: Cost, began: float, earlier: float = 0.0) -> Front:
     """The front with a mark of what its gradient cost, on top of its last one."""
-    spent, seconds = COST.since(before), time.thread_time() - began
+    spent = COST.since(before)
+    seconds = time.thread_time() - began
     last = front.history[-1] if front.history else Mark(0)
     mark = Mark(
         evaluations=last.evaluations + spent.candidates,

@@ -83,11 +83,14 @@ class Job:
         settings: Mapping[str, Setting] | None = None,
     ) -> None:
         problem = problem_of(problem) if isinstance(problem, str) else problem
-        given = {
-            "problem": problem, "method": method, "seed": whole("seed", seed, 0),
-            "budget": _budget(method, budget, settings or {}), "settings": dict(settings or {}),
-        }  # fmt: skip
-        for name, value in given.items():
+        fields = {
+            "problem": problem,
+            "method": method,
+            "seed": whole("seed", seed, 0),
+            "budget": _budget(method, budget, settings or {}),
+            "settings": dict(settings or {}),
+        }
+        for name, value in fields.items():
             object.__setattr__(self, name, value)
 
     @property
@@ -121,18 +124,31 @@ class Job:
         return sealed(front.restated(settings=stated), self)
 
     def _find(self, rehearse: bool = False) -> Front:
-        problem, budget, settings = self.problem, self.budget, dict(self.settings)
+        problem = self.problem
+        budget = self.budget
+        settings = dict(self.settings)
         method: Any = self.method
-        asked: Any = {"profile": problem.profile, "bound": problem.bound, "seed": self.seed}
+        common: Any = {
+            "profile": problem.profile,
+            "bound": problem.bound,
+            "seed": self.seed,
+        }
         if budget is None:
             if rehearse:
                 settings = {"starts" if "multistart" in method else "points": _REHEARSAL}
-            return gradient_front(problem.task, method=method, settings=settings, **asked)
+            return gradient_front(
+                problem.task,
+                method=method,
+                settings=settings,
+                **common,
+            )
         population: Any = settings.pop("population", None)
-        size, polish = 100, False
+        size = 100
+        polish = False
         options = dict[str, Any]()
         if isinstance(method, str):
-            method, polish = method.removesuffix(POLISH), method.endswith(POLISH)
+            polish = method.endswith(POLISH)
+            method = method.removesuffix(POLISH)
             if polish:
                 options, settings = split_solver_options(settings)
             size = PRESETS[method].evaluations(population or PRESETS[method].population, 1)
@@ -143,9 +159,13 @@ class Job:
                 method(function, self.seed, budget)
             return function.front(self.label, self.seed)
         front = search(
-            problem.task, algorithm=method, population=population, settings=settings,
-            evaluations=budget, **asked,
-        )  # fmt: skip
+            problem.task,
+            algorithm=method,
+            population=population,
+            settings=settings,
+            evaluations=budget,
+            **common,
+        )
         return polished(front, solver_with(options)) if polish else front
 
 
@@ -166,7 +186,8 @@ def _digest_of(method: Method) -> str:
         return ""
     import joblib  # not at the top: it takes long to load
 
-    digest, held = hashlib.sha256(), method
+    digest = hashlib.sha256()
+    contents = method
 
     def add(code: CodeType) -> None:
         digest.update(code.co_code + repr(code.co_names).encode())
@@ -181,9 +202,13 @@ def _digest_of(method: Method) -> str:
     if isinstance(method, FunctionType):
         add(method.__code__)
         enclosed = [cell.cell_contents for cell in method.__closure__ or ()]
-        held = method.__defaults__, method.__kwdefaults__, enclosed
-    with suppress(PicklingError, AttributeError, TypeError):  # it may hold what cannot be pickled
-        digest.update(str(joblib.hash(held)).encode())
+        contents = method.__defaults__, method.__kwdefaults__, enclosed
+    with suppress(
+        PicklingError,
+        AttributeError,
+        TypeError,
+    ):  # it may hold what cannot be pickled
+        digest.update(str(joblib.hash(contents)).encode())
     return digest.hexdigest()[:12]
 
 
@@ -202,13 +227,21 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
     if isinstance(method, str):
         search_name = method.removesuffix(POLISH)
         if search_name not in PRESETS:
-            raise ValueError(unknown("method", method, [*PRESETS, *GRADIENT], f", NAME{POLISH}"))
-        preset, own = preset_of(search_name), dict(settings)
+            raise ValueError(
+                unknown(
+                    "method",
+                    method,
+                    [*PRESETS, *GRADIENT],
+                    f", NAME{POLISH}",
+                )
+            )
+        preset = preset_of(search_name)
+        search_settings = dict(settings)
         if method.endswith(POLISH):
-            options, own = split_solver_options(settings)
+            options, search_settings = split_solver_options(settings)
             solver_with(options)  # refuses what is out of range
-        population: Any = own.pop("population", preset.population)
-        preset.checked(population, own)
+        population: Any = search_settings.pop("population", preset.population)
+        preset.checked(population, search_settings)
         if budget is None:
             return preset.evaluations(population, preset.generations)
         preset.refuse_less_than_one(budget, population)
@@ -224,7 +257,8 @@ class LostJobsError(QuietarmError):
 
     def __init__(self, failures: Mapping[str, str], fronts: Mapping[Job, Front]) -> None:
         self.fronts = fronts
-        (name, why), more = next(iter(failures.items())), len(failures) - 1
+        name, why = next(iter(failures.items()))
+        more = len(failures) - 1
         done = "1 job is" if len(fronts) == 1 else f"{len(fronts)} jobs are"
         super().__init__(
             f"{name}: {why}{f'; and {more} more' if more else ''}; {done} done, run "
@@ -232,7 +266,7 @@ class LostJobsError(QuietarmError):
         )
 
 
-Report = Callable[[Job, Front, int, int], None]
+JobReport = Callable[[Job, Front, int, int], None]
 """Called with a job, its front, and how many of how many are done."""
 
 
@@ -240,10 +274,9 @@ def run_jobs(
     jobs: Sequence[Job],
     folder: str | Path,
     *,
-    workers: int = 1,
-    scheduler: str | None = None,
+    workers: int | str = 1,
     part: tuple[int, int] = (1, 1),
-    report: Report = lambda job, front, done, total: None,
+    report: JobReport = lambda job, front, done, total: None,
     finished: Mapping[Job, Front] | None = None,
 ) -> dict[Job, Front]:
     """Run the jobs that have no file yet.
@@ -257,10 +290,9 @@ def run_jobs(
         No job twice.
     folder : path
         Where their files are.
-    workers : int
-        Processes of this machine, of one thread each; 1 runs in this one.
-    scheduler : str, optional
-        Address of a dask scheduler whose workers run them instead, as ``tcp://host:8786``.
+    workers : int or str
+        Processes of this machine, of one thread each; 1 runs in this one. Or the address of a dask
+        scheduler whose workers run them, as ``tcp://host:8786``.
     part : (int, int)
         Which of how many equal parts of the jobs, as ``(2, 8)`` for every eighth from the second.
     report : callable, optional
@@ -282,18 +314,22 @@ def run_jobs(
     LostJobsError
         At the end, if jobs failed, or their workers died twice.
     """
-    workers = whole("workers", workers, 1, MOST_WORKERS)
-    index, parts = whole("part", part[0], 1, part[1]), whole("parts", part[1], 1)
+    if not isinstance(workers, str):
+        workers = whole("workers", workers, 1, MOST_WORKERS)
+    index = whole("part", part[0], 1, part[1])
+    parts = whole("parts", part[1], 1)
     _refuse_twice(jobs)
     done = finished_jobs(jobs, folder) if finished is None else dict(finished)
     failures = dict[str, str]()
     mine = [job for job in jobs[index - 1 :: parts] if job not in done]
-    total, count = len(mine), 0
+    total = len(mine)
+    count = 0
     for _ in range(2):  # once again what a killed worker left
         missing = [job for job in mine if job not in done and job.name not in failures]
-        for job, outcome in _outcomes(missing, Path(folder), workers, scheduler):
+        for job, outcome in _outcomes(missing, Path(folder), workers):
             if isinstance(outcome, Front):
-                done[job], count = outcome, count + 1
+                done[job] = outcome
+                count += 1
                 report(job, outcome, count, total)
             else:
                 failures[job.name] = outcome
@@ -322,7 +358,8 @@ def _load(job: Job, path: Path) -> Front:
     from quietarm.metaheuristics.archive import search_versions
 
     try:
-        front, problem = Front.load(path), job.problem
+        front = Front.load(path)
+        problem = job.problem
     except FileFormatError as error:
         raise FileFormatError(f"{error}; delete that file, and its run is done again") from None
     same = (front.task, front.profile, front.record.bound)
@@ -351,16 +388,16 @@ def _refuse_twice(jobs: Sequence[Job]) -> None:
         seen.add(job.name)
 
 
-def _outcomes(jobs: Sequence[Job], folder: Path, workers: int, scheduler: str | None) -> Any:
+def _outcomes(jobs: Sequence[Job], folder: Path, workers: int | str) -> Any:
     """Each job with its front, or why there is none, as they end; fewer where a worker dies."""
     by_name = {job.name: job for job in jobs}  # a job from a worker has a copy of its function
     with suppress(LostWorkersError):
-        for name, found in side_by_side(_run, jobs, workers, scheduler):
-            if isinstance(found, Front):
+        for name, outcome in side_by_side(_run, jobs, workers):
+            if isinstance(outcome, Front):
                 path = folder / f"{name}.json"
                 path.parent.mkdir(parents=True, exist_ok=True)
-                found.save(path)
-            yield by_name[name], found
+                outcome.save(path)
+            yield by_name[name], outcome
 
 
 def _run(job: Job) -> tuple[str, Front | str]:

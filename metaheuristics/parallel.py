@@ -29,20 +29,18 @@ class LostWorkersError(QuietarmError):
 
 
 def side_by_side(
-    function: Callable[[Any], Any],
-    items: Sequence[Any],
-    workers: int = 1,
-    scheduler: str | None = None,
+    function: Callable[[Any], Any], items: Sequence[Any], workers: int | str = 1
 ) -> Iterator[Any]:
     """What a function gives for each item, as they end.
 
-    In this process with one worker, else in so many of joblib's, of one thread each, or in those of
-    a dask scheduler. ValueError where no scheduler answers, LostWorkersError where a worker dies.
+    In this process with one worker, else in so many of joblib's, of one thread each; or in those of
+    the dask scheduler whose address stands in place of a number. ValueError where no scheduler
+    answers, LostWorkersError where a worker dies.
     """
     if not items:
         return
-    if scheduler is not None:
-        yield from _on_cluster(function, items, scheduler)
+    if isinstance(workers, str):
+        yield from _on_cluster(function, items, workers)
     elif min(workers, len(items)) == 1:
         yield from map(function, items)
     else:
@@ -57,7 +55,12 @@ def _in_processes(
 
     watched: Any = {"initializer": _watch_parent, "initargs": (os.getpid(),)}
     try:
-        with parallel_config("loky", n_jobs=workers, inner_max_num_threads=1, **watched):
+        with parallel_config(
+            "loky",
+            n_jobs=workers,
+            inner_max_num_threads=1,
+            **watched,
+        ):
             # an item at a time, so that what ends is handed over at once
             options: Any = {"return_as": "generator_unordered", "batch_size": 1}
             running: Any = Parallel(**options)
@@ -92,7 +95,8 @@ def _on_cluster(
         from distributed.scheduler import KilledWorker
 
         futures = client.map(function, items, pure=False)
-        ended, patience = as_completed(futures, loop=client.loop), _Patience(scheduler)
+        ended = as_completed(futures, loop=client.loop)
+        patience = _Patience(scheduler)
         try:
             while ended.count():
                 for future in ended.next_batch(block=False):
@@ -146,7 +150,11 @@ def _threads_of(scheduler: str) -> int:
 
     async def ask() -> int:
         arguments = Security().get_connection_args("client")
-        there: Any = rpc(scheduler, timeout=_ANSWER_SECONDS, connection_args=arguments)
+        there: Any = rpc(
+            scheduler,
+            timeout=_ANSWER_SECONDS,
+            connection_args=arguments,
+        )
         async with there:
             threads = await there.ncores()
         return sum(threads.values())

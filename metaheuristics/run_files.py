@@ -62,8 +62,8 @@ def _checksum(front: Front, job: Job, document: Any) -> str:
     What is newer than the file, and which it does not state, is no part of it.
     """
     settings = front.record.settings.items()
-    others = {name: value for name, value in settings if name != CHECKSUM}
-    as_read = typed(plain(front.restated(settings=others)), Front)
+    stated_settings = {name: value for name, value in settings if name != CHECKSUM}
+    as_read = typed(plain(front.restated(settings=stated_settings)), Front)
     stated = stated_part(plain(as_read, every=True), document)
     scale = objectives(job.problem.reference().front).tolist()
     text = json.dumps([job.name, scale, stated], sort_keys=True)
@@ -121,7 +121,8 @@ def _disorder(front: Front, job: Job) -> str:
         for name in ("evaluations", "seconds", "gradients", "hessians"):
             if getattr(after, name) < getattr(before, name):
                 return f"states a history in which {name} fall"
-    last, record = front.history[-1], front.record
+    last = front.history[-1]
+    record = front.record
     if last.evaluations != record.evaluations or last.seconds > record.seconds:
         return (
             f"states {record.evaluations} candidates in {record.seconds:.3g} s, and its history "

@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
-MOST_INDIVIDUALS, MOST_GENERATIONS, MOST_EVALUATIONS = 100_000, 1_000_000, 1_000_000_000
+MOST_INDIVIDUALS = 100_000
+MOST_GENERATIONS = 1_000_000
+MOST_EVALUATIONS = 1_000_000_000
 SECONDS_OF_CANDIDATE = 5e-5
 """Of a core: 40,000 of the paper's first move take two seconds."""
 SEARCH_RESIDUAL = 1e-3
@@ -120,19 +122,23 @@ def search(
         profile or beyond the bound.
     """
     # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
-    from quietarm.metaheuristics.problems.pymoo_problem import MoveProblem
+    from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem
     from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
 
     profile = choose_profile(task) if profile is None else _profile_of(profile)
     if generations is not None and evaluations is not None:
         raise ValueError("evaluations stand in place of generations; leave one of them out")
     if isinstance(algorithm, str):
-        method, preset = algorithm, preset_of(algorithm)
-        chosen, own = _known(preset, task, population, evaluations, settings)
-        size, usual = preset.evaluations(own["population"], 1), preset.generations
+        method = algorithm
+        preset = preset_of(algorithm)
+        chosen, stated = _of_preset(preset, task, population, evaluations, settings)
+        size = preset.evaluations(stated["population"], 1)
+        usual = preset.generations
     else:
-        chosen, own = _own(algorithm, population, settings)
-        method, size, usual = type(chosen).__name__, 1, None
+        chosen, stated = _of_user(algorithm, population, settings)
+        method = type(chosen).__name__
+        size = 1
+        usual = None
     generations = usual if generations is None else generations
     if evaluations is None and generations is None:
         raise ValueError(f"give the number of generations or of evaluations for {method}")
@@ -141,7 +147,8 @@ def search(
         limits: dict[str, Any] = {"generations": generations}
     else:
         evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
-        generations, limits = -(-evaluations // size), {"evaluations": evaluations}
+        generations = -(-evaluations // size)
+        limits = {"evaluations": evaluations}
     bound = profile.default_bound if bound is None else bound
     if bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
@@ -156,11 +163,11 @@ def search(
     # a division by a distance of zero is of no concern to a user; and pymoo's NSGA-III leaves all
     # warnings of the process switched off
     with warnings.catch_warnings(), np.errstate(all="ignore"), suppress(BudgetSpentError):
-        _set_up(chosen, MoveProblem(function), seed, **limits)
+        _set_up(chosen, PymooProblem(function), seed, **limits)
         for done, _ in enumerate(_generations(chosen, first), start=1):
             if report is not None:
                 report(_progress(function, done, generations))
-    return function.front(method, seed, {**limits, **own})
+    return function.front(method, seed, {**limits, **stated})
 
 
 def _profile_of(profile: object) -> JointProfile:
@@ -209,10 +216,17 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
     F = archive.non_dominated()[1]
     residual, energy = F.min(axis=0).tolist() if len(F) else (nan, nan)
     return SearchProgress(
-        done, max(generations, done), residual, energy, archive.share_of_box(),
-        archive.evaluations, archive.seconds, function.failed, function.infeasible,
+        done,
+        max(generations, done),
+        residual,
+        energy,
+        archive.share_of_box(),
+        archive.evaluations,
+        archive.seconds,
+        function.failed,
+        function.infeasible,
         function.task.plant.tip_unit,
-    )  # fmt: skip
+    )
 
 
 def _starts(front: Front, function: RecordedFunction) -> NDArray[np.float64]:
@@ -227,7 +241,7 @@ def _starts(front: Front, function: RecordedFunction) -> NDArray[np.float64]:
     return table
 
 
-def _known(
+def _of_preset(
     preset: Preset,
     task: PointToPoint,
     population: int | None,
@@ -241,32 +255,35 @@ def _known(
             "the limits out"
         )
     size = whole(
-        "population", preset.population if population is None else population, 2,
-        MOST_INDIVIDUALS, f"{MOST_INDIVIDUALS} take 1.6 GB of memory",
-    )  # fmt: skip
-    own = {"population": size, **preset.checked(size, settings)}
+        "population",
+        preset.population if population is None else population,
+        2,
+        MOST_INDIVIDUALS,
+        f"{MOST_INDIVIDUALS} take 1.6 GB of memory",
+    )
+    stated = {"population": size, **preset.checked(size, settings)}
     if evaluations is not None:
         preset.refuse_less_than_one(evaluations, size)
-    return preset.build(size, settings), own
+    return preset.build(size, settings), stated
 
 
-def _own(
+def _of_user(
     algorithm: Algorithm, population: int | None, settings: Mapping[str, object] | None
 ) -> tuple[Algorithm, dict[str, Any]]:
     """A copy of an algorithm that was given, and what it is set to."""
     from pymoo.core.algorithm import Algorithm as PymooAlgorithm
 
     from quietarm.metaheuristics.algorithms.algorithm_settings import settings_of
-    from quietarm.metaheuristics.algorithms.user_algorithm import own_algorithm
+    from quietarm.metaheuristics.algorithms.user_algorithm import copy_of_algorithm
 
-    given: Any = algorithm
-    if inspect.isclass(given):
-        raise ValueError(f"give an algorithm, as {given.__name__}(), not its class")
-    if not isinstance(given, PymooAlgorithm):
+    value: Any = algorithm
+    if inspect.isclass(value):
+        raise ValueError(f"give an algorithm, as {value.__name__}(), not its class")
+    if not isinstance(value, PymooAlgorithm):
         raise TypeError(
-            f"algorithm is {given!r}; give a name, as 'nsga2', or an algorithm of pymoo"
+            f"algorithm is {value!r}; give a name, as 'nsga2', or an algorithm of pymoo"
         )
-    chosen = own_algorithm(algorithm)
+    chosen = copy_of_algorithm(algorithm)
     for name, value in (("population", population), ("settings", settings)):
         if value:
             raise ValueError(f"{name} is set in the algorithm that you give, not beside it")

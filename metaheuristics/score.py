@@ -101,7 +101,7 @@ def igd_plus(scaled: Array, scale: Scale) -> float:
     return float(moocore.igd_plus(scaled, ref=scale.stations))
 
 
-def epsilon(scaled: Array, scale: Scale) -> float:
+def epsilon_indicator(scaled: Array, scale: Scale) -> float:
     """Least shift by which the points weakly dominate the stations."""
     return float(moocore.epsilon_additive(scaled, ref=scale.stations))
 
@@ -143,27 +143,39 @@ class Indicator:
 
 
 HYPERVOLUME = Indicator(
-    "hypervolume", "hypervolume", "%", True,
+    "hypervolume",
+    "hypervolume",
+    "%",
+    True,
     "area that a front dominates, as a share, up to a tenth of the reference front's extent beyond "
     "its ends",
-    hypervolume, ".4f",
-)  # fmt: skip
-INDICATORS: Mapping[str, Indicator] = MappingProxyType({
-    indicator.name: indicator
-    for indicator in (
-        HYPERVOLUME,
-        Indicator(
-            "igd_plus", "IGD+", "", False,
-            "mean distance by which the reference front is missed, in units of its extent",
-            igd_plus,
-        ),
-        Indicator(
-            "epsilon", "epsilon", "", False,
-            "additive epsilon, the worst miss of the reference front, in units of its extent",
-            epsilon,
-        ),
-    )
-})  # fmt: skip
+    hypervolume,
+    ".4f",
+)
+INDICATORS: Mapping[str, Indicator] = MappingProxyType(
+    {
+        indicator.name: indicator
+        for indicator in (
+            HYPERVOLUME,
+            Indicator(
+                "igd_plus",
+                "IGD+",
+                "",
+                False,
+                "mean distance by which the reference front is missed, in units of its extent",
+                igd_plus,
+            ),
+            Indicator(
+                "epsilon",
+                "additive epsilon",
+                "",
+                False,
+                "worst miss of the reference front, in units of its extent",
+                epsilon_indicator,
+            ),
+        )
+    }
+)
 """By name; every table, report and test has a column for each."""
 
 
@@ -217,7 +229,15 @@ def scores_on_the_way(front: Front, scale: Scale, indicator: Indicator = HYPERVO
     The last is of the front itself. An earlier file has the others as it states them; NaN where it
     does not.
     """
-    before = [_score_at(front, mark, scale, indicator) for mark in front.history[:-1]]
+    before = [
+        _score_at(
+            front,
+            mark,
+            scale,
+            indicator,
+        )
+        for mark in front.history[:-1]
+    ]
     return np.array([*before, scale.score(objectives(front), indicator)])
 
 

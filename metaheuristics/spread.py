@@ -33,8 +33,20 @@ class Spread:
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
         """The quartiles of so many seeds; infinite of none."""
-        known = np.where(np.isfinite(values), values, np.inf) if len(values) else [np.inf]
-        lower, upper = np.quantile(known, [0.25, 0.75], method="inverted_cdf").tolist()
+        known = (
+            np.where(
+                np.isfinite(values),
+                values,
+                np.inf,
+            )
+            if len(values)
+            else [np.inf]
+        )
+        lower, upper = np.quantile(
+            known,
+            [0.25, 0.75],
+            method="inverted_cdf",
+        ).tolist()
         count = int(np.isfinite(values).sum())
         return cls(lower, float(np.median(known)), upper, count, seeds=len(values))
 

@@ -17,20 +17,20 @@ _RENAMED = {"pop_size": "population", "n_offsprings": "offspring"}
 
 def settings_of(algorithm: Algorithm) -> dict[str, Any]:
     """The settings of an algorithm of one's own that was not run yet."""
-    own = getattr(algorithm, "settings", None)
-    if isinstance(own, Mapping):
-        return dict(own)
+    stated = getattr(algorithm, "settings", None)
+    if isinstance(stated, Mapping):
+        return dict(stated)
     base = vars(Algorithm()).keys()
     entries = {name: value for name, value in vars(algorithm).items() if name not in base}
     for holder in ("initialization", "mating"):
         entries = {**getattr(entries.get(holder), "__dict__", {}), **entries}
-    found: dict[str, Any] = {_RENAMED.get(name, name): value for name, value in _plain(entries)}
-    found.update((name, _named(entries[name])) for name in _OPERATORS if entries.get(name))
+    settings: dict[str, Any] = {_RENAMED.get(name, name): value for name, value in _plain(entries)}
+    settings.update((name, _named(entries[name])) for name in _OPERATORS if entries.get(name))
     directions = entries.get("ref_dirs")
     if isinstance(directions, np.ndarray):
         digest = hashlib.sha256(np.ascontiguousarray(directions, dtype=float).tobytes())
-        found["reference_directions"] = f"{len(directions)}, sha256 {digest.hexdigest()[:12]}"
-    return found
+        settings["reference_directions"] = f"{len(directions)}, sha256 {digest.hexdigest()[:12]}"
+    return settings
 
 
 def _plain(entries: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

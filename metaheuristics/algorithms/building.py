@@ -20,7 +20,11 @@ from quietarm.ocp.checks import install
 if TYPE_CHECKING:
     from quietarm.metaheuristics.algorithms.presets import Preset  # which loads this file late
 
-_OPERATORS: dict[str, Callable[..., Any]] = {"crossover": SBX, "mutation": PM, "rule": VelocityRule}
+_OPERATORS: dict[str, Callable[..., Any]] = {
+    "crossover": SBX,
+    "mutation": PM,
+    "rule": VelocityRule,
+}
 
 
 def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algorithm:
@@ -35,9 +39,9 @@ def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algor
     operators = dict[str, dict[str, Value]]()
     for setting in preset.settings:
         operator, dot, argument = setting.argument.partition(".")
-        own = operators.setdefault(operator, {}) if dot else arguments
-        own[argument if dot else operator] = values[setting.name]
-    arguments.update((name, _OPERATORS[name](**given)) for name, given in operators.items())
+        target = operators.setdefault(operator, {}) if dot else arguments
+        target[argument if dot else operator] = values[setting.name]
+    arguments.update((name, _OPERATORS[name](**options)) for name, options in operators.items())
     module, _, kind = preset.kind.partition(":")
     first = directions(population) if preset.by_directions else population
     return getattr(import_module(module), kind)(first, **arguments)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from numbers import Integral
 from typing import TYPE_CHECKING
 
-from quietarm.metaheuristics.algorithms.settings import Setting, Value, with_defaults
+from quietarm.metaheuristics.algorithms.settings import MethodSetting, Value, with_defaults
 from quietarm.ocp.checks import unknown
 
 if TYPE_CHECKING:
@@ -64,9 +64,9 @@ class Preset:
     most: int = 10_000
 
     @property
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[MethodSetting, ...]:
         """Its settings beside population and generations."""
-        return tuple(Setting.of(argument, value) for argument, value in self.defaults.items())
+        return tuple(MethodSetting.of(argument, value) for argument, value in self.defaults.items())
 
     def build(self, population: int, settings: Mapping[str, object] | None = None) -> Algorithm:
         """A new algorithm.
@@ -145,68 +145,219 @@ def _genetic(
 ) -> dict[str, Value]:
     """Simulated binary crossover and polynomial mutation."""
     return {
-        "crossover.prob": pairs, "crossover.prob_var": 0.5, "crossover.eta": eta,
-        "mutation.prob": children, "mutation.prob_var": gene, "mutation.eta": 20.0,
-    }  # fmt: skip
+        "crossover.prob": pairs,
+        "crossover.prob_var": 0.5,
+        "crossover.eta": eta,
+        "mutation.prob": children,
+        "mutation.prob_var": gene,
+        "mutation.eta": 20.0,
+    }
 
 
 def _differential(rate: float) -> dict[str, Value]:
     return {
-        "variant": "DE/rand/1/bin", "CR": rate, "F": None, "gamma": 1e-4,
+        "variant": "DE/rand/1/bin",
+        "CR": rate,
+        "F": None,
+        "gamma": 1e-4,
         "de_repair": "bounce-back",
-    }  # fmt: skip
+    }
 
 
-_PAIRS, _DIRECTIONS = _genetic(0.9, 15.0), _genetic(1.0, 30.0)
-_OURS, _PYMOO = "quietarm.metaheuristics.algorithms", "pymoo.algorithms.moo"
+_PAIRS = _genetic(0.9, 15.0)
+_DIRECTIONS = _genetic(1.0, 30.0)
+_OURS = "quietarm.metaheuristics.algorithms"
+_PYMOO = "pymoo.algorithms.moo"
 _DEB = "Deb, Pratap, Agarwal and Meyarivan 2002"
 
 _ALL = (
-    Preset("vepso", "VEPSO", "Parsopoulos and Vrahatis 2002", f"{_OURS}.vepso:VEPSO",
-           {"boundary": "clip", "velocity_limit": 1.0, "archive_size": None,
-            "rule.inertia_start": 1.0, "rule.inertia_end": 1.0, "rule.constriction": 0.729,
-            "rule.cognitive": 2.05, "rule.social": 2.05},
-           generations=200, swarms=2, most=100_000),
-    Preset("nsga2", "NSGA-II", _DEB, f"{_OURS}.nsga2:PaperNSGA2", _genetic(0.9, 15.0, 1.0),
-           most=100_000),
-    Preset("nsga2-paper", "NSGA-II (paper)", _DEB, f"{_OURS}.nsga2:PaperNSGA2",
-           _genetic(0.8, 15.0, 1.0, 0.01), population=200, generations=500, most=100_000),
-    Preset("nsga3", "NSGA-III", "Deb and Jain 2014", f"{_OURS}.pymoo_fixes:NSGA3", _DIRECTIONS,
-           by_directions=True),
-    Preset("unsga3", "U-NSGA-III", "Seada and Deb 2016", f"{_OURS}.pymoo_fixes:UNSGA3", _DIRECTIONS,
-           by_directions=True),
-    Preset("spea2", "SPEA2", "Zitzler, Laumanns and Thiele 2001", f"{_OURS}.pymoo_fixes:SPEA2",
-           {**_PAIRS, "normalize": True}, most=2_000),
-    Preset("smsemoa", "SMS-EMOA", "Beume, Naujoks and Emmerich 2007", f"{_PYMOO}.sms:SMSEMOA",
-           {**_PAIRS, "normalize": True}),
-    Preset("moead", "MOEA/D", "Zhang and Li 2007", f"{_PYMOO}.moead:ParallelMOEAD",
-           {**_genetic(1.0, 20.0), "n_neighbors": 20, "prob_neighbor_mating": 0.9},
-           by_directions=True, keeps_limits=False),
-    Preset("agemoea", "AGE-MOEA", "Panichella 2019", f"{_PYMOO}.age:AGEMOEA", _PAIRS,
-           needs="numba", most=5_000),
-    Preset("agemoea2", "AGE-MOEA-II", "Panichella 2022", f"{_PYMOO}.age2:AGEMOEA2", _PAIRS,
-           needs="numba", most=5_000),
-    Preset("rvea", "RVEA", "Cheng, Jin, Olhofer and Sendhoff 2016", f"{_PYMOO}.rvea:RVEA",
-           {**_DIRECTIONS, "alpha": 2.0, "adapt_freq": 0.1}, by_directions=True, most=5_000),
-    Preset("ctaea", "C-TAEA", "Li, Chen, Fu and Yao 2019", f"{_OURS}.pymoo_fixes:CTAEA", _DIRECTIONS,
-           by_directions=True, most=5_000),
-    Preset("mopso-cd", "MOPSO-CD", "Raquel and Naval 2005", f"{_OURS}.pymoo_fixes:MOPSO_CD",
-           {"w": 0.6, "c1": 2.0, "c2": 2.0, "max_velocity_rate": 0.5, "archive_size": 200}),
-    Preset("cmopso", "CMOPSO", "Zhang, Zheng, Cheng, Qiu and Jin 2018", f"{_OURS}.pymoo_fixes:CMOPSO",
-           {"elite_size": 10, "mutation_rate": 0.5, "max_velocity_rate": 0.2,
-            "initial_velocity": "random"}),
-    Preset("gde3", "GDE3", "Kukkonen and Lampinen 2005", f"{_PYMOO}.gde3:GDE3",
-           _differential(0.5)),
-    Preset("nsde", "NSDE", "Iorio and Li 2004", f"{_PYMOO}.nsde:NSDE", _differential(0.7)),
-    Preset("nsder", "NSDE-R", "Reddy and Dulikravich 2019", f"{_PYMOO}.nsder:NSDER",
-           _differential(0.7), by_directions=True),
-    Preset("omni", "Omni-Optimizer", "Deb and Tiwari 2008", f"{_PYMOO}.omni:OmniOptimizer",
-           {**_genetic(0.8, 20.0), "delta": 0.001, "obj_crowding": True, "var_crowding": True}),
-    Preset("random", "random search", "Bergstra and Bengio 2012",
-           f"{_OURS}.sampling:RandomSearch", most=100_000),
-    Preset("lhs", "latin hypercubes", "McKay, Beckman and Conover 1979",
-           f"{_OURS}.sampling:LatinHypercubes", most=2_000),
-)  # fmt: skip
+    Preset(
+        "vepso",
+        "VEPSO",
+        "Parsopoulos and Vrahatis 2002",
+        f"{_OURS}.vepso:VEPSO",
+        {
+            "boundary": "clip",
+            "velocity_limit": 1.0,
+            "archive_size": None,
+            "rule.inertia_start": 1.0,
+            "rule.inertia_end": 1.0,
+            "rule.constriction": 0.729,
+            "rule.cognitive": 2.05,
+            "rule.social": 2.05,
+        },
+        generations=200,
+        swarms=2,
+        most=100_000,
+    ),
+    Preset(
+        "nsga2",
+        "NSGA-II",
+        _DEB,
+        f"{_OURS}.nsga2:PaperNSGA2",
+        _genetic(0.9, 15.0, 1.0),
+        most=100_000,
+    ),
+    Preset(
+        "nsga2-paper",
+        "NSGA-II (paper)",
+        _DEB,
+        f"{_OURS}.nsga2:PaperNSGA2",
+        _genetic(0.8, 15.0, 1.0, 0.01),
+        population=200,
+        generations=500,
+        most=100_000,
+    ),
+    Preset(
+        "nsga3",
+        "NSGA-III",
+        "Deb and Jain 2014",
+        f"{_OURS}.pymoo_fixes:NSGA3",
+        _DIRECTIONS,
+        by_directions=True,
+    ),
+    Preset(
+        "unsga3",
+        "U-NSGA-III",
+        "Seada and Deb 2016",
+        f"{_OURS}.pymoo_fixes:UNSGA3",
+        _DIRECTIONS,
+        by_directions=True,
+    ),
+    Preset(
+        "spea2",
+        "SPEA2",
+        "Zitzler, Laumanns and Thiele 2001",
+        f"{_OURS}.pymoo_fixes:SPEA2",
+        {**_PAIRS, "normalize": True},
+        most=2_000,
+    ),
+    Preset(
+        "smsemoa",
+        "SMS-EMOA",
+        "Beume, Naujoks and Emmerich 2007",
+        f"{_PYMOO}.sms:SMSEMOA",
+        {**_PAIRS, "normalize": True},
+    ),
+    Preset(
+        "moead",
+        "MOEA/D",
+        "Zhang and Li 2007",
+        f"{_PYMOO}.moead:ParallelMOEAD",
+        {**_genetic(1.0, 20.0), "n_neighbors": 20, "prob_neighbor_mating": 0.9},
+        by_directions=True,
+        keeps_limits=False,
+    ),
+    Preset(
+        "agemoea",
+        "AGE-MOEA",
+        "Panichella 2019",
+        f"{_PYMOO}.age:AGEMOEA",
+        _PAIRS,
+        needs="numba",
+        most=5_000,
+    ),
+    Preset(
+        "agemoea2",
+        "AGE-MOEA-II",
+        "Panichella 2022",
+        f"{_PYMOO}.age2:AGEMOEA2",
+        _PAIRS,
+        needs="numba",
+        most=5_000,
+    ),
+    Preset(
+        "rvea",
+        "RVEA",
+        "Cheng, Jin, Olhofer and Sendhoff 2016",
+        f"{_PYMOO}.rvea:RVEA",
+        {**_DIRECTIONS, "alpha": 2.0, "adapt_freq": 0.1},
+        by_directions=True,
+        most=5_000,
+    ),
+    Preset(
+        "ctaea",
+        "C-TAEA",
+        "Li, Chen, Fu and Yao 2019",
+        f"{_OURS}.pymoo_fixes:CTAEA",
+        _DIRECTIONS,
+        by_directions=True,
+        most=5_000,
+    ),
+    Preset(
+        "mopso-cd",
+        "MOPSO-CD",
+        "Raquel and Naval 2005",
+        f"{_OURS}.pymoo_fixes:MOPSO_CD",
+        {
+            "w": 0.6,
+            "c1": 2.0,
+            "c2": 2.0,
+            "max_velocity_rate": 0.5,
+            "archive_size": 200,
+        },
+    ),
+    Preset(
+        "cmopso",
+        "CMOPSO",
+        "Zhang, Zheng, Cheng, Qiu and Jin 2018",
+        f"{_OURS}.pymoo_fixes:CMOPSO",
+        {
+            "elite_size": 10,
+            "mutation_rate": 0.5,
+            "max_velocity_rate": 0.2,
+            "initial_velocity": "random",
+        },
+    ),
+    Preset(
+        "gde3",
+        "GDE3",
+        "Kukkonen and Lampinen 2005",
+        f"{_PYMOO}.gde3:GDE3",
+        _differential(0.5),
+    ),
+    Preset(
+        "nsde",
+        "NSDE",
+        "Iorio and Li 2004",
+        f"{_PYMOO}.nsde:NSDE",
+        _differential(0.7),
+    ),
+    Preset(
+        "nsder",
+        "NSDE-R",
+        "Reddy and Dulikravich 2019",
+        f"{_PYMOO}.nsder:NSDER",
+        _differential(0.7),
+        by_directions=True,
+    ),
+    Preset(
+        "omni",
+        "Omni-Optimizer",
+        "Deb and Tiwari 2008",
+        f"{_PYMOO}.omni:OmniOptimizer",
+        {
+            **_genetic(0.8, 20.0),
+            "delta": 0.001,
+            "obj_crowding": True,
+            "var_crowding": True,
+        },
+    ),
+    Preset(
+        "random",
+        "random search",
+        "Bergstra and Bengio 2012",
+        f"{_OURS}.sampling:RandomSearch",
+        most=100_000,
+    ),
+    Preset(
+        "lhs",
+        "latin hypercubes",
+        "McKay, Beckman and Conover 1979",
+        f"{_OURS}.sampling:LatinHypercubes",
+        most=2_000,
+    ),
+)
 
 PRESETS: Mapping[str, Preset] = {preset.name: preset for preset in _ALL}
 """By name. Section 3.1 has 100 particles in a swarm, 200 iterations. Section 3.2 has population

@@ -31,12 +31,12 @@ def _difference(pop: Population, name: str, pairs: Winners) -> NDArray[np.float6
     return np.sign(values[:, 0] - values[:, 1])
 
 
-def by_violation(pop: Population, pairs: Winners, random_state: Any, **given: Any) -> Winners:
+def by_violation(pop: Population, pairs: Winners, random_state: Any, **options: Any) -> Winners:
     """The less infeasible of each pair; of two feasible or equal ones any."""
     return _decided(pairs, _difference(pop, "CV", pairs), random_state)
 
 
-def by_niche(pop: Population, pairs: Winners, random_state: Any, **given: Any) -> Winners:
+def by_niche(pop: Population, pairs: Winners, random_state: Any, **options: Any) -> Winners:
     """As `by_violation`; of two feasible ones of a niche the better in rank, then in distance."""
     decision = _difference(pop, "CV", pairs)
     feasible = np.asarray(pop.get("FEAS")).ravel()[pairs].all(axis=1)
@@ -53,37 +53,45 @@ def by_niche(pop: Population, pairs: Winners, random_state: Any, **given: Any) -
 class NSGA3(nsga3.NSGA3):
     """NSGA-III; pymoo's compares infeasible individuals with unseeded random numbers."""
 
-    def __init__(self, ref_dirs: NDArray[np.float64], **given: Any) -> None:
-        super().__init__(ref_dirs, selection=TournamentSelection(by_violation), **given)
+    def __init__(self, ref_dirs: NDArray[np.float64], **options: Any) -> None:
+        super().__init__(
+            ref_dirs,
+            selection=TournamentSelection(by_violation),
+            **options,
+        )
 
 
 class UNSGA3(unsga3.UNSGA3):
     """U-NSGA-III; pymoo's compares infeasible individuals with unseeded random numbers."""
 
-    def __init__(self, ref_dirs: NDArray[np.float64], **given: Any) -> None:
-        super().__init__(ref_dirs, selection=TournamentSelection(by_niche), **given)
+    def __init__(self, ref_dirs: NDArray[np.float64], **options: Any) -> None:
+        super().__init__(
+            ref_dirs,
+            selection=TournamentSelection(by_niche),
+            **options,
+        )
 
 
 class SPEA2(spea2.SPEA2):
     """SPEA2; pymoo's keeps the scale of one run for the next."""
 
-    def __init__(self, pop_size: int, normalize: bool, **given: Any) -> None:
+    def __init__(self, pop_size: int, normalize: bool, **options: Any) -> None:
         survival = spea2.SPEA2Survival(normalize=normalize)
-        super().__init__(pop_size, survival=survival, **given)
+        super().__init__(pop_size, survival=survival, **options)
 
 
 class CTAEA(ctaea.CTAEA):
     """C-TAEA, whose pairs have one child each."""
 
-    def __init__(self, ref_dirs: NDArray[np.float64], crossover: SBX, **given: Any) -> None:
+    def __init__(self, ref_dirs: NDArray[np.float64], crossover: SBX, **options: Any) -> None:
         crossover.n_offsprings = 1
-        super().__init__(ref_dirs, crossover=crossover, **given)
+        super().__init__(ref_dirs, crossover=crossover, **options)
 
 
 class MOPSO_CD(mopso_cd.MOPSO_CD):  # noqa: N801  # pymoo's name
     """MOPSO-CD; pymoo's evaluates a population at its start that it then throws away."""
 
-    def _setup(self, problem: Any, **given: Any) -> None:
+    def _setup(self, problem: Any, **options: Any) -> None:
         lower, upper = problem.bounds()
         self.v_max = self.max_velocity_rate * (upper - lower)
         self.archive: Any = MultiObjectiveArchive(max_size=self.archive_size)
@@ -106,6 +114,6 @@ class _SeededTruncation(Truncation):
 class CMOPSO(cmopso.CMOPSO):
     """CMOPSO; pymoo's thins its elites with unseeded random numbers."""
 
-    def _setup(self, problem: Any, **given: Any) -> None:
-        super()._setup(problem, **given)
+    def _setup(self, problem: Any, **options: Any) -> None:
+        super()._setup(problem, **options)
         self.elites.truncation = _SeededTruncation(self)

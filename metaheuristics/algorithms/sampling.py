@@ -25,7 +25,11 @@ class RandomSearch(Algorithm):
         self.sampling = FloatRandomSampling() if sampling is None else sampling
 
     def _infill(self) -> Population:
-        return self.sampling.do(self.problem, self.population, random_state=self.random_state)
+        return self.sampling.do(
+            self.problem,
+            self.population,
+            random_state=self.random_state,
+        )
 
     _initialize_infill = _infill
 

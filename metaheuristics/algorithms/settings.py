@@ -49,36 +49,60 @@ _positive_share = _number("a positive number up to 1", lambda number: 0 < number
 _scale = _number("a positive number up to 2", lambda number: 0 < number <= 2)
 # pymoo allows 1 to 100, both left out
 _index = _number("a number between 1 and 100", lambda number: 1 < number < 100)
-_variant = _one_of(*(
-    f"DE/{base}/{number}/{cross}"
-    for base in ("rand", "best", "current-to-best", "current-to-rand", "ranked")
-    for number in (1, 2) for cross in ("bin", "exp")
-))  # fmt: skip
+_variant = _one_of(
+    *(
+        f"DE/{base}/{number}/{cross}"
+        for base in ("rand", "best", "current-to-best", "current-to-rand", "ranked")
+        for number in (1, 2)
+        for cross in ("bin", "exp")
+    )
+)
 
 _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
     "crossover.prob": ("crossover", "share of the pairs that are crossed, by SBX", _share),
-    "crossover.prob_var": ("crossover_gene", "share of the coefficients that cross",
-                           _positive_share),
+    "crossover.prob_var": (
+        "crossover_gene",
+        "share of the coefficients that cross",
+        _positive_share,
+    ),
     "crossover.eta": ("crossover_eta", "how near to its parents a child is", _index),
     "mutation.prob": ("mutation", "share of the children that may mutate", _share),
-    "mutation.prob_var": ("mutation_gene", "share of the coefficients that mutate; 1 / their "
-                          "number, at most 0.5, where it is not set", _share),
+    "mutation.prob_var": (
+        "mutation_gene",
+        "share of the coefficients that mutate; 1 / their number, at most 0.5, where it is not set",
+        _share,
+    ),
     "mutation.eta": ("mutation_eta", "how small a mutation is", _index),
     "normalize": ("normalise", "scale the objectives to the population", _yes_or_no),
     "n_neighbors": ("neighbours", "nearest directions that take a child", _count(2)),
     "prob_neighbor_mating": ("neighbour_mating", "share of the pairs that come from these", _share),
     "alpha": ("alpha", "how fast the penalty of an angle grows", positive),
-    "adapt_freq": ("adaptation", "share of the generations between changes of the directions",
-                   _positive_share),
+    "adapt_freq": (
+        "adaptation",
+        "share of the generations between changes of the directions",
+        _positive_share,
+    ),
     "boundary": ("boundary", "what happens beyond the box", _one_of("clip", "reflect")),
-    "velocity_limit": ("velocity_limit", "largest velocity of a coefficient, as a share of its box",
-                       positive),
-    "max_velocity_rate": ("velocity_limit",
-                          "largest velocity of a coefficient, as a share of its box", positive),
-    "archive_size": ("archive_size", "most points of the front; all are kept where it is not set",
-                     _count(2)),
-    "rule.inertia_start": ("inertia", "share of its velocity that a particle keeps at first",
-                           not_negative),
+    "velocity_limit": (
+        "velocity_limit",
+        "largest velocity of a coefficient, as a share of its box",
+        positive,
+    ),
+    "max_velocity_rate": (
+        "velocity_limit",
+        "largest velocity of a coefficient, as a share of its box",
+        positive,
+    ),
+    "archive_size": (
+        "archive_size",
+        "most points of the front; all are kept where it is not set",
+        _count(2),
+    ),
+    "rule.inertia_start": (
+        "inertia",
+        "share of its velocity that a particle keeps at first",
+        not_negative,
+    ),
     "rule.inertia_end": ("last_inertia", "that share at the end", not_negative),
     "rule.constriction": ("constriction", "factor of every velocity", positive),
     "rule.cognitive": ("cognitive", "pull to its own best", not_negative),
@@ -93,18 +117,24 @@ _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
     "CR": ("crossover", "share of the coefficients that cross", _share),
     "F": ("scale", "factor of a difference; random from 0 to 1 where it is not set", _scale),
     "gamma": ("jitter", "how much the factor differs between coefficients", not_negative),
-    "de_repair": ("repair", "what happens beyond the box",
-                  _one_of("bounce-back", "midway", "rand-init", "to-bounds")),
-    "delta": ("delta", "difference that is too small to dominate, as a share of the range",
-              not_negative),
+    "de_repair": (
+        "repair",
+        "what happens beyond the box",
+        _one_of("bounce-back", "midway", "rand-init", "to-bounds"),
+    ),
+    "delta": (
+        "delta",
+        "difference that is too small to dominate, as a share of the range",
+        not_negative,
+    ),
     "obj_crowding": ("objective_crowding", "spread the objectives", _yes_or_no),
     "var_crowding": ("coefficient_crowding", "spread the coefficients", _yes_or_no),
-}  # fmt: skip
+}
 """By the algorithm's own argument; ``crossover.eta`` is the crossover operator's ``eta``."""
 
 
 @dataclass(frozen=True)
-class Setting:
+class MethodSetting:
     """A setting of a method; None as its default leaves it to the algorithm."""
 
     name: str
@@ -114,21 +144,21 @@ class Setting:
     check: Check
 
     @classmethod
-    def of(cls, argument: str, default: Value) -> Setting:
+    def of(cls, argument: str, default: Value) -> MethodSetting:
         """The setting of an argument."""
         name, meaning, check = _ARGUMENTS[argument]
         return cls(name, argument, default, meaning, check)
 
 
 def with_defaults(
-    method: str, known: tuple[Setting, ...], given: Mapping[str, object]
+    method: str, known: tuple[MethodSetting, ...], settings: Mapping[str, object]
 ) -> dict[str, Value]:
     """All settings of a method: those that are given, each checked, and the defaults."""
     entries = {setting.name: setting for setting in known}
-    for name in given:
+    for name in settings:
         if name not in entries:
             raise ValueError(has_no(method, "setting", str(name), entries))
     return {
-        name: setting.check(name, given[name]) if name in given else setting.default
+        name: setting.check(name, settings[name]) if name in settings else setting.default
         for name, setting in entries.items()
     }

@@ -7,7 +7,7 @@ import copy
 from pymoo.core.algorithm import Algorithm
 
 
-def own_algorithm(algorithm: Algorithm) -> Algorithm:
+def copy_of_algorithm(algorithm: Algorithm) -> Algorithm:
     """A copy to run, so that the one given stays as it is."""
     name = type(algorithm).__name__
     # pymoo says nowhere else how many objectives an algorithm is for, and some would run on

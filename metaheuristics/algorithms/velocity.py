@@ -43,7 +43,13 @@ class VelocityRule:
 
 INERTIA_2002 = VelocityRule(1.0, 0.4, 1.0, 0.5, 0.5)  # [1]; needs the number of iterations
 CONSTRICTION = VelocityRule(1.0, 1.0, 0.729, 2.05, 2.05)  # [2]
-PAPER_GROUP = VelocityRule(1.0, 1.0, 0.73, 2.05, 2.05)  # stated elsewhere by the paper's group
+PAPER_GROUP = VelocityRule(
+    1.0,
+    1.0,
+    0.73,
+    2.05,
+    2.05,
+)  # stated elsewhere by the paper's group
 
 
 def clip(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
@@ -54,7 +60,11 @@ def clip(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
 
 def reflect(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
     """Mirror each coordinate that leaves the box at its bound, with its velocity reversed."""
-    mirrored = np.where(x < lower, 2 * lower - x, np.where(x > upper, 2 * upper - x, x))
+    mirrored = np.where(
+        x < lower,
+        2 * lower - x,
+        np.where(x > upper, 2 * upper - x, x),
+    )
     # a jump of more than the box would leave it on the other side
     return np.clip(mirrored, lower, upper), np.where(mirrored == x, v, -v)
 

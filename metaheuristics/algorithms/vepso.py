@@ -41,10 +41,10 @@ def least_crowded(F: Array, size: int) -> Array:
 
     One at a time: dropping a whole cluster at once would leave a hole in the front.
     """
-    kept = np.arange(len(F))
-    while len(kept) > size:
-        kept = np.delete(kept, np.argmin(calc_crowding_distance(F[kept])))
-    return kept
+    rows = np.arange(len(F))
+    while len(rows) > size:
+        rows = np.delete(rows, np.argmin(calc_crowding_distance(F[rows])))
+    return rows
 
 
 class VEPSO(Algorithm):
@@ -106,12 +106,14 @@ class VEPSO(Algorithm):
         options.setdefault("output", MultiObjectiveOutput())
         super().__init__(**options)
         self.particles = whole("particles", particles, 2)
-        self.archive_size, self.iterations = archive_size, iterations
+        self.archive_size = archive_size
+        self.iterations = iterations
         if archive_size is not None:
             self.archive_size = whole("archive_size", archive_size, 2)
         if iterations is not None:
             self.iterations = whole("iterations", iterations, 1)
-        self.rule, self.boundary = rule, boundary
+        self.rule = rule
+        self.boundary = boundary
         self.velocity_limit = positive("velocity_limit", velocity_limit)
         self.sampling = FloatRandomSampling() if sampling is None else sampling
         if boundary not in tuple(BOUNDARIES):
@@ -120,9 +122,18 @@ class VEPSO(Algorithm):
     def _setup(self, problem: Any, **kwargs: Any) -> None:
         if not (problem.has_bounds() and np.isfinite([problem.xl, problem.xu]).all()):
             raise ValueError("the problem has no finite bounds; give its xl and xu")
-        self.lower, self.upper = problem.xl, problem.xu
+        self.lower = problem.xl
+        self.upper = problem.xu
         self.limit = self.velocity_limit * (self.upper - self.lower)
-        self.horizon = self.iterations or getattr(self.termination, "n_max_gen", None) or math.inf
+        self.horizon = (
+            self.iterations
+            or getattr(
+                self.termination,
+                "n_max_gen",
+                None,
+            )
+            or math.inf
+        )
         if self.rule.inertia_start != self.rule.inertia_end and self.horizon == math.inf:
             raise ValueError(
                 "the inertia changes until the last iteration, which is not known; give iterations "
@@ -133,31 +144,42 @@ class VEPSO(Algorithm):
         # row s: swarm s, the next one in the ring, the one after it, ...
         self.ring = (np.arange(swarms)[:, None] + np.arange(swarms)) % swarms
         self.iteration = 0  # completed ones; unlike n_iter also right in a callback
-        self.velocities, self.best_X = np.zeros(self.shape), np.zeros(self.shape)
+        self.velocities = np.zeros(self.shape)
+        self.best_X = np.zeros(self.shape)
         # violation, then the objectives in the order of the ring; infinite: none found yet
         self.best_merit = np.full((swarms, self.particles, 1 + swarms), np.inf)
         self.swarm_best = np.zeros(swarms, dtype=int)
-        self.external_archive, self.archive_F = Population.empty(), np.empty((0, swarms))
+        self.external_archive = Population.empty()
+        self.archive_F = np.empty((0, swarms))
 
     def _initialize_infill(self) -> Population:
         rows = (self.shape[0] * self.particles, self.shape[2])
         sampling = Initialization(self.sampling)
-        X = sampling.do(self.problem, rows[0], random_state=self.random_state).get("X")
+        X = sampling.do(
+            self.problem,
+            rows[0],
+            random_state=self.random_state,
+        ).get("X")
         if X.shape != rows or not ((self.lower <= X) & (self.upper >= X)).all():
             raise ValueError(f"sampling gives shape {X.shape}; give {rows}, within the bounds")
         # halfway towards a second random point: moving, but not all out of the box at once
         goal = self.random_state.uniform(self.lower, self.upper, self.shape)
-        self.moved = np.clip(0.5 * (goal - X.reshape(self.shape)), -self.limit, self.limit)
+        self.moved = np.clip(
+            0.5 * (goal - X.reshape(self.shape)),
+            -self.limit,
+            self.limit,
+        )
         return Population.new(X=X.astype(float))  # new, so that none counts as evaluated already
 
     def _infill(self) -> Population:
-        rule, x = self.rule, self.pop.get("X").reshape(self.shape)
+        rule = self.rule
+        x = self.pop.get("X").reshape(self.shape)
         passed = min((self.iteration - 1) / max(self.horizon - 2, 1), 1.0)
         inertia = rule.inertia_start + (rule.inertia_end - rule.inertia_start) * passed
         next_swarm = self.ring[:, 1 % len(self.ring)]
         best = (next_swarm, self.swarm_best[next_swarm])
-        found = np.isfinite(self.best_merit[best][:, None, :1])  # else it draws nobody
-        next_best = np.where(found, self.best_X[best][:, None], x)
+        has_best = np.isfinite(self.best_merit[best][:, None, :1])  # else it draws nobody
+        next_best = np.where(has_best, self.best_X[best][:, None], x)
         r1, r2 = self.random_state.random((2, *self.shape))
         pull = rule.cognitive * r1 * (self.best_X - x) + rule.social * r2 * (next_best - x)
         v = rule.constriction * (inertia * self.velocities + pull)
@@ -168,13 +190,32 @@ class VEPSO(Algorithm):
     def _advance(self, infills: Any = None, **kwargs: Any) -> None:
         swarms, particles, _ = self.shape
         X, F = infills.get("X", "F")
-        self.pop, self.velocities = infills, self.moved
+        self.pop = infills
+        self.velocities = self.moved
         violation = _violations(infills, F)
-        merit = np.take_along_axis(F.reshape(swarms, particles, -1), self.ring[:, None], axis=2)
-        merit = np.concatenate([violation.reshape(swarms, particles, 1), merit], axis=2)
+        merit = np.take_along_axis(
+            F.reshape(swarms, particles, -1),
+            self.ring[:, None],
+            axis=2,
+        )
+        merit = np.concatenate(
+            [
+                violation.reshape(
+                    swarms,
+                    particles,
+                    1,
+                ),
+                merit,
+            ],
+            axis=2,
+        )
         merit[np.isinf(merit[..., 0])] = np.inf
         first_difference = (merit != self.best_merit).argmax(axis=2, keepdims=True)
-        better = np.take_along_axis(merit < self.best_merit, first_difference, axis=2)
+        better = np.take_along_axis(
+            merit < self.best_merit,
+            first_difference,
+            axis=2,
+        )
         self.best_merit = np.where(better, merit, self.best_merit)
         # a particle that found nothing usable yet is its own best, which does not pull
         better |= np.isinf(self.best_merit[..., :1])
@@ -182,10 +223,11 @@ class VEPSO(Algorithm):
         self.swarm_best = np.lexsort(np.moveaxis(self.best_merit, 2, 0)[::-1])[:, 0]
         front: Any = Population.merge(self.external_archive, infills[violation == 0])
         F = np.concatenate([self.archive_F, F[violation == 0]])
-        kept = np.flatnonzero(moocore.is_nondominated(F))
+        rows = np.flatnonzero(moocore.is_nondominated(F))
         if self.archive_size is not None:
-            kept = kept[least_crowded(F[kept], self.archive_size)]
-        self.external_archive, self.archive_F = front[kept], F[kept]
+            rows = rows[least_crowded(F[rows], self.archive_size)]
+        self.external_archive = front[rows]
+        self.archive_F = F[rows]
         self.iteration += 1
 
     _initialize_advance = _advance

@@ -9,8 +9,8 @@ from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
 from quietarm.ocp.simulation.mesh import default_steps
 
-CANDIDATE_STEPS, _STEPS_A_TERM, _WITH_LIMITS = 24, 4, 64
-"""Steps of every search: the least, those for each coefficient, and the least with limits."""
+CANDIDATE_STEPS = 24
+"""Least steps of every search."""
 ACCURACY = 5e-4
 """Residuals and energies of random candidates in the boxes of all named problems are within this
 share of those of much finer steps; docs/measures.md has what was measured."""
@@ -20,9 +20,12 @@ it: it comes last."""
 
 
 def search_steps(task: PointToPoint, profile: JointProfile) -> int:
-    """Steps at which every search sees a move, whether it runs here or in another library."""
-    least = max(_WITH_LIMITS if task.limits else CANDIDATE_STEPS, _STEPS_A_TERM * profile.size)
-    return default_steps(task, least=least)
+    """Steps at which every search sees a move, whether it runs here or in another library.
+
+    Four for each coefficient, and at least `CANDIDATE_STEPS`, or 64 with limits.
+    """
+    least = 64 if task.limits else CANDIDATE_STEPS
+    return default_steps(task, least=max(least, 4 * profile.size))
 
 
 def search_evaluator(

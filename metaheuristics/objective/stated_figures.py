@@ -77,7 +77,11 @@ def _check_entries(front: Front) -> None:
     _check_box(front, table)
     for i, figures, _ in _evaluated_again(front, table):
         which = f"candidate {entries.candidates[i]}"
-        _refuse_other_figures(which, (entries.residuals[i], entries.energies[i]), figures)
+        _refuse_other_figures(
+            which,
+            (entries.residuals[i], entries.energies[i]),
+            figures,
+        )
 
 
 def _evaluated_again(front: Front, table: Array) -> Iterator[tuple[int, Array, Array]]:
@@ -85,7 +89,15 @@ def _evaluated_again(front: Front, table: Array) -> Iterator[tuple[int, Array, A
     count = len(table)
     if not count:
         return
-    places = np.unique(np.linspace(0, count - 1, min(count, _SAMPLE)).round().astype(int))
+    places = np.unique(
+        np.linspace(
+            0,
+            count - 1,
+            min(count, _SAMPLE),
+        )
+        .round()
+        .astype(int)
+    )
     with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused
         evaluation = Evaluator(front.task, front.profile)(table[places])
         figures = objectives_of(evaluation)
@@ -131,15 +143,16 @@ def _check_worst(plan: Plan, name: str) -> None:
     """Find the worst case of a plan for an uncertain plant again, and compare."""
     if plan.worst is None:
         return
-    found, stated = worst_of(plan.candidate), plan.worst.residual
-    if found is None or list(found.errors) != list(plan.worst.errors):
+    worst = worst_of(plan.candidate)
+    stated = plan.worst.residual
+    if worst is None or list(worst.errors) != list(plan.worst.errors):
         what = ", ".join(plan.worst.errors) or "none"
         raise ValueError(
             f"{name} states a worst case with errors of {what}, which its plant does not have; "
             "find the plan again"
         )
     there = plan.candidate.perturbed(plan.worst.errors)
-    for gives, words in (found.residual, ""), (there.residual, " with these errors"):
+    for gives, words in (worst.residual, ""), (there.residual, " with these errors"):
         if not agrees(stated, gives, REST):
             raise ValueError(
                 f"{name} states a worst-case residual of {stated:.4g} m, but its coefficients "

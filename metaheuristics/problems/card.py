@@ -65,7 +65,8 @@ def _hull(points: np.ndarray) -> list[int]:
     hull: list[int] = []
     for k, point in enumerate(points):
         while len(hull) > 1:
-            a, b = points[hull[-2]], points[hull[-1]]
+            a = points[hull[-2]]
+            b = points[hull[-1]]
             if (b[0] - a[0]) * (point[1] - a[1]) > (point[0] - a[0]) * (b[1] - a[1]):
                 break
             hull.pop()

@@ -32,7 +32,7 @@ from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.window import EQ_11
 
 if TYPE_CHECKING:
-    from quietarm.metaheuristics.problems.pymoo_problem import MoveProblem
+    from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
     from quietarm.metaheuristics.score import Reference
 
@@ -40,9 +40,6 @@ FRONTS = Path(__file__).parent / "fronts"
 """The reference fronts, in a folder for each plant, where a problem with several has one of its
 own."""
 _FILE_NAME = re.compile(r"[^\W_][\w .+=-]*")
-_POINTS, _STARTS, _LIMITED_STEPS = 300, 12, 192
-"""Of a reference front that is found when it is first asked for: points, starts of its ends, and
-steps with limits, as a peak between coarser ones costs up to 3e-4."""
 
 
 @dataclass(frozen=True)
@@ -65,9 +62,8 @@ class NamedProblem:
         Limits on that peak under which the reference fronts of the other two were found.
     version : int
         Of move, profile, box and front; a change of any of them is another version.
-    given : Front, optional
-        The reference front; of a problem of your own it is found by the gradient where none is
-        given.
+    reference_front : Front, optional
+        Of a problem of your own; where there is none, the gradient finds it.
     """
 
     name: str
@@ -77,7 +73,7 @@ class NamedProblem:
     peak: str = ""
     peaks: tuple[float, ...] = ()
     version: int = 1
-    given: Front | None = field(default=None, compare=False)
+    reference_front: Front | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if not _FILE_NAME.fullmatch(self.name):
@@ -98,7 +94,7 @@ class NamedProblem:
             raise ValueError(f"{name} states no bound; give a front that was found within one")
         if len(front.points) < 2:
             raise ValueError(f"{name} has {len(front.points)} points; give two or more")
-        return cls(name, front.task, front.profile, bound, given=front)
+        return cls(name, front.task, front.profile, bound, reference_front=front)
 
     def __reduce__(self) -> Any:
         """By its name where that says all."""
@@ -109,13 +105,19 @@ class NamedProblem:
     def function(self, **settings: Any) -> MoveFunction:
         """The problem as a function of arrays; settings of `MoveFunction`: steps and threads."""
         peaks = (self.peak,) if self.peak else ()
-        return MoveFunction(self.task, self.profile, bound=self.bound, peaks=peaks, **settings)
+        return MoveFunction(
+            self.task,
+            self.profile,
+            bound=self.bound,
+            peaks=peaks,
+            **settings,
+        )
 
-    def pymoo(self, **settings: Any) -> MoveProblem:
+    def pymoo(self, **settings: Any) -> PymooProblem:
         """The problem for pymoo, with its reference front; settings as for `function`."""
-        from quietarm.metaheuristics.problems.pymoo_problem import MoveProblem
+        from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem
 
-        return MoveProblem(self.function(**settings), *self.optimum())
+        return PymooProblem(self.function(**settings), *self.optimum())
 
     def tasks(self) -> dict[str, PointToPoint]:
         """The tasks of the reference fronts by the names of their files.
@@ -125,18 +127,19 @@ class NamedProblem:
         if not self.peak:
             return {self.name: self.task}
         limit = f"{self.peak}_limit"
-        limited: Any = [(most, {limit: most}) for most in self.peaks]
-        return {f"{self.name}-{most:g}": replace(self.task, **given) for most, given in limited}
+        limits: Any = {most: {limit: most} for most in self.peaks}
+        return {f"{self.name}-{most:g}": replace(self.task, **limits[most]) for most in limits}
 
     def fronts(self) -> tuple[Front, ...]:
         """The reference fronts: one, or for a third objective one for each limit."""
-        if self.given is not None:
-            return (self.given,)
+        if self.reference_front is not None:
+            return (self.reference_front,)
         return tuple(
-            _loaded(self._folder / f"{name}.json") if self.named
-            else found_front(task, self.profile, self.bound)
+            _loaded(self._folder / f"{name}.json")
+            if self.named
+            else front_by_gradient(task, self.profile, self.bound)
             for name, task in self.tasks().items()
-        )  # fmt: skip
+        )
 
     def reference(self) -> Reference:
         """The reference front as a scale; ValueError where there is a third objective."""
@@ -150,7 +153,7 @@ class NamedProblem:
     @property
     def named(self) -> bool:
         """Whether it is one of `PROBLEMS`."""
-        return self.given is None and PROBLEMS.get(self.name) == self
+        return self.reference_front is None and PROBLEMS.get(self.name) == self
 
     def recorded(self, budget: float = inf) -> RecordedFunction:
         """The problem as a function of arrays that records its candidates, up to a budget.
@@ -186,8 +189,8 @@ class NamedProblem:
         if self.peak:
             objectives, _ = self.function()(X)
             F = np.column_stack([F, objectives[:, 2:]])
-        kept = moocore.is_nondominated(F)
-        return X[kept], F[kept]
+        rows = moocore.is_nondominated(F)
+        return X[rows], F[rows]
 
 
 @cache
@@ -203,12 +206,17 @@ def _scale(front: Front) -> Reference:
 
 
 @lru_cache(maxsize=64)
-def found_front(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
+def front_by_gradient(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
     """A reference front by the gradient; on six named problems within 1.4e-5 of the hypervolume."""
     return epsilon_front(
-        task, profile, bound=bound, points=_POINTS, at=LEVELS, starts=_STARTS,
-        steps=_LIMITED_STEPS if task.limits else None,
-    )  # fmt: skip
+        task,
+        profile,
+        bound=bound,
+        points=300,
+        at=LEVELS,
+        starts=12,  # of its ends
+        steps=192 if task.limits else None,  # a peak between coarser ones costs up to 3e-4
+    )
 
 
 def problem_of(name: str) -> NamedProblem:
@@ -218,8 +226,11 @@ def problem_of(name: str) -> NamedProblem:
     return PROBLEMS[name]
 
 
-_LINK, _ARM, _DUAL = SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()
-_LINK_BOX, _ARM_BOX = 0.2, 0.5  # eqs (12) and (17)
+_LINK = SingleLinkManipulator()
+_ARM = ArmOnFlexibleLink()
+_DUAL = DualLinkManipulator()
+_LINK_BOX = 0.2  # eq (12)
+_ARM_BOX = 0.5  # eq (17)
 _ROBUST_BOX = 0.5
 """In the paper's box every motion has more than 17 mm with frequency errors of 10 %."""
 
@@ -234,9 +245,16 @@ _ARM_HALF = _task(_ARM, pi / 2, 0.8)
 
 
 def _problem(
-    name: str, task: PointToPoint, bound: float, terms: int = 6, **others: Any
+    name: str, task: PointToPoint, bound: float, terms: int = 6, **options: Any
 ) -> NamedProblem:
-    return NamedProblem(name, task, CycloidPolynomial(terms), bound, version=2, **others)
+    return NamedProblem(
+        name,
+        task,
+        CycloidPolynomial(terms),
+        bound,
+        version=2,
+        **options,
+    )
 
 
 _ALL = (
@@ -245,10 +263,14 @@ _ALL = (
     _problem("single-link-90deg-1.1s", _task(_LINK, pi / 2, 1.1), _LINK_BOX),
     _problem("arm-on-flexible-link-90deg-0.8s", _ARM_HALF, _ARM_BOX),
     _problem(
-        "arm-on-flexible-link-135deg-1s", _task(_ARM, pi / 4, 1.0, -pi / 2), _ARM_BOX
+        "arm-on-flexible-link-135deg-1s",
+        _task(_ARM, pi / 4, 1.0, -pi / 2),
+        _ARM_BOX,
     ),
     _problem(
-        "arm-on-flexible-link-180deg-1.2s", _task(_ARM, pi / 2, 1.2, -pi / 2), _ARM_BOX
+        "arm-on-flexible-link-180deg-1.2s",
+        _task(_ARM, pi / 2, 1.2, -pi / 2),
+        _ARM_BOX,
     ),
     _problem("dual-link-90deg-0.9s", _task(_DUAL, pi / 2, 0.9), _ARM_BOX),
     _problem("single-link-30deg-0.8s-2-terms", _LINK_SIXTH, _LINK_BOX, 2),
@@ -259,7 +281,12 @@ _ALL = (
     _problem("arm-on-flexible-link-90deg-0.8s-12-terms", _ARM_HALF, _ARM_BOX, 12),
     _problem(
         "single-link-30deg-0.8s-limits",
-        replace(_LINK_SIXTH, torque_limit=0.16, speed_limit=0.99, deflection_limit=0.03),
+        replace(
+            _LINK_SIXTH,
+            torque_limit=0.16,
+            speed_limit=0.99,
+            deflection_limit=0.03,
+        ),
         _LINK_BOX,
     ),
     _problem(
@@ -268,15 +295,18 @@ _ALL = (
         _ARM_BOX,
     ),
     _problem(
-        "single-link-30deg-0.8s-torque", _LINK_SIXTH, _LINK_BOX,
-        peak="torque", peaks=(0.1, 0.115, 0.13, 0.145, 0.16, 0.18),
+        "single-link-30deg-0.8s-torque",
+        _LINK_SIXTH,
+        _LINK_BOX,
+        peak="torque",
+        peaks=(0.1, 0.115, 0.13, 0.145, 0.16, 0.18),
     ),
     _problem(
         "single-link-30deg-0.8s-robust",
         replace(_LINK_SIXTH, uncertainty=Uncertainty({"frequency": 0.1})),
         _ROBUST_BOX,
     ),
-)  # fmt: skip
+)
 
 PROBLEMS: Mapping[str, NamedProblem] = MappingProxyType({problem.name: problem for problem in _ALL})
 """By name, of plant, angle and duration; six terms and no limits where nothing else is said."""

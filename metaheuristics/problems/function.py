@@ -75,7 +75,9 @@ class MoveFunction:
             raise ValueError("give a bound on the coefficients: the box that is searched")
         bound = coefficient_bound(bound)
         profile.refuse_no_choice()
-        self.task, self.profile, self.bound = task, profile, bound
+        self.task = task
+        self.profile = profile
+        self.bound = bound
         for name in peaks:
             if name not in QUANTITIES:
                 raise ValueError(unknown("quantity", name, QUANTITIES))

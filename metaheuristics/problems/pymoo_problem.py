@@ -12,7 +12,7 @@ from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.ocp.checks import whole
 
 
-class MoveProblem(Problem):
+class PymooProblem(Problem):
     """A move for any algorithm or indicator of pymoo.
 
     ``pareto_front()`` and ``pareto_set()`` give the reference front where one is known, else None.
@@ -40,7 +40,9 @@ class MoveProblem(Problem):
             xl=function.lower,
             xu=function.upper,
         )
-        self.function, self._set, self._front = function, pareto_set, pareto_front
+        self.function = function
+        self._set = pareto_set
+        self._front = pareto_front
 
     def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
         out["F"], violations = self.function(x)
@@ -62,5 +64,11 @@ def _evenly(rows: NDArray[np.float64] | None, count: int | None) -> NDArray[np.f
     """So many rows at even distances in their order; all where no number is given."""
     if rows is None or count is None:
         return rows
-    count = whole("n_points", count, 2, len(rows), "the reference front has no more")
+    count = whole(
+        "n_points",
+        count,
+        2,
+        len(rows),
+        "the reference front has no more",
+    )
     return rows[np.linspace(0, len(rows) - 1, count).round().astype(int)]

@@ -16,7 +16,7 @@ from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import table_of, takes, whole
 from quietarm.ocp.front.points import beyond
-from quietarm.ocp.record import Setting
+from quietarm.ocp.record import Record, Setting
 
 Array = NDArray[np.float64]
 
@@ -60,7 +60,8 @@ class RecordedFunction(MoveFunction):
         self.budget = budget if budget == inf else whole("budget", budget, 1)
         self.problem = problem
         self.archive = Archive(task, len(self.variables))
-        self.failed, self.infeasible = 0, 0
+        self.failed = 0
+        self.infeasible = 0
 
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
         """Evaluate candidates, as `MoveFunction` does, and keep them.
@@ -74,17 +75,22 @@ class RecordedFunction(MoveFunction):
                 f"{table[row, column]:.4g}, not from {self.lower[column]:.4g} to "
                 f"{self.upper[column]:.4g}; clip candidates to the function's lower and upper"
             )
-        left = self.budget - self.archive.evaluations
-        afforded = np.clip(table, self.lower, self.upper)[: int(min(left, len(table)))]
-        found, violations = super().__call__(afforded)
-        failed, broken = (found >= UNUSABLE).any(axis=1), (violations > 0).any(axis=1)
+        remaining = self.budget - self.archive.evaluations
+        afforded = np.clip(
+            table,
+            self.lower,
+            self.upper,
+        )[: int(min(remaining, len(table)))]
+        objectives, violations = super().__call__(afforded)
+        failed = (objectives >= UNUSABLE).any(axis=1)
+        broken = (violations > 0).any(axis=1)
         self.failed += int(failed.sum())
         self.infeasible += int((broken & ~failed).sum())
         if len(afforded):
-            self.archive.add(afforded, found, np.logical_not(failed | broken))
+            self.archive.add(afforded, objectives, np.logical_not(failed | broken))
         if len(afforded) < len(table):
             raise BudgetSpentError
-        return found, violations
+        return objectives, violations
 
     def front(
         self, method: str, seed: int | None = None, settings: Mapping[str, Setting] | None = None
@@ -97,9 +103,11 @@ class RecordedFunction(MoveFunction):
         if self.problem:
             stated["problem"] = self.problem
         return self.archive.front(
-            self.task, self.profile, method=method, settings=stated, bound=self.bound, seed=seed,
-            failed=self.failed, infeasible=self.infeasible,
-        )  # fmt: skip
+            self.profile,
+            Record(method, stated, self.bound, seed),
+            failed=self.failed,
+            infeasible=self.infeasible,
+        )
 
     def save(self, path: str | Path, method: str, seed: int | None = None) -> None:
         """Write the run as a file for ``quietarm bench --import``; arguments as for `front`."""

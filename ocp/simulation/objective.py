@@ -161,7 +161,7 @@ class Motion(Ranged):
 
     def states(self, name: str) -> bool:
         """Whether the peak of a quantity is stated: an older file has none of a newer one."""
-        return name in self.ranges or f"peak_{name}" in PEAKS
+        return name in self.ranges or getattr(self, f"peak_{name}", None) is not None
 
     def peak(self, name: str) -> float:
         """The residual, or the peak of a quantity, by name: infinite where it is not known."""

@@ -36,12 +36,18 @@ def curves_figure(results: Results, by: str = "seconds") -> Figure:
                 continue
             at, missing = results.missing(problem.name, method, by)
             median = np.median(missing, axis=0)
-            own, few = look(number), len(at) <= len(missing)  # it ends by itself: a point a run
+            own = look(number)
+            few = len(at) <= len(missing)  # it ends by itself: a point a run
             ax.plot(
-                at, 100 * np.maximum(median, _LEAST), drawstyle="steps-post", color=own.colour,
-                linestyle=own.dash, marker="o" if few else "", markersize=4,
+                at,
+                100 * np.maximum(median, _LEAST),
+                drawstyle="steps-post",
+                color=own.colour,
+                linestyle=own.dash,
+                marker="o" if few else "",
+                markersize=4,
                 label=bench_label(method),
-            )  # fmt: skip
+            )
             costs += at.tolist()
         logarithmic(ax, costs)
         logarithmic(ax, [_LEAST, 1.0], "y")
@@ -64,26 +70,58 @@ def profiles_figure(results: Results) -> Figure:
     The band is an interval of 95 %: runs of every problem drawn again with replacement.
     """
     figure = new_figure(7.2, 4.4)
-    ax, random = figure.subplots(), np.random.default_rng(0)
+    ax = figure.subplots()
+    random = np.random.default_rng(0)
     every = [run.history.seconds for run in results.runs]
     costs = np.concatenate(every)
     places = np.geomspace(costs[costs > 0].min(), costs.max(), 200)
     for number, method in enumerate(results.methods):
         # of each problem, how many of a run's targets were reached by then: (runs, places)
         reached = [
-            np.array([np.searchsorted(np.sort(hits), places, side="right") for hits in
-                      results.hits(problem.name, method, _PROFILE.tolist())])
-            for problem in results.problems if results.of(problem.name, method)
-        ]  # fmt: skip
+            np.array(
+                [
+                    np.searchsorted(np.sort(hits), places, side="right")
+                    for hits in results.hits(
+                        problem.name,
+                        method,
+                        _PROFILE.tolist(),
+                    )
+                ]
+            )
+            for problem in results.problems
+            if results.of(problem.name, method)
+        ]
         total = len(_PROFILE) * sum(map(len, reached))
         drawn = [
-            sum(own[random.integers(0, len(own), len(own))].sum(axis=0) for own in reached) / total
+            sum(
+                own[
+                    random.integers(
+                        0,
+                        len(own),
+                        len(own),
+                    )
+                ].sum(axis=0)
+                for own in reached
+            )
+            / total
             for _ in range(_BANDS)
         ]
-        share, own = sum(own.sum(axis=0) for own in reached) / total, look(number)
-        ax.plot(places, share, color=own.colour, linestyle=own.dash, label=bench_label(method))
-        ax.fill_between(places, *np.quantile(drawn, _INTERVAL, axis=0), color=own.colour,
-                        alpha=0.12, linewidth=0)  # fmt: skip
+        share = sum(own.sum(axis=0) for own in reached) / total
+        own = look(number)
+        ax.plot(
+            places,
+            share,
+            color=own.colour,
+            linestyle=own.dash,
+            label=bench_label(method),
+        )
+        ax.fill_between(
+            places,
+            *np.quantile(drawn, _INTERVAL, axis=0),
+            color=own.colour,
+            alpha=0.12,
+            linewidth=0,
+        )
     logarithmic(ax, places)
     ax.set(ylim=(0, 1), xlabel=_COSTS["seconds"], ylabel="share of targets reached")
     ax.grid(alpha=0.25)
@@ -98,11 +136,18 @@ def ranks_figure(ranking: Ranking) -> Figure:
 
     ranks = pd.Series(ranking.ranks, index=[bench_label(method) for method in ranking.methods])
     apart = np.abs(np.subtract.outer(ranks.to_numpy(), ranks.to_numpy())) > ranking.critical
-    p_values = pd.DataFrame(np.where(apart, ALPHA / 2, 1.0), index=ranks.index, columns=ranks.index)
+    p_values = pd.DataFrame(
+        np.where(apart, ALPHA / 2, 1.0),
+        index=ranks.index,
+        columns=ranks.index,
+    )
     figure = new_figure(8.0, 0.28 * len(ranks) + 1.2)
     with warnings.catch_warnings():  # it warns of its own use of pandas
         warnings.simplefilter("ignore")
         critical_difference_diagram(
-            ranks, p_values, ax=figure.subplots(), label_props={"size": 8}
-        )  # fmt: skip
+            ranks,
+            p_values,
+            ax=figure.subplots(),
+            label_props={"size": 8},
+        )
     return figure

@@ -48,10 +48,16 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
     """
     problems = [problem.name for problem in results.problems]
     ranking = ranking_over(results)
-    pairs = pd.concat([
-        pd.DataFrame({"problem": name, "measure": measure} | dict(pairs_on(results, name, measure)))
-        for name in problems for measure in compared_columns()
-    ], ignore_index=True)  # fmt: skip
+    pairs = pd.concat(
+        [
+            pd.DataFrame(
+                {"problem": name, "measure": measure} | dict(pairs_on(results, name, measure))
+            )
+            for name in problems
+            for measure in compared_columns()
+        ],
+        ignore_index=True,
+    )
     of_problem = {name: problem_table(results, name) for name in problems}
     tables = {
         "summary": summary_table(results),
@@ -71,12 +77,17 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         figures["ranks.png"] = partial(ranks_figure, ranking)
     versions = results.runs[0].front.record.versions
     values = {
-        "line": line, "problems": problems, "of_problem": of_problem,
+        "line": line,
+        "problems": problems,
+        "of_problem": of_problem,
         "methods": [bench_label(m) for m in results.methods],
         "power": say_power_of((run.problem.name, run.method) for run in results.runs),
         "ranking": ranking,
-        "label_of": bench_label, "accuracy": ACCURACY, "indicators": INDICATORS,
-        "target": f"{100 * SHOWN_TARGET:g}", "moves": len(moves_of(results.problems)),
+        "label_of": bench_label,
+        "accuracy": ACCURACY,
+        "indicators": INDICATORS,
+        "target": f"{100 * SHOWN_TARGET:g}",
+        "moves": len(moves_of(results.problems)),
         "verdicts": {name: verdict_on(results, name) for name in problems},
         "by_indicator": {
             name: {
@@ -94,7 +105,7 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "unsealed": results.unsealed,
         "machine": f"{platform.machine()}, {platform.system()}",
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
-    }  # fmt: skip
+    }
     return Report(template, values, tables, figures)
 
 
@@ -116,10 +127,10 @@ def _medians(table: Any) -> dict[str, float]:
     """Medians over runs of the indicators beside the hypervolume, by their headings."""
     factor = {"%": 100.0}
     return {
-        _heading(indicator):
-            factor.get(indicator.unit, 1.0) * quartiles(table[column_of(indicator)])[1]
+        _heading(indicator): factor.get(indicator.unit, 1.0)
+        * quartiles(table[column_of(indicator)])[1]
         for indicator in _others()
-    }  # fmt: skip
+    }
 
 
 def reported_runs(folder: Path) -> pd.DataFrame | None:
@@ -150,12 +161,14 @@ def not_reported_again(results: Results, reported: pd.DataFrame | None) -> int:
 def _identities(table: pd.DataFrame) -> pd.DataFrame:
     """What tells the runs of a table apart; the gradient's candidates are no budget."""
     by_candidates = table["gradients"] == 0
-    return pd.DataFrame({
-        "problem": table["problem"].astype(str),
-        "method": table["method"].astype(str),
-        "seed": table["seed"].fillna(-1).astype(int),
-        "budget": table["evaluations"].where(by_candidates, -1).astype(int),
-    })  # fmt: skip
+    return pd.DataFrame(
+        {
+            "problem": table["problem"].astype(str),
+            "method": table["method"].astype(str),
+            "seed": table["seed"].fillna(-1).astype(int),
+            "budget": table["evaluations"].where(by_candidates, -1).astype(int),
+        }
+    )
 
 
 def _with_labels(table: pd.DataFrame, *columns: str) -> pd.DataFrame:
@@ -211,17 +224,23 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
         time = results.expected_running_time(problem, str(method), SHOWN_TARGET)
         spent = {name: quartiles(own[name])[1] for name in _COST}
         still = np.isfinite(np.asarray(own[ENERGIES[0]], dtype=float))
-        rows.append({
-            "method": bench_label(str(method)), "runs": len(own),
-            "missing [%]": middle, "quartiles [%]": f"{low:.3g} to {high:.3g}",
-            "with motions between [%]": 100 * quartiles(own["missing_between"])[1],
-            **_medians(own),
-            "energy above at 1 mm [%]": 100 * quartiles(own["energy_1mm"])[1],
-            _STILL: f"{np.count_nonzero(still)} of {len(own)}",
-            f"to {100 * SHOWN_TARGET:g} % [s]": interval_words(*time),
-            "candidates": spent["evaluations"], "gradients": spent["gradients"],
-            "Hessians": spent["hessians"], "seconds": spent["seconds"],
-        })  # fmt: skip
+        rows.append(
+            {
+                "method": bench_label(str(method)),
+                "runs": len(own),
+                "missing [%]": middle,
+                "quartiles [%]": f"{low:.3g} to {high:.3g}",
+                "with motions between [%]": 100 * quartiles(own["missing_between"])[1],
+                **_medians(own),
+                "energy above at 1 mm [%]": 100 * quartiles(own["energy_1mm"])[1],
+                _STILL: f"{np.count_nonzero(still)} of {len(own)}",
+                f"to {100 * SHOWN_TARGET:g} % [s]": interval_words(*time),
+                "candidates": spent["evaluations"],
+                "gradients": spent["gradients"],
+                "Hessians": spent["hessians"],
+                "seconds": spent["seconds"],
+            }
+        )
     return _best_first(rows)
 
 
@@ -235,19 +254,29 @@ def summary_table(results: Results) -> pd.DataFrame:
     """Every method over all problems: medians over problems of the medians over runs."""
     rows = []
     for method, own in results.table.groupby("method"):
-        columns = [*map(column_of, INDICATORS.values()), "missing_between", _ENERGY, *_COST]
+        columns = [
+            *map(column_of, INDICATORS.values()),
+            "missing_between",
+            _ENERGY,
+            *_COST,
+        ]
         medians = own.groupby("problem")[columns].agg(lambda column: quartiles(column)[1])
         over = {name: quartiles(medians[name])[1] for name in medians}
-        rows.append({
-            "method": bench_label(str(method)), "problems": len(medians), "runs": len(own),
-            "missing [%]": 100 * over[MISSING],
-            "with motions between [%]": 100 * over["missing_between"],
-            **_medians(medians),
-            "energy above at 1 mm [%]": 100 * over["energy_1mm"],
-            f"{_STILL} [%]": 100 * float(np.mean(np.isfinite(own[ENERGIES[0]]))),
-            "candidates": over["evaluations"], "gradients": over["gradients"],
-            "seconds": over["seconds"],
-        })  # fmt: skip
+        rows.append(
+            {
+                "method": bench_label(str(method)),
+                "problems": len(medians),
+                "runs": len(own),
+                "missing [%]": 100 * over[MISSING],
+                "with motions between [%]": 100 * over["missing_between"],
+                **_medians(medians),
+                "energy above at 1 mm [%]": 100 * over["energy_1mm"],
+                f"{_STILL} [%]": 100 * float(np.mean(np.isfinite(own[ENERGIES[0]]))),
+                "candidates": over["evaluations"],
+                "gradients": over["gradients"],
+                "seconds": over["seconds"],
+            }
+        )
     return _best_first(rows)
 
 

@@ -67,11 +67,15 @@ def jobs_of(
             raise ValueError(f"the method {name} is given twice; give it once")
     runs = whole("runs", runs, 1, 10_000)
     of_method = {
-        method: {name.rpartition(".")[2]: given[name] for name in given
-                 if name.rpartition(".")[0] == method}
+        method: {
+            name.rpartition(".")[2]: given[name]
+            for name in given
+            if name.rpartition(".")[0] == method
+        }
         for method in methods
-    }  # fmt: skip
-    jobs, left_out = list[Job](), dict[str, None]()
+    }
+    jobs = list[Job]()
+    left_out = dict[str, None]()
     for one in range(seed, seed + runs):
         for problem in problems:
             for name in methods:
@@ -92,7 +96,8 @@ def imports_on(
     One that was `given` by its own name is never left out.
     """
     names = [problem.name for problem in problems]
-    imported, left_out = list[Front](), list[str]()
+    imported = list[Front]()
+    left_out = list[str]()
     for path, front in runs.items():
         name = front.record.settings.get("problem")
         if name in names or path in given:
@@ -112,7 +117,8 @@ def write_references(problems: Sequence[NamedProblem], folder: Path) -> None:
     ValueError where the folder has runs that were measured against another.
     """
     for problem in problems:
-        path, front = folder / "references" / f"{problem.name}.json", problem.reference().front
+        path = folder / "references" / f"{problem.name}.json"
+        front = problem.reference().front
         if not path.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
             front.save(path)

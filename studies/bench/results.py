@@ -93,7 +93,11 @@ class Run:
         counts_candidates = derivative_free(self.method)
         seconds = [mark.seconds for mark in marks]
         evaluations = [mark.evaluations if counts_candidates else np.nan for mark in marks]
-        return History(lacking(scores, indicator), np.array(seconds), np.array(evaluations, float))
+        return History(
+            lacking(scores, indicator),
+            np.array(seconds),
+            np.array(evaluations, float),
+        )
 
     @cached_property
     def scores(self) -> dict[str, float]:
@@ -136,7 +140,14 @@ class Results:
         """Those of jobs, and recorded runs of other libraries, which name a problem of the jobs."""
         labels = [label for label, _ in {(job.label, job.budget) for job in fronts}]
         several = {label for label in labels if labels.count(label) > 1}
-        runs = [Run(job.problem, _method(job, several), front) for job, front in fronts.items()]
+        runs = [
+            Run(
+                job.problem,
+                _method(job, several),
+                front,
+            )
+            for job, front in fronts.items()
+        ]
         return cls([*runs, *imported_runs(imported, list(fronts))])
 
     @cached_property
@@ -212,7 +223,13 @@ class Results:
         histories = self.histories(problem, method)
         at = np.unique(np.concatenate([history.cost(by) for history in histories]))
         rows = [
-            np.append(1.0, history.missing)[np.searchsorted(history.cost(by), at, side="right")]
+            np.append(1.0, history.missing)[
+                np.searchsorted(
+                    history.cost(by),
+                    at,
+                    side="right",
+                )
+            ]
             for history in histories
         ]
         return at, np.array(rows)
@@ -232,7 +249,11 @@ class Results:
         indicator: Indicator = HYPERVOLUME,
     ) -> tuple[float, float, float]:
         """The time and its interval, as `running_times.expected_running_time`."""
-        return expected_running_time(self.histories(problem, method, indicator), target, by)
+        return expected_running_time(
+            self.histories(problem, method, indicator),
+            target,
+            by,
+        )
 
     @cached_property
     def running_times(self) -> pd.DataFrame:
@@ -267,10 +288,12 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
     jobs, or has points beyond the box. One that searched a wider box counts at its end alone: marks
     on the way know no box.
     """
-    by_name, own = {job.problem.name: job.problem for job in jobs}, {job.label for job in jobs}
+    by_name = {job.problem.name: job.problem for job in jobs}
+    own = {job.label for job in jobs}
     runs = list[Run]()
     for front in fronts:
-        name, method = front.record.settings.get("problem"), front.record.method
+        name = front.record.settings.get("problem")
+        method = front.record.method
         if method in own:
             raise ValueError(
                 f"an imported run is of {method}, which the bench runs itself; name its method "
@@ -344,12 +367,15 @@ def told_apart(share: float) -> float:
 
 def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     """The figures of a run; energies as shares above the best."""
-    front, last = run.front, run.front.history[-1]
+    front = run.front
+    last = run.front.history[-1]
     row: dict[str, Any] = {
-        "problem": run.problem.name, "method": run.method, "seed": front.record.seed,
+        "problem": run.problem.name,
+        "method": run.method,
+        "seed": front.record.seed,
         "residual_window_s": front.task.residual_window,
         "points": len(front.points),
-    }  # fmt: skip
+    }
     for name, indicator in INDICATORS.items():
         column = column_of(indicator)
         for suffix, scores in (("", run.scores), ("_between", run.scores_between)):
@@ -358,6 +384,9 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
     for name, level, least in zip(ENERGIES, LEVELS, best):
         row[name] = told_apart(front.least_energy(level) / least - 1)
     return row | {
-        "evaluations": last.evaluations, "gradients": last.gradients, "hessians": last.hessians,
-        "seconds": last.seconds, "all_seconds": front.record.seconds,
-    }  # fmt: skip
+        "evaluations": last.evaluations,
+        "gradients": last.gradients,
+        "hessians": last.hessians,
+        "seconds": last.seconds,
+        "all_seconds": front.record.seconds,
+    }

@@ -128,11 +128,19 @@ def write_histories(
     A mark is a row of csv, compressed where the name ends in .gz.
     """
     tables = [
-        pd.DataFrame(history.improving._asdict()).assign(problem=problem, method=method, seed=seed)
+        pd.DataFrame(history.improving._asdict()).assign(
+            problem=problem,
+            method=method,
+            seed=seed,
+        )
         for problem, method, seed, history in histories
     ]
     columns = ["problem", "method", "seed", *History._fields]
-    text = pd.concat(tables)[columns].to_csv(index=False, lineterminator="\n", float_format="%.9g")
+    text = pd.concat(tables)[columns].to_csv(
+        index=False,
+        lineterminator="\n",
+        float_format="%.9g",
+    )
     content = text.encode()
     if Path(path).suffix == ".gz":
         import gzip
@@ -145,7 +153,11 @@ def read_histories(path: str | Path) -> dict[tuple[str, str], list[History]]:
     """The histories that `write_histories` wrote, by problem and method, for `running_times`."""
     table = pd.read_csv(path)
     groups: dict[tuple[str, str], list[History]] = {}
-    by_run: Any = table.groupby(["problem", "method", "seed"], sort=False, dropna=False)
+    by_run: Any = table.groupby(
+        ["problem", "method", "seed"],
+        sort=False,
+        dropna=False,
+    )
     for (problem, method, _), marks in by_run:
         columns = (marks[name].to_numpy(dtype=float) for name in History._fields)
         groups.setdefault((problem, method), []).append(History(*columns))

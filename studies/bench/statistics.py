@@ -174,18 +174,21 @@ def _exact_p(some: Array, ranks: Array) -> float:
     scipy's exact test knows no ties.
     """
     doubled = np.rint(2 * ranks).astype(int)  # of ties they are halves
-    size, total = len(some), round(2 * some.sum())
+    size = len(some)
+    total = round(2 * some.sum())
     subsets = np.zeros((size + 1, np.sort(doubled)[-size:].sum() + 1))  # by size and sum
     subsets[0, 0] = 1
     for rank in doubled:
         subsets[1:, rank:] += subsets[:-1, :-rank]
-    below, above = subsets[size, : total + 1].sum(), subsets[size, total:].sum()
+    below = subsets[size, : total + 1].sum()
+    above = subsets[size, total:].sum()
     return min(1.0, 2 * float(min(below, above) / subsets[size].sum()))
 
 
 def _sign_test(value: float, runs: Array) -> float:
     """The p value that as many runs lie above a value as below."""
-    below, above = np.count_nonzero(runs < value), np.count_nonzero(runs > value)
+    below = np.count_nonzero(runs < value)
+    above = np.count_nonzero(runs > value)
     return float(stats.binomtest(below, below + above).pvalue)
 
 
@@ -266,7 +269,8 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
         medians = [[quartiles(known[one.name][m])[1] for m in kept] for one in move]
         rows.append(np.mean([stats.rankdata(row) for row in medians], axis=0))
     ranks = np.array([stats.rankdata(row) for row in rows])
-    means, count = ranks.mean(axis=0), len(kept)
+    means = ranks.mean(axis=0)
+    count = len(kept)
     quantile = stats.studentized_range.ppf(1 - ALPHA, count, np.inf) / sqrt(2)
     order = np.argsort(means, kind="stable").tolist()
     return Ranking(
@@ -281,7 +285,14 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
 
 def _same(known: Mapping[str, Mapping[str, Array]], one: str, other: str) -> bool:
     """Whether two methods have the same values on all problems."""
-    return all(np.array_equal(own[one], own[other], equal_nan=True) for own in known.values())
+    return all(
+        np.array_equal(
+            own[one],
+            own[other],
+            equal_nan=True,
+        )
+        for own in known.values()
+    )
 
 
 def verdict_on(results: Results, problem: str, column: str = "missing") -> str:

@@ -72,13 +72,18 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
             "ruckig moves within an acceleration limit, and the move has none; plan it with one, "
             "as --acceleration-limit 40"
         )
-    asked, found, free = InputParameter(1), Trajectory(1), (-np.inf, np.inf)
-    asked.current_position, asked.target_position = [task.start], [task.target]
+    asked = InputParameter(1)
+    found = Trajectory(1)
+    free = (-np.inf, np.inf)
+    asked.current_position = [task.start]
+    asked.target_position = [task.target]
     bounds = {limit.name: (limit.lower, limit.upper) for limit in task.limits}
     slowest, fastest = bounds.get("speed", free)
-    asked.min_velocity, asked.max_velocity = [slowest], [fastest]
+    asked.min_velocity = [slowest]
+    asked.max_velocity = [fastest]
     least, most = bounds["acceleration"]
-    asked.min_acceleration, asked.max_acceleration = [least], [most]
+    asked.min_acceleration = [least]
+    asked.max_acceleration = [most]
     asked.max_jerk = [min(np.abs(bounds.get("jerk", free)))]
     asked.minimum_duration = task.duration
     result = Ruckig(1).calculate(asked, found)
@@ -102,7 +107,8 @@ def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
     times = np.unique(begins)
     times = times[np.append(True, np.diff(times) > _SHORTEST)]
     middle = (times[1:] + times[:-1]) / 2
-    acceleration, jerk = np.zeros(len(middle)), np.zeros(len(middle))
+    acceleration = np.zeros(len(middle))
+    jerk = np.zeros(len(middle))
     for share, begin in zip(*impulses):
         own = np.searchsorted(free.times, middle - begin, side="right") - 1
         moving = (own >= 0) & (own < free.steps)

@@ -177,7 +177,11 @@ def compare_fronts(
         raise ValueError(f"{len(fronts)} fronts have {len(names)} names; give each front a name")
     references = [] if reference is None else [reference]
     all_names = [*names, reference_name]
-    _refuse([*fronts, *references], all_names[: len(fronts) + len(references)], len(fronts))
+    _refuse(
+        [*fronts, *references],
+        all_names[: len(fronts) + len(references)],
+        len(fronts),
+    )
     points = [objectives(front) for front in fronts]
     between = [best_of([filled(front)]) for front in fronts] if fill else points
     best_front = best_of(between)
@@ -190,7 +194,11 @@ def compare_fronts(
     clouds = map(_Cloud, names, fronts, points, between)
     measured = [_measured(cloud, scale, levels, best) for cloud in clouds]
     groups = [
-        Group(label, tuple(measured[i] for i in members), *_surfaces([points[i] for i in members]))
+        Group(
+            label,
+            tuple(measured[i] for i in members),
+            *_surfaces([points[i] for i in members]),
+        )
         for label, members in grouped(fronts).items()
     ]
     return Comparison(
@@ -242,7 +250,8 @@ def _measured(cloud: _Cloud, scale: Scale, levels: Sequence[float], best: Array)
 
 
 def _surfaces(clouds: Sequence[Array]) -> tuple[Array, Array, Array]:
-    points, sets = np.vstack(clouds), np.repeat(np.arange(len(clouds)), [len(c) for c in clouds])
+    points = np.vstack(clouds)
+    sets = np.repeat(np.arange(len(clouds)), [len(c) for c in clouds])
     table = moocore.eaf(points, sets, percentiles=[0, 50, 100])
     best, median, worst = (_frozen(table[table[:, 2] == share, :2]) for share in (0, 50, 100))
     return best, median, worst
@@ -304,7 +313,8 @@ def _settings(front: Front) -> dict[str, object]:
 
 def _label(front: Front, alike: Sequence[Front]) -> str:
     """The method, with the settings in which it differs from others of the same method."""
-    words, others = [label_of(front.record.method)], [_settings(other) for other in alike]
+    words = [label_of(front.record.method)]
+    others = [_settings(other) for other in alike]
     for name, value in _settings(front).items():
         if all(other.get(name) == value for other in others):
             continue

@@ -41,7 +41,11 @@ def compare_by_task(
         raise ValueError(
             "a reference is for fronts of one task; these are of several: leave it out"
         )
-    compare = partial(compare_fronts, reference=reference, reference_name=reference_name)
+    compare = partial(
+        compare_fronts,
+        reference=reference,
+        reference_name=reference_name,
+    )
     return [compare(list(one.values()), list(one)) for one in tasks]
 
 
@@ -115,19 +119,28 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
     shown, scale = tip_scale(comparison.task.plant.tip_unit)
     for group in comparison.groups:
         for run in group.runs:
-            front, record = run.front, run.front.record
+            front = run.front
+            record = run.front.record
             row: dict[str, object] = {
-                "move": title_of(front.task), "name": run.name, "label": group.label,
-                "method": record.method, "seed": record.seed, "bound": record.bound,
-                "coefficients": front.profile.size, "points": len(front.points),
+                "move": title_of(front.task),
+                "name": run.name,
+                "label": group.label,
+                "method": record.method,
+                "seed": record.seed,
+                "bound": record.bound,
+                "coefficients": front.profile.size,
+                "points": len(front.points),
                 "residual_window_s": front.task.residual_window,
-            }  # fmt: skip
+            }
             for name in INDICATORS:
                 row |= {name: run.scores[name], f"{name}_found": run.scores_found[name]}
             for i, level in enumerate(comparison.levels):
                 at = f"at_{scale * level:g}{shown}"
-                row |= {f"energy_J_{at}": run.energies[i], f"gap_{at}": run.gaps[i],
-                        f"gap_between_{at}": run.gaps_between[i]}  # fmt: skip
+                row |= {
+                    f"energy_J_{at}": run.energies[i],
+                    f"gap_{at}": run.gaps[i],
+                    f"gap_between_{at}": run.gaps_between[i],
+                }
             for name in ("evaluations", "iterations", "seconds"):
                 row[name] = getattr(record, name)
             rows.append(row)
@@ -143,9 +156,11 @@ def fronts_report(
 
     Of `unsealed` files it says that nothing vouches for what they say of their effort.
     """
-    pictures = ["fronts.png"] if len(comparisons) == 1 else [
-        f"fronts-{i}.png" for i in range(1, len(comparisons) + 1)
-    ]  # fmt: skip
+    pictures = (
+        ["fronts.png"]
+        if len(comparisons) == 1
+        else [f"fronts-{i}.png" for i in range(1, len(comparisons) + 1)]
+    )
     tables = [methods_table(one) for one in comparisons]
     moves = zip(comparisons, tables)
     return Report(
@@ -162,14 +177,16 @@ def fronts_report(
             "several": any(len(g.runs) > 1 for one in comparisons for g in one.groups),
         },
         {
-            "methods": pd.concat([
-                table.assign(move=title_of(one.task)) if len(tables) > 1 else table
-                for one, table in moves
-            ]),
+            "methods": pd.concat(
+                [
+                    table.assign(move=title_of(one.task)) if len(tables) > 1 else table
+                    for one, table in moves
+                ]
+            ),
             "runs": pd.concat(map(runs_table, comparisons)),
         },
         {
             name: partial(figures.comparison_figure, one, points)
             for name, one, points in zip(pictures, comparisons, known)
         },
-    )  # fmt: skip
+    )

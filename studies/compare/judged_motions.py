@@ -91,10 +91,11 @@ def judge(
             own,
             worst=worst_of(motion),
             robustness=evaluate_robustness(motion, ranges, samples=samples)
-            if ranges and samples else None,
+            if ranges and samples
+            else None,
             parameters=moved.profile.size,
             turns_back=moved.turns_back,
-        )  # fmt: skip
+        )
     elif ranges:
         own = replace(own, worst=worst_case(nominal, ranges))
     return own if isinstance(moved, Candidate) else replace(own, seconds=moved.record.seconds)

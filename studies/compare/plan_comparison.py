@@ -68,13 +68,23 @@ def compare_plans(
     ValueError
         When the plans are of several moves, a name is not known or a number is out of range.
     """
-    names, tasks = choose_baselines(baselines), {"the move": task} if task else {}
+    names = choose_baselines(baselines)
+    tasks = {"the move": task} if task else {}
     tasks |= {name: plan.task for name, plan in plans.items()}
     refuse_other_moves(tasks)
     window = max(one.residual_window for one in tasks.values())
     task = replace(next(iter(tasks.values())), residual_window=window)
     ranges = ranges or merged_ranges(tasks.values())
-    judged = [judge(name, plan, ranges, task, samples) for name, plan in plans.items()]
+    judged = [
+        judge(
+            name,
+            plan,
+            ranges,
+            task,
+            samples,
+        )
+        for name, plan in plans.items()
+    ]
     for name in names:
         try:
             judged.append(judge(name, baseline(name, task), ranges, task, samples))

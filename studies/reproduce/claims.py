@@ -108,7 +108,14 @@ def _by_terms(
     rows = [
         (case.name, way, *(of(by[way](case, n)) for n in _PRINTED)) for case in cases for way in by
     ]
-    table = pd.DataFrame(rows, columns=["condition", name, *(f"N = {n}" for n in _PRINTED)])
+    table = pd.DataFrame(
+        rows,
+        columns=[
+            "condition",
+            name,
+            *(f"N = {n}" for n in _PRINTED),
+        ],
+    )
     return table.iloc[:, 2:].to_numpy(), table
 
 
@@ -118,13 +125,16 @@ def _falls(values: NDArray[np.float64], table: pd.DataFrame) -> Judged:
 
 @_claim("Two terms suffice to cancel the residual vibration.")
 def _two_terms(result: Reproduction) -> Judged:
-    table = pd.DataFrame({
-        "condition": case.name,
-        "plain cycloid [mm]": 1e3 * result.cycloid(case).residual,
-        "two printed [mm]": 1e3 * _paper(case, 2).residual,
-        "gradient's two [mm]": 1e3 * result.in_box(case, 2).residual,
-        "searched": f"{case.search_label}: {_words(result.searched[case, 2])}",
-    } for case in STUDIED)  # fmt: skip
+    table = pd.DataFrame(
+        {
+            "condition": case.name,
+            "plain cycloid [mm]": 1e3 * result.cycloid(case).residual,
+            "two printed [mm]": 1e3 * _paper(case, 2).residual,
+            "gradient's two [mm]": 1e3 * result.in_box(case, 2).residual,
+            "searched": f"{case.search_label}: {_words(result.searched[case, 2])}",
+        }
+        for case in STUDIED
+    )
     return table["gradient's two [mm]"].max() < 1e3 * _AT_REST, table
 
 
@@ -141,17 +151,32 @@ def _holding(result: Reproduction) -> Judged:
 
 @_claim("More terms lower the tip's largest displacement on the way (Fig. 2c).")
 def _link_tip(result: Reproduction) -> Judged:
-    return _falls(*_by_terms(result, [SINGLE_LINK_SIXTH], _tip_peak, "displacement [mm]"))
+    return _falls(
+        *_by_terms(
+            result,
+            [SINGLE_LINK_SIXTH],
+            _tip_peak,
+            "displacement [mm]",
+        )
+    )
 
 
 @_claim("More terms lower the energy.")
 def _energy(result: Reproduction) -> Judged:
-    return _falls(*_by_terms(result, STUDIED, lambda plan: plan.energy, "energy [J]"))
+    return _falls(
+        *_by_terms(
+            result,
+            STUDIED,
+            lambda plan: plan.energy,
+            "energy [J]",
+        )
+    )
 
 
 @_claim("The energy does not fall further above six terms.")
 def _beyond_six(result: Reproduction) -> Judged:
-    terms, rows = (SIX_TERMS, *BEYOND_SIX), list[tuple[Any, ...]]()
+    terms = (SIX_TERMS, *BEYOND_SIX)
+    rows = list[tuple[Any, ...]]()
     for case in STUDIED:
         medians = [result.searched[case, n].energies.median for n in terms]
         rows += [
@@ -159,7 +184,14 @@ def _beyond_six(result: Reproduction) -> Judged:
             (case.name, "gradient without one", *(result.free(case, n).energy for n in terms)),
             *([(case.name, f"{case.search_label}, medians", *medians)] * all(np.isfinite(medians))),
         ]
-    table = pd.DataFrame(rows, columns=["condition", "energy [J]", *(f"N = {n}" for n in terms)])
+    table = pd.DataFrame(
+        rows,
+        columns=[
+            "condition",
+            "energy [J]",
+            *(f"N = {n}" for n in terms),
+        ],
+    )
     six, *beyond = table.iloc[:, 2:].to_numpy().T
     return all((1 - one / six <= _GAIN).all() for one in beyond), table
 
@@ -194,14 +226,17 @@ def _early_torque(result: Reproduction) -> Judged:
 
 @_claim("The motion of ref. [24] is like that of two terms (Fig. 6).")
 def _paths(result: Reproduction) -> Judged:
-    case, times = ARM_HALF, np.linspace(0.0, ARM_HALF.task.duration, 201)
+    case = ARM_HALF
+    times = np.linspace(0.0, ARM_HALF.task.duration, 201)
     found = result.searched[case, case.earlier[1]]
     path = np.nan if found.middle is None else found.middle.path(times)
     two, six = (np.sqrt(np.mean((path - _paper(case, n).path(times)) ** 2)) for n in (2, SIX_TERMS))
     row = {
-        "condition": case.name, f"{case.earlier[1]}, searched": _words(found),
-        "path from N = 2, rms [rad]": two, "path from N = 6, rms [rad]": six,
-    }  # fmt: skip
+        "condition": case.name,
+        f"{case.earlier[1]}, searched": _words(found),
+        "path from N = 2, rms [rad]": two,
+        "path from N = 6, rms [rad]": six,
+    }
     return not two >= six, pd.DataFrame([row])
 
 
@@ -219,53 +254,80 @@ def _six(
 
 @_claim("Six parameters leave as little vibration as sixteen.")
 def _vibration(result: Reproduction) -> Judged:
-    table = _six(result, lambda row, earlier, six: {
-        "within [mm]": 1e3 * six.level, "seeds": six.energies.seeds,
-        "with six terms": six.energies.count, "with the earlier input": earlier.energies.count,
-    })  # fmt: skip
+    table = _six(
+        result,
+        lambda row, earlier, six: {
+            "within [mm]": 1e3 * six.level,
+            "seeds": six.energies.seeds,
+            "with six terms": six.energies.count,
+            "with the earlier input": earlier.energies.count,
+        },
+    )
     return (table["with six terms"] >= table["with the earlier input"]).all(), table
 
 
 @_claim("The proposed method beats refs [23] and [24], as printed.")
 def _as_printed(result: Reproduction) -> Judged:
-    table = _six(result, lambda row, earlier, six: {
-        "paper, printed [J]": row.energy, "earlier study, printed [J]": row.earlier_energy,
-    })  # fmt: skip
+    table = _six(
+        result,
+        lambda row, earlier, six: {
+            "paper, printed [J]": row.energy,
+            "earlier study, printed [J]": row.earlier_energy,
+        },
+    )
     return (table["paper, printed [J]"] < table["earlier study, printed [J]"]).all(), table
 
 
 @_claim("The same search finds less energy with six terms than with the earlier inputs.")
 def _same_search(result: Reproduction) -> Judged:
-    table = _six(result, lambda row, earlier, six: {
-        "six terms": _words(six), "earlier input": f"{earlier.which}: {_words(earlier)}",
-        "less": six.energies.median < earlier.energies.median,
-    })  # fmt: skip
+    table = _six(
+        result,
+        lambda row, earlier, six: {
+            "six terms": _words(six),
+            "earlier input": f"{earlier.which}: {_words(earlier)}",
+            "less": six.energies.median < earlier.energies.median,
+        },
+    )
     return table["less"].all(), table
 
 
 @_claim("The printed energies are below what the paper's own search finds with the earlier inputs.")
 def _earlier_inputs(result: Reproduction) -> Judged:
-    table = _six(result, lambda row, earlier, six: {
-        "paper, printed [J]": row.energy, "earlier input": f"{earlier.which}: {_words(earlier)}",
-        "less": row.energy < earlier.energies.median,
-    })  # fmt: skip
+    table = _six(
+        result,
+        lambda row, earlier, six: {
+            "paper, printed [J]": row.energy,
+            "earlier input": f"{earlier.which}: {_words(earlier)}",
+            "less": row.energy < earlier.energies.median,
+        },
+    )
     return table["less"].all(), table
 
 
 @_claim("The energy of Table 3 hangs neither on seeds nor on constants of VEPSO (implied).")
 def _choices(result: Reproduction) -> Judged:
-    case, printed = SINGLE_LINK_SIXTH, SIX[0].energy
-    every, old = result.searched[case, SIX_TERMS], result.searched[case, OLD_CONSTANTS]
+    case = SINGLE_LINK_SIXTH
+    printed = SIX[0].energy
+    every = result.searched[case, SIX_TERMS]
+    old = result.searched[case, OLD_CONSTANTS]
     half = replace(every, fronts=every.fronts[: (len(every.fronts) + 1) // 2])
     rows = list[dict[str, Any]]()
-    for name, found in {"all": every, "the first": half, "with constants of 2002": old}.items():
+    for name, found in {
+        "all": every,
+        "the first": half,
+        "with constants of 2002": old,
+    }.items():
         energies = np.array([front.least_energy(found.level) for front in found.fronts])
         excess = np.nan_to_num(energies, nan=10 * printed) - printed
-        rows.append({
-            case.search_label: name, "seeds": len(energies), "energy": _words(found),
-            "above the printed": int((excess > 0).sum()),
-            "Wilcoxon's p of the printed": wilcoxon(excess)[1] if len(excess) > 1 else None,
-        })  # fmt: skip
+        rows.append(
+            {
+                case.search_label: name,
+                "seeds": len(energies),
+                "energy": _words(found),
+                "above the printed": int((excess > 0).sum()),
+                "Wilcoxon's p of the printed": wilcoxon(excess)[1] if len(excess) > 1 else None,
+            }
+        )
     agree = rows[0]["above the printed"] in (0, rows[0]["seeds"])
     return agree and old.energies.median <= printed, pd.DataFrame(rows)
 
@@ -273,19 +335,26 @@ def _choices(result: Reproduction) -> Judged:
 @_claim("Networks cost more to compute.")
 def _cost(result: Reproduction) -> Judged:
     # the fastest seed: others may have shared their core
-    table = pd.DataFrame({
-        "fastest seed of": f"{case.name}, {case.search_label}",
-        "six terms [s]": min(result.searched[case, SIX_TERMS].seconds),
-        "earlier input [s]": min(result.searched[case, case.earlier[1]].seconds),
-    } for case in STUDIED)  # fmt: skip
+    table = pd.DataFrame(
+        {
+            "fastest seed of": f"{case.name}, {case.search_label}",
+            "six terms [s]": min(result.searched[case, SIX_TERMS].seconds),
+            "earlier input [s]": min(result.searched[case, case.earlier[1]].seconds),
+        }
+        for case in STUDIED
+    )
     return (table["earlier input [s]"] > _DEARER * table["six terms [s]"]).all(), table
 
 
 @_claim("The tuned coefficients are optimal in their search space (implied).")
 def _tuned(result: Reproduction) -> Judged:
     energies = {row: result.in_box(row.condition, SIX_TERMS).energy for row in SIX}
-    table = _six(result, lambda row, earlier, six: {
-        "paper, printed [J]": row.energy, "gradient in the box [J]": energies[row],
-        "above [%]": 100 * (row.energy / energies[row] - 1),
-    })  # fmt: skip
+    table = _six(
+        result,
+        lambda row, earlier, six: {
+            "paper, printed [J]": row.energy,
+            "gradient in the box [J]": energies[row],
+            "above [%]": 100 * (row.energy / energies[row] - 1),
+        },
+    )
     return table["above [%]"].max() <= 100 * _GAIN, table

@@ -80,7 +80,13 @@ def _angle(text: str) -> float:
 def _row(cells: dict[str, str]) -> Row:
     case = _case(cells["plant"], cells["start"], cells["target"], cells["duration"])
     earlier = float(cells["earlier"]) if cells["earlier"] else None
-    return Row(int(cells["table"]), case, int(cells["terms"]), float(cells["energy"]), earlier)
+    return Row(
+        int(cells["table"]),
+        case,
+        int(cells["terms"]),
+        float(cells["energy"]),
+        earlier,
+    )
 
 
 with Path(__file__).with_name("printed.csv").open(encoding="utf-8") as _file:
@@ -118,11 +124,13 @@ def paper_points(task: PointToPoint, terms: Collection[int]) -> list[KnownPoint]
     printed = {row.terms: row for row in ROWS if row.condition is condition}
     points = list[KnownPoint]()
     for number in sorted(printed.keys() & set(terms)):
-        plan, name = paper_plan(printed[number].condition, number), f"paper, N = {number}"
+        plan = paper_plan(printed[number].condition, number)
+        name = f"paper, N = {number}"
         points.append(
             KnownPoint(f"{name}: energy as printed", None, printed[number].energy)
-            if plan is None else KnownPoint(name, plan.on(task).residual, plan.energy)
-        )  # fmt: skip
+            if plan is None
+            else KnownPoint(name, plan.on(task).residual, plan.energy)
+        )
     return points
 
 

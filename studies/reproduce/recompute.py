@@ -163,19 +163,24 @@ class Reproduction:
         moved: dict[str, Plan | Floor | str] = {
             "paper": paper_plan(case, SIX_TERMS, mended=False)
             or f"prints {printed:.4g} J, and no coefficients",
-            **{name: self.answers[Piece("gradient", case, name)]
-               for name in (case.earlier[1], "spline")},
+            **{
+                name: self.answers[Piece("gradient", case, name)]
+                for name in (case.earlier[1], "spline")
+            },
             case.search_label: self.searched[case, SIX_TERMS].middle
             or "the middle seed has no such small residual",
             "gradient, in the box": self.in_box(case, SIX_TERMS),
             "gradient": self.free(case, SIX_TERMS),
             "robust plan": self.answers[Piece("robust", case)],
             "free motion": self.floor(case),
-        }  # fmt: skip
+        }
         yield from compare_plans({}, _SHAPERS, FREQUENCY_ERROR, 0, task=case.task)
         for name, one in moved.items():
-            yield (Judged(name, why=one) if isinstance(one, str)
-                   else judge(name, one, FREQUENCY_ERROR, case.task))  # fmt: skip
+            yield (
+                Judged(name, why=one)
+                if isinstance(one, str)
+                else judge(name, one, FREQUENCY_ERROR, case.task)
+            )
 
 
 def recompute_paper(
@@ -198,8 +203,13 @@ def recompute_paper(
         Where the fronts of the searches are kept, each as soon as it is done. Those that are there
         are not searched again.
     """
-    effort, answers = effort or Effort(), dict[Piece, Any]()
-    for piece, answer in side_by_side(_done, list(_work(effort, folder).items()), workers):
+    effort = effort or Effort()
+    answers = dict[Piece, Any]()
+    for piece, answer in side_by_side(
+        _done,
+        list(_work(effort, folder).items()),
+        workers,
+    ):
         answers[piece] = answer
         report(piece.name)
     seeds = range(effort.seeds)
@@ -227,13 +237,24 @@ def _work(effort: Effort, folder: Path | None) -> Work:
     work: Work = {}
     for (case, which), seed in product(effort.searched, range(effort.seeds)):
         piece = Piece(case.search, case, which, seed)
-        work[piece] = partial(_search, piece, effort.searches.get(piece.what, {}), folder)
+        work[piece] = partial(
+            _search,
+            piece,
+            effort.searches.get(piece.what, {}),
+            folder,
+        )
     rows = {(row.condition, row.terms) for row in ROWS}
     solve = partial(plan_move, starts=effort.starts)
     for case, terms in product(CONDITIONS, TERMS):
         if effort.full or (case, terms) in rows:
             free = partial(solve, case.task, CycloidPolynomial(terms))
-            work[Piece("gradient, in box", case, terms)] = partial(free, bound=case.bound)
+            work[
+                Piece(
+                    "gradient, in box",
+                    case,
+                    terms,
+                )
+            ] = partial(free, bound=case.bound)
             work[Piece("gradient, same residual", case, terms)] = partial(
                 free, bound=case.bound, residual_limit=residual_level(case, terms)
             )
@@ -241,9 +262,17 @@ def _work(effort: Effort, folder: Path | None) -> Work:
     compared = effort.systems * effort.full
     for case in CONDITIONS if effort.full else STUDIED:
         for name in (case.earlier[1], *["spline"] * (case in compared)):
-            work[Piece("gradient", case, name)] = partial(solve, case.task, OTHERS[name])
+            work[Piece("gradient", case, name)] = partial(
+                solve,
+                case.task,
+                OTHERS[name],
+            )
     for case in CONDITIONS * effort.full:
-        work[Piece("free motion", case)] = partial(energy_floor, case.task, **effort.free_motion)
+        work[Piece("free motion", case)] = partial(
+            energy_floor,
+            case.task,
+            **effort.free_motion,
+        )
         work[Piece("both solvers", case)] = partial(_checked, case, effort.points)
     for case in compared:
         work[Piece("robust", case)] = partial(_robust, case, effort.starts)
@@ -252,7 +281,8 @@ def _work(effort: Effort, folder: Path | None) -> Work:
 
 def _search(piece: Piece, settings: Mapping[str, Any], folder: Path | None) -> Front:
     """A front of the paper's search; one that is kept already, if it is by the same versions."""
-    case, which = piece.case, piece.which
+    case = piece.case
+    which = piece.which
     assert which is not None
     assert piece.seed is not None
     path = folder and folder / f"{re.sub(r'[^a-z0-9.-]+', '-', piece.name.lower())}.json"
@@ -262,10 +292,14 @@ def _search(piece: Piece, settings: Mapping[str, Any], folder: Path | None) -> F
         if same and front.record.versions.items() >= versions().items():
             return front
     front = search(
-        case.task, profile_with(which), algorithm=piece.what, seed=piece.seed,
+        case.task,
+        profile_with(which),
+        algorithm=piece.what,
+        seed=piece.seed,
         bound=None if which in OTHERS else case.bound,  # others have their own
-        settings=VEPSO_2002 if which == OLD_CONSTANTS else {}, **settings,
-    )  # fmt: skip
+        settings=VEPSO_2002 if which == OLD_CONSTANTS else {},
+        **settings,
+    )
     if path is not None:
         path.parent.mkdir(parents=True, exist_ok=True)
         front.save(path)
@@ -275,7 +309,14 @@ def _search(piece: Piece, settings: Mapping[str, Any], folder: Path | None) -> F
 def _checked(case: Case, points: int) -> CrossCheck:
     """Points of the front in the paper's box, by both solvers of the gradient."""
     profile = CycloidPolynomial(SIX_TERMS)
-    return cross_check(epsilon_front(case.task, profile, bound=case.bound, points=points))
+    return cross_check(
+        epsilon_front(
+            case.task,
+            profile,
+            bound=case.bound,
+            points=points,
+        )
+    )
 
 
 def _robust(case: Case, starts: int) -> Plan | str:
@@ -283,6 +324,11 @@ def _robust(case: Case, starts: int) -> Plan | str:
     task = replace(case.task, uncertainty=Uncertainty(FREQUENCY_ERROR))
     limit = tolerated_residual(case.task)
     try:
-        return plan_move(task, CycloidPolynomial(SIX_TERMS), residual_limit=limit, starts=starts)
+        return plan_move(
+            task,
+            CycloidPolynomial(SIX_TERMS),
+            residual_limit=limit,
+            starts=starts,
+        )
     except SolverFailedError as none:
         return str(none)

@@ -35,9 +35,11 @@ TITLES = {
     6: "Table 6: against ref. [24], arm on a flexible link",
 }
 _PICTURES = {
-    "2": (SINGLE_LINK_SIXTH, False), "3": (SINGLE_LINK_SIXTH, True), "5": (ARM_HALF, False),
+    "2": (SINGLE_LINK_SIXTH, False),
+    "3": (SINGLE_LINK_SIXTH, True),
+    "5": (ARM_HALF, False),
     "6": (ARM_HALF, True),
-}  # fmt: skip
+}
 """The paper's figures: their condition, and whether they show the earlier study's input."""
 
 
@@ -49,8 +51,11 @@ def paper_table(result: Reproduction, number: int) -> pd.DataFrame:
 
 def _row(result: Reproduction, row: Row) -> dict[str, object]:
     """Names and figures of a row; energies [J], residuals [mm]."""
-    case, terms, full = row.condition, row.terms, result.effort.full
-    (reference, name), found = case.earlier, result.searched[case, terms]
+    case = row.condition
+    terms = row.terms
+    full = result.effort.full
+    reference, name = case.earlier
+    found = result.searched[case, terms]
     printed = paper_plan(case, terms, mended=False)
     mended = paper_plan(case, terms) if (case, terms) in MENDED else None
     figures: dict[str, object] = {
@@ -70,7 +75,8 @@ def _row(result: Reproduction, row: Row) -> dict[str, object]:
         "gradient at rest, no box [J]": result.free(case, terms).energy,
     }
     if row.earlier_energy is not None:
-        before, earlier = result.searched.get((case, name)), result.earlier(case)
+        before = result.searched.get((case, name))
+        earlier = result.earlier(case)
         figures |= {
             "earlier study": f"{name}, ref. [{reference}]",
             "  printed there [J]": row.earlier_energy,
@@ -98,15 +104,18 @@ def reproduction_report(result: Reproduction) -> Report:
         for number, shows in _PICTURES.items()
     }
     values = {
-        "titles": TITLES, "seeds": result.effort.seeds, "full": result.effort.full,
-        "claims": judged, "error": f"{100 * FREQUENCY_ERROR['frequency']:g} %",
+        "titles": TITLES,
+        "seeds": result.effort.seeds,
+        "full": result.effort.full,
+        "claims": judged,
+        "error": f"{100 * FREQUENCY_ERROR['frequency']:g} %",
         "systems": [
             (case.name, shown(systems[case.name]), remarks(every))
             for case, every in result.systems.items()
         ],
         "pictures": list(figures),
         "window": EQ_11,
-    }  # fmt: skip
+    }
     return Report("reproduce/report.md", values, tables, figures)
 
 
@@ -117,10 +126,19 @@ def _redrawn(result: Reproduction, title: str, case: Case, against_earlier: bool
     is read here.
     """
     reference, name = case.earlier
-    earlier, lines = result.earlier(case), [Line(result.cycloid(case), "cycloid", "black")]
+    earlier = result.earlier(case)
+    lines = [Line(result.cycloid(case), "cycloid", "black")]
     if against_earlier and earlier is not None:
         label = f"{name} of ref. [{reference}] as read here, gradient"
-        lines = [*_by_search(result, case, name, ORANGE), Line(earlier, label, RED, ":")]
+        lines = [
+            *_by_search(
+                result,
+                case,
+                name,
+                ORANGE,
+            ),
+            Line(earlier, label, RED, ":"),
+        ]
     else:
         lines += [_of_paper(case, 2, GREEN, "-."), _of_paper(case, 4, RED, "--")]
     gradient = result.in_box(case, SIX_TERMS)
@@ -129,7 +147,11 @@ def _redrawn(result: Reproduction, title: str, case: Case, against_earlier: bool
         *_by_search(result, case, SIX_TERMS, PINK),
         Line(gradient, "gradient, N = 6, same box", WINE, (0, (7, 2))),
     ]
-    return motion_figure(lines, f"{title} redrawn: {title_of(case.task)}", PAPER_PANELS)
+    return motion_figure(
+        lines,
+        f"{title} redrawn: {title_of(case.task)}",
+        PAPER_PANELS,
+    )
 
 
 def _by_search(result: Reproduction, case: Case, which: Input, colour: str) -> list[Line]:

@@ -65,5 +65,9 @@ class Searched:
             return None
         front = self.fronts[place]
         found = front.cheapest(self.level)
-        plan = evaluate_coefficients(self.case.task, found.coefficients, profile=front.profile)
+        plan = evaluate_coefficients(
+            self.case.task,
+            found.coefficients,
+            profile=front.profile,
+        )
         return plan.restated(seconds=front.record.seconds)

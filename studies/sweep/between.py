@@ -77,12 +77,14 @@ class Between:
         """All of it in a line."""
         broken = f"limits broken by up to {self.of_limits - 1:.1%}"
         more = f"{self.excess:.2%} more" if self.excess else "no more"
-        return ", ".join([
-            f"between the cells: residual {tip_words(self.residual, self.tip_unit)}",
-            f"{more} energy than the cells around the move",
-            *(["limits kept" if self.keeps_limits else broken] if self.of_limits else []),
-            f"each the largest of {self.samples} random moves",
-        ])  # fmt: skip
+        return ", ".join(
+            [
+                f"between the cells: residual {tip_words(self.residual, self.tip_unit)}",
+                f"{more} energy than the cells around the move",
+                *(["limits kept" if self.keeps_limits else broken] if self.of_limits else []),
+                f"each the largest of {self.samples} random moves",
+            ]
+        )
 
     @property
     def remedy(self) -> str:
@@ -102,8 +104,11 @@ def assess(library: MoveLibrary) -> Between:
     ranks = _ranks(tasks, library.profile, library.interpolation(places), energies)
     chosen = {k for rank in ranks.values() for k in np.argsort(rank)[-_JUDGED:]}
     judged = {k: library.plan(**_named(library, places[k])) for k in sorted(chosen)}
-    shares = [share for plan in judged.values()
-              for share in plan.motion.exceeded(plan.task.limits, -1).values()]  # fmt: skip
+    shares = [
+        share
+        for plan in judged.values()
+        for share in plan.motion.exceeded(plan.task.limits, -1).values()
+    ]
     return Between(
         residual=max(worst_residual(plan) for plan in judged.values()),
         excess=max(0.0, *(float(plan.energy / energies[k] - 1) for k, plan in judged.items())),
@@ -126,7 +131,11 @@ def _random_places(library: MoveLibrary) -> Array:
     """Random places that have coefficients, those of one plant one after another."""
     axes = library.grid.axes
     low, high = np.array([(axis.values[0], axis.values[-1]) for axis in axes]).T
-    random = np.random.default_rng(0).uniform(low, high, (_TRIES * _SAMPLES, len(low)))
+    random = np.random.default_rng(0).uniform(
+        low,
+        high,
+        (_TRIES * _SAMPLES, len(low)),
+    )
     of_plant = np.array([axis.name not in OF_MOVES for axis in axes])
     repeated = random[np.arange(len(random)) % _PLANTS]
     random[:, of_plant] = repeated[:, of_plant]

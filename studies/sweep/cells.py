@@ -54,13 +54,21 @@ def plan_cells(
 
 def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) -> pd.DataFrame:
     """Plans from neighbours, and of a tenth the excess over cold plans; the cheaper ones stay."""
-    cells = plan_cells(definition, tasks, cold=not definition.settings.from_neighbours)
+    cells = plan_cells(
+        definition,
+        tasks,
+        cold=not definition.settings.from_neighbours,
+    )
     solved = np.flatnonzero(cells["energy"].notna())
     if not len(solved):
         return cells
     random = np.random.default_rng(seed)
     checked = random.choice(solved, -(-len(solved) // _CHECKED), replace=False)
-    cold = plan_cells(definition, [tasks[k] for k in checked], cold=True)["energy"].to_numpy()
+    cold = plan_cells(
+        definition,
+        [tasks[k] for k in checked],
+        cold=True,
+    )["energy"].to_numpy()
     if (cells["energy"].to_numpy()[checked] > (1 + _ABOVE) * cold).any():
         others = plan_cells(definition, tasks, cold=True)
         cheaper = others["energy"] < cells["energy"].fillna(np.inf)
@@ -121,13 +129,19 @@ def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], cold: bo
             continue
         guess = plan.coefficients
         peaks = {quantity.peak: plan.motion.peak(name) for name, quantity in QUANTITIES.items()}
-        yield {STATUS: STATES.index(plan.status.value), COEFFICIENTS: guess,
-               "energy": plan.energy, "residual": plan.residual, **peaks}  # fmt: skip
+        yield {
+            STATUS: STATES.index(plan.status.value),
+            COEFFICIENTS: guess,
+            "energy": plan.energy,
+            "residual": plan.residual,
+            **peaks,
+        }
 
 
 def _front_of(definition: Definition, task: PointToPoint) -> dict[str, Any]:
     """The front of a move, as far as it has points; one without a range has none."""
-    settings, points = definition.settings, definition.front
+    settings = definition.settings
+    points = definition.front
     try:
         front = epsilon_front(
             task,

@@ -128,7 +128,8 @@ class Definition:
         """Cells of a chunk along each axis; along one that is cut, chunks are alike."""
         work = _WORK_OF_ROBUST if self.grid.task.ranges else 1
         work *= _WORK_OF_FRONT if self.front else 1
-        sizes, room = list[int](), max(1, _CELLS_OF_A_CHUNK // work)
+        sizes = list[int]()
+        room = max(1, _CELLS_OF_A_CHUNK // work)
         for length in reversed(self.grid.shape):
             parts = -(-length // max(1, room))
             sizes.append(-(-length // parts))
@@ -138,15 +139,21 @@ class Definition:
     @cached_property
     def chunks(self) -> list[tuple[slice, ...]]:
         """The cells of every chunk."""
-        return [*product(*(
-            [slice(first, min(first + size, length)) for first in range(0, length, size)]
-            for size, length in zip(self.chunk, self.grid.shape)
-        ))]  # fmt: skip
+        return [
+            *product(
+                *(
+                    [slice(first, min(first + size, length)) for first in range(0, length, size)]
+                    for size, length in zip(self.chunk, self.grid.shape)
+                )
+            )
+        ]
 
     @cached_property
     def planned(self) -> Grid:
         """The moves as they are planned: their limits less the margin."""
-        share, task, limits = 1 - self.margin, self.grid.task, dict[str, Any]()
+        share = 1 - self.margin
+        task = self.grid.task
+        limits = dict[str, Any]()
         for one in task.limits if self.margin else ():
             if one.name == TORQUE_SPEED:
                 line = task.torque_speed or ()
@@ -158,10 +165,16 @@ class Definition:
     @cached_property
     def variables(self) -> dict[str, Variable]:
         """The dataset's variables by name."""
-        task, size = self.grid.task, {"coefficient": self.profile.size}
+        task = self.grid.task
+        size = {"coefficient": self.profile.size}
         tip = task.plant.tip_unit
-        units = {"energy": "J", "residual": tip, f"price_{RESIDUAL}": f"J/{tip}", "iterations": "1",
-                 "cold_excess": "1"}  # fmt: skip
+        units = {
+            "energy": "J",
+            "residual": tip,
+            f"price_{RESIDUAL}": f"J/{tip}",
+            "iterations": "1",
+            "cold_excess": "1",
+        }
         units |= {one.peak: one.unit for one in quantities_of(task.plant.joint, tip).values()}
         units |= {f"price_{one.name}": f"J/({one.quantity.unit or '1'})" for one in task.limits}
         for name in OF_MODES:
@@ -188,7 +201,8 @@ class Definition:
 
     def difference(self, other: Definition) -> str:
         """Names of all in which two sweeps differ, and the residual window of the other."""
-        mine, others = self._entries(), other._entries()
+        mine = self._entries()
+        others = other._entries()
         names = [name for name in mine | others if mine.get(name) != others.get(name)]
         there = {"residual_window": f" ({other.grid.task.residual_window:.10g} s there)"}
         return ", ".join(f"{name}{there.get(name, '')}" for name in names)

@@ -93,7 +93,14 @@ class Grid:
         units |= {name: joint_unit(unit, self.task.plant.joint) for name, unit in OF_MOVES.items()}
         for axis in self.axes:
             if axis.name not in units:
-                raise ValueError(has_no(self.task.plant.name, "axis", axis.name, units))
+                raise ValueError(
+                    has_no(
+                        self.task.plant.name,
+                        "axis",
+                        axis.name,
+                        units,
+                    )
+                )
             if self.names.count(axis.name) > 1:
                 raise ValueError(f"the axis {axis.name} is given twice; give it once")
             if axis.unit != units[axis.name]:
@@ -114,7 +121,11 @@ class Grid:
             )
         if self.axes and isinstance(self.task.residual_window, DefaultWindow):
             window = float(default_window(self._plants_and_targets()))
-            object.__setattr__(self, "task", replace(self.task, residual_window=window))
+            object.__setattr__(
+                self,
+                "task",
+                replace(self.task, residual_window=window),
+            )
 
     @property
     def names(self) -> list[str]:
@@ -139,8 +150,7 @@ class Grid:
     def tasks(self, chunk: tuple[slice, ...]) -> list[PointToPoint]:
         """The moves of some cells."""
         parts = (axis.values[cut] for axis, cut in zip(self.axes, chunk))
-        return [self.task_at(dict(zip(self.names, values)))
-                for values in product(*parts)]  # fmt: skip
+        return [self.task_at(dict(zip(self.names, values))) for values in product(*parts)]
 
     def task_at(self, at: Mapping[str, float]) -> PointToPoint:
         """The move of a value of every axis."""
@@ -163,7 +173,15 @@ class Grid:
 
 def _thinned(values: tuple[float, ...], most: int) -> tuple[float, ...]:
     """At most so many of the values, spread evenly with both ends."""
-    places = np.unique(np.linspace(0, len(values) - 1, min(most, len(values))).round().astype(int))
+    places = np.unique(
+        np.linspace(
+            0,
+            len(values) - 1,
+            min(most, len(values)),
+        )
+        .round()
+        .astype(int)
+    )
     return tuple(values[place] for place in places)
 
 

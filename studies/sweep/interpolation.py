@@ -58,9 +58,11 @@ class Interpolation:
     """
 
     def __init__(self, axes: Sequence[Array], cells: Array) -> None:
-        self.axes, self.cells = axes, cells
+        self.axes = axes
+        self.cells = cells
         self.orders = np.zeros([len(axis) - 1 for axis in axes], np.uint8)
-        marks, boxes = find_jumps(axes, cells), np.indices(self.orders.shape)
+        marks = find_jumps(axes, cells)
+        boxes = np.indices(self.orders.shape)
         for order in ORDERS:
             usable = self._find_usable(order, marks)
             self.orders[(self.orders == 0) & usable[self._first([*boxes], order)]] = order
@@ -116,5 +118,10 @@ def _lagrange_weights(nodes: Array, at: float) -> Array:
     """What each node's value counts in the polynomial through all of them, at a place."""
     others = ~np.eye(len(nodes), dtype=bool)
     distances = np.subtract.outer(nodes, nodes)
-    ratios = np.divide(at - nodes, distances, out=np.ones_like(distances), where=others)
+    ratios = np.divide(
+        at - nodes,
+        distances,
+        out=np.ones_like(distances),
+        where=others,
+    )
     return ratios.prod(axis=1)

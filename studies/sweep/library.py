@@ -42,7 +42,8 @@ class MoveLibrary:
     def __init__(self, path: str | Path) -> None:
         self.store = Store(Path(path))
         definition = self.store.definition
-        self.grid, self.profile = definition.grid, definition.profile
+        self.grid = definition.grid
+        self.profile = definition.profile
         if self.store.missing():
             raise ValueError(f"{path} has cells that are not computed; give its line again")
 
@@ -83,7 +84,8 @@ class MoveLibrary:
         self._check_names(at)
         columns = np.broadcast_arrays(*(np.asarray(at[name], float) for name in self.grid.names))
         for axis, values in zip(self.grid.axes, columns):
-            low, high = axis.values[0], axis.values[-1]
+            low = axis.values[0]
+            high = axis.values[-1]
             if beyond := values[~((low <= values) & (values <= high))].tolist():
                 raise ValueError(
                     f"{axis.name} is {beyond[0]:g} {axis.unit}, and the grid has {low:g} to "
@@ -113,7 +115,8 @@ class MoveLibrary:
 
         ValueError where the library has no coefficients for it.
         """
-        task, coefficients = self.task(**at), self.coefficients(**at)
+        task = self.task(**at)
+        coefficients = self.coefficients(**at)
         return evaluate_coefficients(
             task, coefficients, profile=self.profile, method="interpolated"
         )
@@ -149,7 +152,8 @@ def plan_from(path: str | Path, **at: float) -> tuple[Plan, Between, InfeasibleT
         As of `MoveLibrary` and its `coefficients`.
     """
     library = MoveLibrary(path)
-    plan, between = library.plan(**at), library.between()
+    plan = library.plan(**at)
+    between = library.between()
     exceeded = plan.motion.exceeded(plan.task.limits, OVERRUN)
     broken = " and ".join(limit.label for limit in plan.task.limits if limit.name in exceeded)
     words = f"between the cells the move breaks its limit of {broken}; {between.remedy}"

@@ -37,8 +37,7 @@ def sweep(
     front_points: int = 0,
     margin: float = 0.0,
     solver: Solver = Sqp(),
-    workers: int = 1,
-    scheduler: str | None = None,
+    workers: int | str = 1,
 ) -> xarray.Dataset:
     """Plan every move of a grid; after an interruption the same call continues.
 
@@ -57,7 +56,7 @@ def sweep(
         Points of a front for every move; 0 for none.
     margin : float
         Share of each limit that the plans leave unused, so that moves between the cells keep it.
-    workers, scheduler : int, str, optional
+    workers : int or str
         Processes of this machine, or the address of a dask scheduler.
 
     Returns
@@ -83,12 +82,30 @@ def sweep(
             raise ValueError(has_no(task.plant.name, "axis", name, units))
     values = {name: several(f"axis {name}", axes[name], "values") for name in axes}
     order = sorted(axes, key=lambda name: name in OF_MOVES)  # chunks then have few plants
-    grid = Grid(task, tuple(Axis(name, tuple(values[name]), units[name])
-                            for name in order))  # fmt: skip
+    grid = Grid(
+        task,
+        tuple(
+            Axis(
+                name,
+                tuple(values[name]),
+                units[name],
+            )
+            for name in order
+        ),
+    )
     settings = PlanSettings.of(residual_limit, bound, solver)
     profile = choose_profile(task) if profile is None else profile
-    store = Store.of(Path(path), Definition(grid, profile, settings, front_points, margin))
-    run_sweep(store, workers=workers, scheduler=scheduler)
+    store = Store.of(
+        Path(path),
+        Definition(
+            grid,
+            profile,
+            settings,
+            front_points,
+            margin,
+        ),
+    )
+    run_sweep(store, workers=workers)
     return store.dataset
 
 
@@ -96,13 +113,13 @@ def run_sweep(
     store: Store,
     part: tuple[int, int] = (1, 1),
     *,
-    workers: int = 1,
-    scheduler: str | None = None,
+    workers: int | str = 1,
     report: Callable[[int, int], object] = lambda done, total: None,
 ) -> None:
     """Plan the chunks of a part that are missing; each is in the store as soon as it is done."""
-    missing, done = store.missing(part), 0
-    planned = side_by_side(partial(plan_chunk, store.definition), missing, workers, scheduler)
+    missing = store.missing(part)
+    done = 0
+    planned = side_by_side(partial(plan_chunk, store.definition), missing, workers)
     try:
         for number, rows in planned:
             with note_interrupts() as came:

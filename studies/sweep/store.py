@@ -46,9 +46,10 @@ class Store:
         with _undisturbed(), _damage_told(path):
             self.definition = typed(self.note("sweep"), Definition)
             self._names = [
-                name for name in self.definition.variables
+                name
+                for name in self.definition.variables
                 if name != JUMP and (name in self.dataset or not name.startswith(PEAK))
-            ]  # fmt: skip
+            ]
             self._check_layout()
 
     @classmethod
@@ -112,7 +113,8 @@ class Store:
 
     def missing(self, part: tuple[int, int] = (1, 1)) -> list[int]:
         """The chunks of a part, i of n, that are not computed."""
-        (number, of), status = part, self.read(STATUS)
+        number, of = part
+        status = self.read(STATUS)
         chunks = [*enumerate(self.definition.chunks)][number - 1 :: of]
         return [k for k, chunk in chunks if (status[chunk] == 0).any()]
 
@@ -198,25 +200,34 @@ def _lay_out(path: Path, definition: Definition) -> None:
 
 def _arrays(definition: Definition) -> dict[str, dict[str, Any]]:
     """What zarr is told of the axes, the variables and the digests."""
-    grid, variables = definition.grid, definition.variables
+    grid = definition.grid
+    variables = definition.variables
     arrays: dict[str, dict[str, Any]] = {}
     for axis in grid.axes:
         arrays[axis.name] = {
-            "shape": (len(axis.values),), "dtype": float, "dimension_names": [axis.name],
+            "shape": (len(axis.values),),
+            "dtype": float,
+            "dimension_names": [axis.name],
             "attributes": {"units": axis.unit},
-        }  # fmt: skip
+        }
     for name, (unit, beside, empty, attributes) in variables.items():
         sizes = tuple(beside.values())
         arrays[name] = {
-            "shape": (*grid.shape, *sizes), "chunks": (*definition.chunk, *sizes),
-            "dtype": np.asarray(empty).dtype, "fill_value": empty,
-            "dimension_names": [*grid.names, *beside], "attributes": {"units": unit, **attributes},
-        }  # fmt: skip
+            "shape": (*grid.shape, *sizes),
+            "chunks": (*definition.chunk, *sizes),
+            "dtype": np.asarray(empty).dtype,
+            "fill_value": empty,
+            "dimension_names": [*grid.names, *beside],
+            "attributes": {"units": unit, **attributes},
+        }
     of_chunk = len(variables) - 1  # without the jumps, which follow from the others
     arrays[DIGEST] = {
-        "shape": (len(definition.chunks), of_chunk), "chunks": (1, of_chunk), "dtype": np.int64,
-        "fill_value": 0, "dimension_names": ["chunk", "variable"],
-    }  # fmt: skip
+        "shape": (len(definition.chunks), of_chunk),
+        "chunks": (1, of_chunk),
+        "dtype": np.int64,
+        "fill_value": 0,
+        "dimension_names": ["chunk", "variable"],
+    }
     return arrays
 
 

@@ -84,19 +84,19 @@ def cluster(tmp_path):
 def test_a_cluster_of_one_thread_does_the_work_and_is_not_waited_for_when_it_is_dead(
     cluster, monkeypatch
 ):
-    answers = [*side_by_side(process_and_square_elsewhere(), [1, 2, 3], scheduler=cluster.address)]
+    answers = [*side_by_side(process_and_square_elsewhere(), [1, 2, 3], workers=cluster.address)]
     assert {process for process, _ in answers} == {cluster.worker.pid}
     assert sorted(square for _, square in answers) == [1, 4, 9]
     monkeypatch.setattr(parallel, "_ANSWER_SECONDS", 2)
     monkeypatch.setattr(parallel, "_LOOK_SECONDS", 0.2)
     slow = process_and_square_elsewhere(seconds=1000)
-    work = side_by_side(lambda number: slow(number) if number else None, [0, 1], 1, cluster.address)
+    work = side_by_side(lambda number: slow(number) if number else None, [0, 1], cluster.address)
     assert next(work) is None
     cluster.worker.send_signal(signal.SIGKILL)
     with pytest.raises(LostWorkersError, match=r"all workers of the scheduler at .* are gone"):
         next(work)
     with pytest.raises(ValueError, match=r"has no workers; start some with `dask worker"):
-        next(side_by_side(abs, [1, 2], scheduler=cluster.address))
+        next(side_by_side(abs, [1, 2], workers=cluster.address))
 
 
 def process_and_square_elsewhere(seconds=0.0):
@@ -122,5 +122,5 @@ def test_a_scheduler_that_is_none_is_told_in_a_line(monkeypatch):
             "here:1": "Invalid url scheme",
         }.items():
             with pytest.raises(ValueError, match=rf"^no scheduler answers at .*{reason}") as told:
-                next(side_by_side(abs, [1, 2], scheduler=address))
+                next(side_by_side(abs, [1, 2], workers=address))
             assert "\n" not in str(told.value)

@@ -100,9 +100,13 @@ def bench(given: Given) -> None:
     with counting(len(jobs), "jobs") as progress:
         try:
             fronts = run_jobs(
-                jobs, given.output, **given.pick("workers", "scheduler", "part"),
-                report=lambda job, front, done, total: progress(done, total), finished=finished,
-            )  # fmt: skip
+                jobs,
+                given.output,
+                workers=given.scheduler or given.workers,
+                part=given.part,
+                report=lambda job, front, done, total: progress(done, total),
+                finished=finished,
+            )
         except LostJobsError as error:
             fronts, trouble = dict(error.fronts), error
     if fronts or trouble is None:

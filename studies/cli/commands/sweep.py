@@ -91,7 +91,8 @@ def sweep(given: Given) -> None:
         store.check()
     try:
         with counting(missing, "chunks") as report:
-            run_sweep(store, given.part, report=report, **given.pick("workers", "scheduler"))
+            workers = given.scheduler or given.workers
+            run_sweep(store, given.part, workers=workers, report=report)
     except KeyboardInterrupt:
         done = missing - len(store.missing(given.part))
         trouble = QuietarmError(
