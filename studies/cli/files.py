@@ -17,8 +17,7 @@ from quietarm.ocp.files import check_writable, unwritable
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
 from quietarm.studies.report.saving import STDOUT, SUFFIXES, File, drawing
-from quietarm.studies.report.terminal import show, show_facts
-from quietarm.studies.report.words import print_lines
+from quietarm.studies.report.terminal import show_all
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -105,28 +104,21 @@ def finish(
                 failures.append(error)
             else:
                 written += [] if path == STDOUT else [str(path)]
-    console = Console(stderr=STDOUT in dict(files))
-    for part in filter(None, shown):
-        if isinstance(part, str):
-            print_lines(console, part)
-        elif isinstance(part, Sequence):
-            show_facts(console, part)
-        else:
-            show(console, part)
-    for name in written:
-        print_lines(console, f"wrote {name}")
     if came and trouble is None:
         trouble = QuietarmError(f"interrupted; wrote {', '.join(written) or 'nothing'}")
-    _raise([*([trouble] if trouble else []), *failures])
+    error = _error_of_all([*([trouble] if trouble else []), *failures])
+    console = Console(stderr=STDOUT in dict(files))
+    show_all(console, *shown, *(f"wrote {name}" for name in written))
+    if error is not None:
+        raise error
 
 
-def _raise(errors: Sequence[Exception]) -> None:
-    """Raise an error that has no words for the user, or the only one, or the words of all."""
+def _error_of_all(errors: Sequence[Exception]) -> Exception | None:
+    """The error that has no words for the user, or the only one, or one with the words of all."""
     for error in errors:
         if not isinstance(error, ValueError | QuietarmError) or len(errors) == 1:
-            raise error
-    if errors:
-        raise ValueError("; ".join(map(str, errors)))
+            return error
+    return ValueError("; ".join(map(str, errors))) if errors else None
 
 
 def _save(path: Path, write: Callable[[Path], object]) -> None:

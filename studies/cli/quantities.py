@@ -7,22 +7,25 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields
 from functools import partial, reduce
 from operator import add, lt
 from typing import Any, TypeVar
 
+import numpy as np
+
 from quietarm.metaheuristics.parallel import MOST_WORKERS
+from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.ocp import ModalState
-from quietarm.ocp.checks import finite, known, unknown, whole
+from quietarm.ocp.checks import finite, has_no, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
 from quietarm.studies.reading.units import UNITS as OF_COLUMNS
 from quietarm.studies.reading.units import normal
-from quietarm.studies.sweep.grid import OF_MOVES, axis_values
+from quietarm.studies.sweep.grid import MOST_VALUES, OF_MOVES
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -119,6 +122,33 @@ def parse_parameter(text: str, unit: str, name: str) -> float:
     return parse_quantity(text, unit, f"a value of {name}")
 
 
+def parse_parameters(
+    plant: Plant | type[Plant], pairs: Iterable[tuple[str, str]]
+) -> dict[str, tuple[float, ...]]:
+    """Read the values that a plant's parameters are set to, several for an axis of a sweep."""
+    units = plant.units()
+    meanings = {entry.name: entry.metadata.get("meaning", "") for entry in fields(plant)}
+    values: dict[str, tuple[float, ...]] = {}
+    for name, text in once(pairs, "--set ").items():
+        if name not in units:
+            symbols = [symbol for symbol, meaning in meanings.items() if name in meaning]
+            meant = f"; the {name} is {' or '.join(symbols)}" if symbols else ""
+            raise ValueError(has_no(plant.name, "parameter", name, meanings) + meant)
+        values[name] = parse_values(text, partial(parse_parameter, unit=units[name], name=name))
+    return values
+
+
+def single_values(values: Mapping[str, Sequence[float]]) -> dict[str, float]:
+    """Values by name; ValueError where there are several of one name."""
+    for name, several in values.items():
+        if len(several) > 1:
+            raise ValueError(
+                f"{name} has {len(several)} values here; give one (a number has a decimal point), "
+                "or quietarm sweep for all"
+            )
+    return {name: value for name, (value,) in values.items()}
+
+
 def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     """Read an end or the duration of a move, or a limit of it, in the units of joint and tip.
 
@@ -127,7 +157,7 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     if name in OF_MOVES:
         end = ("rad", "an angle") if joint == ROTARY else ("m", "a position")
         kind = ("s", "a time") if name == "duration" else end
-        return axis_values(text, partial(parse_usual, *kind))
+        return parse_values(text, partial(parse_usual, *kind))
     if name == TORQUE_SPEED:
         return parse_torque_speed(text, joint)
     if name == RESIDUAL_LIMIT:
@@ -141,6 +171,37 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     if len({is_number(side) for side in sides}) > 1:
         raise ValueError(f"{text!r} has a unit on one side alone; give it on both, or on none")
     return tuple(values) if len(values) == 2 else values[0]
+
+
+def parse_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
+    """Read values: one, several as ``0.6,0.8,1.2``, or from, to, step as ``10deg:90deg:5deg``."""
+    if ":" in text:
+        ends = text.split(":")
+        if len(ends) != 3:
+            raise ValueError(f"{text!r} is no axis; give from:to:step, as 10deg:90deg:5deg")
+        first, last, step = map(parse, ends)
+        steps = (last - first) / step if step else math.inf
+        if not (steps > 0 and math.isfinite(steps)):
+            raise ValueError(
+                f"{text!r}: steps of {ends[2]} do not lead from {ends[0]} to {ends[1]}; give "
+                "from:to:step, as 10deg:90deg:5deg"
+            )
+        if steps >= MOST_VALUES:
+            raise ValueError(
+                f"{text!r}: steps of {ends[2]} make {steps + 1:.0f} values, and {MOST_VALUES} are "
+                "the most; give wider steps"
+            )
+        rounding_error = 1e-6 * steps
+        if abs(steps - round(steps)) > rounding_error:
+            raise ValueError(
+                f"{text!r}: steps of {ends[2]} from {ends[0]} do not reach {ends[1]}; give a step "
+                "that does"
+            )
+        return tuple(np.linspace(first, last, round(steps) + 1).round(12).tolist())
+    values = tuple(parse(value) for value in text.split(","))
+    if len(set(values)) < len(values):
+        raise ValueError(f"{text!r} has a value twice; give each once")
+    return tuple(sorted(values))
 
 
 def is_number(text: str) -> bool:

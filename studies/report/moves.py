@@ -72,7 +72,7 @@ def _arrival_rows(plan: Plan) -> list[Row]:
     """What a robust plan may leave, said first: it does not arrive at rest."""
     if plan.worst is None or plan.worst.residual < REST:
         return []
-    left = tip_words(plan.worst.residual, plan.task.plant.tip_unit)
+    left = _tip(plan.task, plan.worst.residual)
     return [("arrives", f"not at rest: with such errors up to {left} of vibration are left")]
 
 
@@ -131,18 +131,17 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
     for scenario in task.scenarios[1:]:
         errors = dict(zip(task.error_names, scenario))
         residual = candidate.perturbed(errors).residual
-        words = tip_words(residual, task.plant.tip_unit)
+        words = _tip(task, residual)
         rows.append(("residual", f"{words} with {_signed(errors)}"))
     return [*rows, ("verified", "by CVODES alone, along the spline")]
 
 
 def sensitivity_rows(plan: Plan) -> list[Row]:
     """What a parameter that is 1 % larger adds to residual and energy."""
-    tip_unit = plan.task.plant.tip_unit
     return [
         (
             change.parameter,
-            f"{tip_words(change.residual / 100, tip_unit)}, {change.energy / plan.energy:+.3g} %",
+            f"{_tip(plan.task, change.residual / 100)}, {change.energy / plan.energy:+.3g} %",
         )
         for change in plan.sensitivities
     ]
@@ -176,7 +175,7 @@ def _worst_of_plan(plan: Plan, worst: Worst) -> str:
 def _verified_row(plan: Plan) -> Row:
     """How far the two integrators agree; the word `verified` only where that is near enough."""
     check = plan.verification
-    residual = tip_words(abs(check.residual_difference), plan.task.plant.tip_unit)
+    residual = _tip(plan.task, abs(check.residual_difference))
     differ = f"{check.energy_share:.0e} in energy and {residual}"
     if check.agrees:
         return "verified", f"by CVODES, which differs by {differ}"
@@ -190,7 +189,7 @@ def _verified_row(plan: Plan) -> Row:
 def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and which of them the motion breaks."""
     tip_unit = task.plant.tip_unit
-    limits = [f"residual {tip_words(residual_limit, tip_unit)}"] * (residual_limit > 0)
+    limits = [f"residual {_tip(task, residual_limit)}"] if residual_limit > 0 else []
     for limit in task.limits:
         peak = limit.peak_of(motion)
         broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
@@ -205,10 +204,10 @@ def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) 
 
 def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> list[Row]:
     """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
-    residual = tip_words(motion.residual, task.plant.tip_unit)
+    residual = _tip(task, motion.residual)
     if motion.residual < REST:  # nobody sees a difference
         where = "as wanted" if task.final else "at rest"
-        residual = f"{where} (below {tip_words(REST, task.plant.tip_unit)})"
+        residual = f"{where} (below {_tip(task, REST)})"
     known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
@@ -223,6 +222,11 @@ def _peak_name(name: str, task: PointToPoint) -> str:
     return f"peak {'force' if force else name.replace('_', ' ')}"
 
 
+def _tip(task: PointToPoint, displacement: float) -> str:
+    """A displacement of the tip in the unit that is shown."""
+    return tip_words(displacement, task.plant.tip_unit)
+
+
 def _way(size: float, task: PointToPoint) -> str:
     """A way of the joint in its unit."""
     return f"{size:.3g} {joint_unit('rad', task.plant.joint)}"
@@ -230,16 +234,17 @@ def _way(size: float, task: PointToPoint) -> str:
 
 def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
-    peak, tip_unit = motion.peak(name), task.plant.tip_unit
-    unit = quantities_of(task.plant.joint, tip_unit)[name].unit
+    peak = motion.peak(name)
     if name == "deflection":
-        small, words = task.plant.small_deflection, tip_words(peak, tip_unit)
+        small = task.plant.small_deflection
+        words = _tip(task, peak)
         if small is None or max(motion.peak_deflection, motion.residual) <= small:
             return words
         return (
-            f"{words}  (warning: beyond {tip_words(small, tip_unit)}, up to which the plant's "
+            f"{words}  (warning: beyond {_tip(task, small)}, up to which the plant's "
             "deflections count as small; its equations are less exact there)"
         )
+    unit = quantities_of(task.plant.joint, task.plant.tip_unit)[name].unit
     warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
     too_hard = warnings[name](task, motion) if name in remedies else ""
     warning = f"  (warning: {too_hard}; {remedies[name]})" if too_hard else ""

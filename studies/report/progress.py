@@ -24,7 +24,7 @@ from rich.progress import (
 from quietarm.metaheuristics import SearchProgress
 from quietarm.metaheuristics.score import final_share_of_box
 from quietarm.ocp import Front
-from quietarm.studies.report.words import print_lines
+from quietarm.studies.report.terminal import print_lines
 from quietarm.studies.tips import tip_scale, tip_words
 
 PLAIN_SECONDS = 2.0

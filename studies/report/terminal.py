@@ -1,31 +1,38 @@
-"""Reports on a terminal, however narrow."""
+"""Lines, facts and reports on a terminal, however narrow."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from quietarm.ocp.checks import printable
-from quietarm.studies.report.report import Report
-from quietarm.studies.report.words import print_lines
+
+if TYPE_CHECKING:
+    from quietarm.studies.report.report import Report
 
 _LEAST_VALUE = 30
 """Least width of the column of values; below it they would be broken up."""
 
 
-def show(console: Console, report: Report) -> None:
-    """Print a report without its pictures; in a pipe its tables are as wide as they need."""
-    from rich.markdown import Markdown  # not at the top: it takes long to load
+def show_all(console: Console, *parts: Report | Sequence[tuple[str, str]] | str) -> None:
+    """Print reports, facts and lines, one below the other; empty ones are left out."""
+    for part in filter(None, parts):
+        if isinstance(part, str):
+            print_lines(console, part)
+        elif isinstance(part, Sequence):
+            show_facts(console, part)
+        else:
+            show(console, part)
 
-    text = printable(report.markdown())
-    lines = [line for line in text.splitlines() if not line.startswith("![")]
-    if not console.is_terminal:
-        widest = max((len(line) for line in lines if line.startswith("|")), default=0)
-        console = Console(file=console.file, width=max(console.width, widest))
-    console.print(Markdown("\n".join(lines)))
+
+def print_lines(console: Console, *lines: str) -> None:
+    """Print lines as they are, however narrow the console."""
+    text = "\n".join(lines)
+    console.print(printable(text), markup=False, highlight=False, soft_wrap=True)
 
 
 def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
@@ -41,3 +48,15 @@ def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
     for name, value in rows:
         table.add_row(Text(name), Text(value))
     console.print(table)
+
+
+def show(console: Console, report: Report) -> None:
+    """Print a report without its pictures; in a pipe its tables are as wide as they need."""
+    from rich.markdown import Markdown  # not at the top: it takes long to load
+
+    text = printable(report.markdown())
+    lines = [line for line in text.splitlines() if not line.startswith("![")]
+    if not console.is_terminal:
+        widest = max((len(line) for line in lines if line.startswith("|")), default=0)
+        console = Console(file=console.file, width=max(console.width, widest))
+    console.print(Markdown("\n".join(lines)))

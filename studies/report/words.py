@@ -1,4 +1,4 @@
-"""Words on the screen: lines that stay whole, lengths in millimetres, plants, moves and tasks."""
+"""Words for what is shown: lengths in millimetres, plants, moves and tasks."""
 
 from __future__ import annotations
 
@@ -6,24 +6,15 @@ from dataclasses import fields
 from math import degrees, isfinite
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
 from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import ModalState, PointToPoint
-from quietarm.ocp.checks import printable
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.record import REST
 from quietarm.studies.tips import tip_scale, tip_words
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.spread import Spread
-
-
-def print_lines(console: Console, *lines: str) -> None:
-    """Print lines as they are, however narrow the console."""
-    text = printable("\n".join(lines))
-    console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def counted(number: int, what: str) -> str:

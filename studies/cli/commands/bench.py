@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 from rich.console import Console
 
+from quietarm.studies.cli.effort import refuse_endless
 from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
@@ -71,7 +72,7 @@ def bench(given: Given) -> None:
     from quietarm.studies.bench.results import Results, imported_runs
     from quietarm.studies.bench.statistics import say_power_of
     from quietarm.studies.reading.saved import load_runs
-    from quietarm.studies.report.words import print_lines
+    from quietarm.studies.report.terminal import print_lines
 
     methods = list(map(spell_method, given.methods))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
@@ -79,7 +80,7 @@ def bench(given: Given) -> None:
     problems = problems_of(given.problems)
     jobs, left_out = jobs_of(problems, *asked)
     candidates = sum(job.budget or 0 for job in jobs)
-    given.refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE)
+    refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     runs, unreadable = load_runs(given.imported)
     imported, not_imported = imports_on(problems, runs, given.imported)
     reported_runs(given.output)  # refuses a folder whose runs.csv is another's

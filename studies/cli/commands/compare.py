@@ -17,7 +17,7 @@ from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.types import INPUT, NAMES
 from quietarm.studies.compare.judged_motions import SAMPLES
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import print_lines
+from quietarm.studies.report.terminal import print_lines
 
 if TYPE_CHECKING:
     from quietarm.ocp import Front, Plan

@@ -15,6 +15,7 @@ from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
+from quietarm.studies.cli.effort import refuse_endless
 from quietarm.studies.cli.files import PICTURE, answer_files, ending_of, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
@@ -94,10 +95,10 @@ def search(given: Given) -> None:
     workers, first = given.workers, whole("seed", given.seed, 0)
     seeds = range(first, first + whole("runs", given.runs, 1, 10_000))
     preset = PRESETS[given.method]
-    size, rounds = given.population or preset.population, given.generations or preset.generations
-    given.refuse_endless(
-        len(seeds) * preset.evaluations(size, rounds), "candidates", SECONDS_OF_CANDIDATE
-    )
+    population = given.population or preset.population
+    generations = given.generations or preset.generations
+    candidates = len(seeds) * preset.evaluations(population, generations)
+    refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     fronts, trouble = list[Front](), None
     with search_display(progress_console()) as display:
         if not several and workers == 1:
