@@ -24,10 +24,9 @@ if TYPE_CHECKING:
 
     from quietarm.studies.report import Report
 
-PICTURE, FOLDER, DATASET = SUFFIXES[0], "", ".zarr"
-_SAME = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv"}
-"""Endings that mean the same as another."""
-_NAMES = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
+PICTURE = SUFFIXES[0]
+FOLDER = ""
+DATASET = ".zarr"
 
 
 def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.Option:
@@ -35,10 +34,12 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.
 
     A command whose answers go to standard output as well has the ending .json.
     """
-    listed = "; ".join(f"{_NAMES.get(kind, kind)} for {words}" for kind, words in kinds.items())
+    names = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
+    listed = "; ".join(f"{names.get(kind, kind)} for {words}" for kind, words in kinds.items())
 
     def check(text: str) -> Path:
-        path, kind = Path(text), ending_of(Path(text))
+        path = Path(text)
+        kind = ending_of(path)
         if path == STDOUT:
             if ".json" not in kinds:
                 raise ValueError(f"this cannot go to standard output; give a name, or ./{text}")
@@ -71,7 +72,11 @@ def check_folder(path: str | Path) -> Path:
 
 def ending_of(path: Path) -> str:
     """The ending that says what goes into a file; that of JSON for standard output."""
-    return ".json" if path == STDOUT else _SAME.get(path.suffix.lower(), path.suffix.lower())
+    if path == STDOUT:
+        return ".json"
+    same = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv"}
+    suffix = path.suffix.lower()
+    return same.get(suffix, suffix)
 
 
 def answer_files(
@@ -93,7 +98,8 @@ def finish(
     In this order, so that nothing is lost where standard output is closed. Ctrl-C waits until the
     files are there. Words go to standard error where standard output is one of the files.
     """
-    written, failures = list[str](), list[Exception]()
+    written = list[str]()
+    failures = list[Exception]()
     with note_interrupts() as came, busy("writing"):
         for path, write in files:
             try:

@@ -32,9 +32,6 @@ from quietarm.studies.identify import Identified
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
 
-_OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()), TORQUE_SPEED)
-"""Options that are read once the plant is known: in radians, or in metres of a linear axis."""
-
 
 class Given:
     """The options of a command by their names, as `given.terms`."""
@@ -131,8 +128,10 @@ class Given:
         uncertainty = build_uncertainty(kind, self.errors, parameters)
         options = self.pick("residual_window", "initial", "final", "energy")
         options |= {name: (value,) for name, value in known.items()}
-        unknown = [name for name in _OF_JOINT if name not in known]
-        options |= {name: self.read_of_plant(name, plant) for name in unknown}
+        limits = [quantity.limit for quantity in QUANTITIES.values()]
+        for name in [*OF_MOVES, *limits, TORQUE_SPEED]:
+            if name not in known:
+                options[name] = self.read_of_plant(name, plant)
         for name, example in {"target": "30deg", "duration": "0.8"}.items():
             if options[name] is None:
                 raise click.UsageError(f"Missing option '--{name}'. Give it as --{name} {example}")

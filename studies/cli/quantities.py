@@ -66,7 +66,7 @@ MEASURED = "measured"
 
 def parse_quantity(text: str, unit: str, what: str) -> float:
     """Read a number in an SI unit, or with another unit of its kind: 0.6, 600mm, 3.2Hz, pi/6."""
-    examples, others = UNITS.get(unit, (f"a number in {unit}, without the unit", {}))
+    examples, units = UNITS.get(unit, (f"a number in {unit}, without the unit", {}))
     plain = text.strip()
     if "^" in unit:
         plain = plain.removesuffix(unit.removeprefix("rad").removeprefix("m"))
@@ -75,8 +75,8 @@ def parse_quantity(text: str, unit: str, what: str) -> float:
         if float(divisor or 1) != 0:
             return float(f"{sign}1") * float(factor or 1) * math.pi / float(divisor or 1)
     match = _WITH_UNIT.fullmatch(plain)
-    if match and match[2] in others:
-        return float(match[1]) / others[match[2]]
+    if match and match[2] in units:
+        return float(match[1]) / units[match[2]]
     if is_number(plain):
         return float(plain)  # nan and inf, for the task to refuse in its own words
     if _COMMA.fullmatch(plain):
@@ -96,10 +96,10 @@ _RARE = {
 def parse_usual(unit: str, what: str, text: str) -> float:
     """Read a quantity; a number alone that is rarely meant in SI is asked about."""
     value = parse_quantity(text, unit, what)
-    most, name, other, short = _RARE.get(what) or _RARE.get(unit, (math.inf, "", "", ""))
+    most, name, likely, short = _RARE.get(what) or _RARE.get(unit, (math.inf, "", "", ""))
     if math.isfinite(value) and abs(value) > most and is_number(text):
         raise ValueError(
-            f"{text} is in {name}; were {other} meant? give {text}{short}, or {text}{unit}"
+            f"{text} is in {name}; were {likely} meant? give {text}{short}, or {text}{unit}"
         )
     return value
 
@@ -163,7 +163,8 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     if name == RESIDUAL_LIMIT:
         return parse_usual(tip_unit, "a length" if tip_unit == "m" else "an angle", text)
     quantities = quantities_of(joint, tip_unit)
-    limited, sides = quantities[name.removesuffix("_limit")], text.split(":")
+    limited = quantities[name.removesuffix("_limit")]
+    sides = text.split(":")
     what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
     values = [parse_usual(limited.unit, what, side) for side in sides]
     if len(values) > 2:
@@ -218,7 +219,7 @@ def _two(
     first: Callable[[str], S],
     second: Callable[[str], T],
     otherwise: str,
-    fits: Callable[[S, T], bool] = lambda one, other: True,
+    fits: Callable[[S, T], bool] = lambda first, second: True,
 ) -> Callable[[str], tuple[S, T]]:
     """What reads two values with a mark between them that fit each other.
 
@@ -227,18 +228,18 @@ def _two(
 
     def parse(text: str) -> tuple[S, T]:
         with suppress(ValueError):
-            one, other = text.split(mark)
-            found = first(one), second(other)
-            if fits(*found):
-                return found
+            left_text, right_text = text.split(mark)
+            values = first(left_text), second(right_text)
+            if fits(*values):
+                return values
         raise ValueError(f"{text!r} is no {otherwise}")
 
     return parse
 
 
 def _lengths(text: str) -> tuple[float, ...]:
-    lengths = (one.removesuffix("/s") for one in text.split(","))
-    return tuple(parse_quantity(one, "m", "a length") for one in lengths)
+    lengths = (length.removesuffix("/s") for length in text.split(","))
+    return tuple(parse_quantity(length, "m", "a length") for length in lengths)
 
 
 parse_weights = _two(":", float, float, "pair of weights; give those of residual and energy as 1:3")
@@ -318,7 +319,7 @@ def parse_error(text: str) -> tuple[str, float]:
 
 def parse_units(text: str) -> dict[str, str]:
     """Read units of a recording's quantities: ``time:ms,angle:deg``."""
-    pairs = (map(str.strip, one.partition(":")) for one in text.split(","))
+    pairs = (map(str.strip, pair.partition(":")) for pair in text.split(","))
     units = once(((quantity, unit) for quantity, _, unit in pairs), "the unit of ")
     for quantity, unit in units.items():
         factors = _of_column(quantity)
@@ -329,7 +330,7 @@ def parse_units(text: str) -> dict[str, str]:
 
 def parse_scales(text: str) -> list[tuple[str, float]]:
     """Read what counts of recorded quantities are in SI units: ``angle=2pi/4096,tip=1e-5``."""
-    return [_scale(one) for one in text.split(",")]
+    return [_scale(scale) for scale in text.split(",")]
 
 
 def _scale(text: str) -> tuple[str, float]:
@@ -363,7 +364,9 @@ def parse_rate(text: str) -> float:
 def parse_coefficients(text: str) -> list[float]:
     """Read numbers that are separated by commas."""
     try:
-        return [_finite(f"coefficient {i}", one) for i, one in enumerate(text.split(","), start=1)]
+        return [
+            _finite(f"coefficient {i}", number) for i, number in enumerate(text.split(","), start=1)
+        ]
     except ValueError as error:
         raise ValueError(f"{error}, and commas between several, or a file of rows") from None
 
@@ -386,11 +389,11 @@ def _part_of_energy(text: str) -> Energy:
     if name not in energies:
         raise ValueError(unknown("energy", name, energies))
     wanted = [entry.name for entry in fields(energies[name])]
-    given = numbers.split(",") if colon else []
-    if len(given) != len(wanted):
+    values = numbers.split(",") if colon else []
+    if len(values) != len(wanted):
         form = f"{name}:{','.join(wanted)}" if wanted else name
-        raise ValueError(f"{text!r} has {len(given)} numbers of {len(wanted)}; give {form}")
-    energy = energies[name](*map(_finite, wanted, given))
+        raise ValueError(f"{text!r} has {len(values)} numbers of {len(wanted)}; give {form}")
+    energy = energies[name](*map(_finite, wanted, values))
     return _finite("weight", weight) * energy if times else energy
 
 

@@ -39,7 +39,9 @@ _PLAY = Path(__file__).with_name("play.js").read_text()
 """The frame of the moment, and the last one for a second."""
 Rows = list[tuple[Any, ...]]
 """Of a source, in the order of its columns."""
-_CURVE, _BODY, _POINT = ("xs", "ys", "colour", "dash"), ("xs", "ys", "colour", "width"), ("x", "y")
+_CURVE = ("xs", "ys", "colour", "dash")
+_BODY = ("xs", "ys", "colour", "width")
+_POINT = ("x", "y")
 _COLUMNS: Mapping[str, tuple[str, ...]] = {
     "film": (*_BODY, "frames", "words"), "paths": ("xs", "ys"), "corners": _POINT,
     "points": _POINT, "here": _POINT, **dict.fromkeys(("robustness", *PANELS), _CURVE),
@@ -52,7 +54,7 @@ class Plots:
 
     def __init__(self, document: Document, plant: Plant, pick: Callable[[int], None]) -> None:
         self._sources = {
-            name: ColumnDataSource({one: [] for one in of}) for name, of in _COLUMNS.items()
+            name: ColumnDataSource({column: [] for column in of}) for name, of in _COLUMNS.items()
         }
         shown = tip_scale(plant.tip_unit)[0]
         below = "time [s]  (dotted: arrival)"
@@ -99,7 +101,8 @@ class Plots:
         """The front, and where the motion in hand lies."""
         plot: Any = figure(name="front", tools="tap", x_axis_label=" ",
                            y_axis_label="energy F2 [J]")  # fmt: skip
-        points, here = self._sources["points"], self._sources["here"]
+        points = self._sources["points"]
+        here = self._sources["here"]
         points.selected.on_change("indices", lambda _, old, new: pick(new[0]) if new else None)
         plot.line(*_POINT, source=points, color=BLUE)
         plot.scatter(*_POINT, source=points, color=BLUE, size=9, nonselection_alpha=1)
@@ -117,20 +120,25 @@ class Plots:
 
 def _drawn(explored: Explored) -> dict[str, Rows]:
     """Rows of every source: the motion in hand, over the plain cycloid and the one that is kept."""
-    plan, front = explored.plan, explored.front.points if explored.front else ()
+    plan = explored.plan
+    front = explored.front.points if explored.front else ()
     cycloid = evaluate_coefficients(plan.task, [])
     lines = [Line(cycloid, "", GREY, "solid"), Line(plan, "", BLUE, "solid")]
     if explored.kept:
         lines.insert(1, Line(explored.kept, "", ORANGE, "dashed"))
     scale = tip_scale(plan.task.plant.tip_unit)[1]
-    points, here = ([(scale * one.residual, one.energy) for one in of] for of in (front, [plan]))
+    points, here = (
+        [(scale * point.residual, point.energy) for point in of] for of in (front, [plan])
+    )
     rows = {"points": points, "here": here * bool(front), "robustness": _robustness(plan)}
     return rows | _film(lines[-1]) | {name: _quantity(lines, name) for name in PANELS}
 
 
 def _quantity(lines: list[Line], name: str) -> Rows:
     """A quantity of motions; the limits that these come near, and the arrival of the last one."""
-    rows, reach, end = Rows(), [np.zeros(1)], lines[-1].plan.task.duration
+    rows = Rows()
+    reach = [np.zeros(1)]
+    end = lines[-1].plan.task.duration
     for line in lines:
         time = line.plan.trajectory.time
         some = slice(None, None, max(1, len(time) // _POINTS))
@@ -139,17 +147,19 @@ def _quantity(lines: list[Line], name: str) -> Rows:
             reach.append(values)
     limits = limits_in_sight(lines[-1:], name, np.concatenate(reach))
     rows += [([0.0, end], [level, level], RED, "dashed") for level in limits]
-    every = np.concatenate([*reach, limits])
-    return [*rows, ([end, end], _plain([every.min(), every.max()]), INK, "dotted")]
+    all_residuals = np.concatenate([*reach, limits])
+    return [*rows, ([end, end], _plain([all_residuals.min(), all_residuals.max()]), INK, "dotted")]
 
 
 def _robustness(plan: Plan) -> Rows:
     """The residual over the error of the frequency [%], and what is tolerated."""
     ranges = {"frequency": FREQUENCY}
-    found = evaluate_robustness(plan.candidate, ranges, samples=1)
+    robustness = evaluate_robustness(plan.candidate, ranges, samples=1)
     scale = tip_scale(plan.task.plant.tip_unit)[1]
-    (sweep,), tolerated = found.sweeps, scale * found.tolerated
-    errors, residuals = _plain(100 * sweep.errors), _plain(scale * sweep.figures.residual)
+    (sweep,) = robustness.sweeps
+    tolerated = scale * robustness.tolerated
+    errors = _plain(100 * sweep.errors)
+    residuals = _plain(scale * sweep.figures.residual)
     level = [errors[0], errors[-1]], [tolerated, tolerated], GREY, "dashed"
     return [(errors, residuals, BLUE, "solid"), level]
 
@@ -159,12 +169,16 @@ def _film(line: Line) -> dict[str, Rows]:
     plan = line.plan
     end = plan.task.duration + plan.task.residual_window
     times = np.arange(0.0, end, 1 / FRAMES)
-    (one,) = structures_of([line], times, end)
+    (structure,) = structures_of([line], times, end)
     residual = residual_words(plan.residual, plan.task.plant.tip_unit)
-    words = f"{plan.energy:.4g} J, {residual}; {one.scale_words}"
+    words = f"{plan.energy:.4g} J, {residual}; {structure.scale_words}"
     parts = [(*_along(part.points), part.colour, part.width, len(times), words)
-             for part in one.bent]  # fmt: skip
-    return {"film": parts, "corners": _plain(one.corners), "paths": [*map(_along, one.paths)]}
+             for part in structure.bent]  # fmt: skip
+    return {
+        "film": parts,
+        "corners": _plain(structure.corners),
+        "paths": [*map(_along, structure.paths)],
+    }
 
 
 def _along(points: NDArray[np.float64]) -> tuple[Any, ...]:

@@ -39,11 +39,13 @@ def grid_figure(store: Store) -> Figure:
     if len(axes) == 1:
         return _over_one(store, axes[0])
     places = [*np.ndindex(*store.definition.grid.shape[:-2])][:_MOST_SLICES]
-    slices, variables = [(place, _words(axes, place)) for place in places], _variables(store)
+    slices = [(place, _words(axes, place)) for place in places]
+    variables = _variables(store)
     count = len(variables) + 1
     figure = new_figure(0.6 + 3.6 * count, 0.6 + 3.1 * len(slices))
     panels = figure.subplots(len(slices), count, squeeze=False, sharex=True, sharey=True)
-    (x, x_name), (y, y_name) = _shown(axes[-1]), _shown(axes[-2])
+    (x, x_name) = _shown(axes[-1])
+    (y, y_name) = _shown(axes[-2])
     for column, (label, values, least) in enumerate(variables):
         norm = _norm(values)
         panels[0, column].set_title(label)
@@ -71,7 +73,8 @@ def grid_figure(store: Store) -> Figure:
 def fronts_figure(store: Store) -> Figure:
     """Fronts over the last axis, a panel for each of the first values of those before."""
     axes = store.definition.grid.axes
-    residual, energy = store.read("front_residual"), store.read("front_energy")
+    residual = store.read("front_residual")
+    energy = store.read("front_energy")
     tip_unit = store.definition.grid.task.plant.tip_unit
     places = [*np.ndindex(*residual.shape[:-2])][:_MOST_SLICES]
     figure = new_figure(1.0 + 4.0 * len(places), 3.8)
@@ -81,8 +84,8 @@ def fronts_figure(store: Store) -> Figure:
     colours = ScalarMappable(norm, "viridis")
     for ax, place in zip(panels, places):
         for k, value in enumerate(values):
-            left = tip_scale(tip_unit)[1] * residual[(*place, k)]
-            ax.plot(left, energy[(*place, k)], color=colours.to_rgba(value))
+            shown_residual = tip_scale(tip_unit)[1] * residual[(*place, k)]
+            ax.plot(shown_residual, energy[(*place, k)], color=colours.to_rgba(value))
         ax.set_title(_words(axes, place), loc="left", fontsize=9)
         name_objectives(ax, tip_unit, store.definition.grid.task.residual_window)
         ax.grid(alpha=0.25)
@@ -98,8 +101,8 @@ def _over_one(store: Store, axis: Axis) -> Figure:
     values, name = _shown(axis)
     without = np.isnan(store.read("energy"))
     for number, (ax, (label, shown, _)) in enumerate(zip(panels, variables)):
-        own = look(number)
-        ax.plot(values, shown, own.mark + "-", color=own.colour)
+        look_of_front = look(number)
+        ax.plot(values, shown, look_of_front.mark + "-", color=look_of_front.colour)
         logarithmic(ax, shown, "y")
         ax.plot(values[without], np.full(without.sum(), 0.02), "x", color="0.4",
                 transform=ax.get_xaxis_transform())  # fmt: skip
@@ -119,11 +122,13 @@ def _variables(store: Store) -> list[tuple[str, Array, float]]:
         "residual": (residual, scale, REST * scale),
         "price_residual": (f"shadow price [J/{shown}]", 1 / scale, _LEAST_PRICE / scale),
     }
-    every = [
+    all_variables = [
         (label, np.maximum(factor * store.read(name), least), least)
         for name, (label, factor, least) in variables.items()
     ]
-    return [one for one in every if np.isfinite(one[1]).any()] or every[:1]
+    return [
+        variable for variable in all_variables if np.isfinite(variable[1]).any()
+    ] or all_variables[:1]
 
 
 def _words(axes: tuple[Axis, ...], place: tuple[int, ...]) -> str:
@@ -137,7 +142,8 @@ def _norm(values: Array) -> Normalize:
     known = values[np.isfinite(values) & (values > 0)]
     if not known.size:
         return Normalize(0.0, 1.0)
-    least, most = float(known.min()), float(known.max())
+    least = float(known.min())
+    most = float(known.max())
     return LogNorm(least, most) if most > 1.01 * least else LogNorm(least / 2, 2 * most)
 
 

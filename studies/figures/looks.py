@@ -6,8 +6,14 @@ from dataclasses import dataclass
 
 Dash = str | tuple[int, tuple[float, ...]]
 
-BLUE, RED, GREEN, ORANGE = "#0072B2", "#D55E00", "#009E73", "#E69F00"
-PINK, SKY, WINE, INDIGO = "#CC79A7", "#56B4E9", "#882255", "#332288"
+BLUE = "#0072B2"
+RED = "#D55E00"
+GREEN = "#009E73"
+ORANGE = "#E69F00"
+PINK = "#CC79A7"
+SKY = "#56B4E9"
+WINE = "#882255"
+INDIGO = "#332288"
 COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY, WINE, INDIGO)
 """Okabe and Ito's without yellow, which is too pale, and black, which is for marks; and two dark
 ones of Tol's, https://personal.sron.nl/~pault/."""

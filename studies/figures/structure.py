@@ -65,8 +65,8 @@ class Structure:
     @property
     def corners(self) -> Array:
         """Least and largest coordinates of all that is drawn [m], shape (2, 2)."""
-        every = np.vstack([part.points.reshape(-1, 2) for part in (*self.bent, *self.unbent)])
-        return np.array([every.min(axis=0), every.max(axis=0)])
+        points = np.vstack([part.points.reshape(-1, 2) for part in (*self.bent, *self.unbent)])
+        return np.array([points.min(axis=0), points.max(axis=0)])
 
     @property
     def scale_words(self) -> str:
@@ -95,7 +95,8 @@ class Structure:
     def _parts(self, tips: Array) -> list[Part]:
         parts = list[Part]()
         for bodies in zip(*self._bodies(tips)):
-            points, body = np.array([one.points for one in bodies]), bodies[0]
+            points = np.array([bent.points for bent in bodies])
+            body = bodies[0]
             if points.shape[1] == 1:
                 parts.append(Part(points + _DOT, INK, 16.0))
                 continue

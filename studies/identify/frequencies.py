@@ -71,8 +71,8 @@ def doubt_units(
         turns = 0.0 if recording.angle is None else float(np.ptp(recording.angle))
         if recording.step >= _COARSE or 0 < frequency < _DOUBTFUL:
             doubts.append(
-                f"{recording.name}: {frequency:.3g} Hz by samples {recording.step:.3g} s apart; is its "
-                "time in milliseconds? say so by --units time:ms"
+                f"{recording.name}: {frequency:.3g} Hz by samples {recording.step:.3g} s apart; "
+                "is its time in milliseconds? say so by --units time:ms"
             )
         if frequency > _FASTEST / 2:
             doubts.append(

@@ -47,10 +47,10 @@ def numbers_of(cells: Any) -> Any:
     if odd.empty:
         return numbers
     odd = odd.astype(str).str.replace(_GROUPED, "", regex=True)
-    every = cells.stack().dropna().astype(str).str.replace(_GROUPED, "", regex=True)
-    thousands = _thousands_mark(every)
+    texts = cells.stack().dropna().astype(str).str.replace(_GROUPED, "", regex=True)
+    thousands = _thousands_mark(texts)
     if thousands:
-        plain = every.where(every.str.fullmatch(_NUMBER), "").str.replace(thousands, "")
+        plain = texts.where(texts.str.fullmatch(_NUMBER), "").str.replace(thousands, "")
         plain = plain.str.replace(",", ".")
         return to_numeric(plain, errors="coerce").unstack().reindex_like(numbers)
     plain = to_numeric(odd.str.replace(",", "."), errors="coerce").unstack()
@@ -77,11 +77,11 @@ def _thousands_mark(cells: Any) -> str:
             return mark
         if not with_mark.str.fullmatch(_THOUSANDS[mark]).all():
             continue
-        others = marked[marked.str.contains(decimal, regex=False)]
-        if len(others) and not others.str.fullmatch(_THOUSANDS[decimal]).all():
+        with_decimal = marked[marked.str.contains(decimal, regex=False)]
+        if len(with_decimal) and not with_decimal.str.fullmatch(_THOUSANDS[decimal]).all():
             return mark
         whole = cells[cells.str.fullmatch(r"[+-]?\d+")]
-        if mark == "," and not len(others) and len(whole) and whole.str.len().max() <= 4:
+        if mark == "," and not len(with_decimal) and len(whole) and whole.str.len().max() <= 4:
             return mark
     return ""
 

@@ -27,7 +27,8 @@ _LONGEST = 1000
 
 def main() -> None:
     """Answer with the variables, or with the name of what went wrong."""
-    most, simple = int(sys.argv[1]), sys.argv[2] == "simple"
+    most = int(sys.argv[1])
+    simple = sys.argv[2] == "simple"
     _limit_memory()
     arrays: list[Any] = []
     try:
@@ -36,7 +37,8 @@ def main() -> None:
         if sum(array.nbytes for array in arrays) > most:
             tree = {"error": "MemoryError", "words": "it holds too much"}
     except Exception as error:  # whatever scipy makes of a damaged file
-        tree, arrays = {"error": type(error).__name__, "words": str(error)}, []
+        tree = {"error": type(error).__name__, "words": str(error)}
+        arrays = []
     answer = io.BytesIO()
     np.savez(answer, *arrays, tree=np.frombuffer(json.dumps(tree).encode(), np.uint8))
     sys.stdout.buffer.write(answer.getvalue())

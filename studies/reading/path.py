@@ -15,7 +15,8 @@ from quietarm.studies.identify.recording import MOST_ANGLE
 from quietarm.studies.reading.table import read_table
 
 Array = NDArray[np.float64]
-_LEAST_ROWS, _MOST_ROWS = 5, 5000
+_LEAST_ROWS = 5
+_MOST_ROWS = 5000
 _JUMP = 20.0
 """A speed so many times that of three to six points before and after it is a jump."""
 
@@ -38,11 +39,13 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
     """Read a CSV file with columns such as time_s and angle_deg, position_mm of a linear joint."""
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
-    table, label = read_table(path), joint_label("angle", joint)
+    table = read_table(path)
+    label = joint_label("angle", joint)
     name, begin = (
         table.first(quantity, "name it so in its heading") for quantity in (label, "time")
     )
-    time, angle = table.in_si(begin, "time"), table.in_si(name, label)
+    time = table.in_si(begin, "time")
+    angle = table.in_si(name, label)
     _check(path, time, angle, joint)
     largest = np.abs(angle).max()
     if joint == ROTARY and largest > 2 * np.pi and not table.find(name).written:
@@ -57,7 +60,8 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
 
 
 def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
-    label, unit = joint_label("angle", joint), joint_unit("rad", joint)
+    label = joint_label("angle", joint)
+    unit = joint_unit("rad", joint)
     if not _LEAST_ROWS <= len(time) <= _MOST_ROWS:
         raise FileFormatError(
             f"{path} has {len(time)} rows; give {_LEAST_ROWS} to {_MOST_ROWS}, for a move of a "
@@ -72,9 +76,9 @@ def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
         )
     if np.abs(angle).max() > MOST_ANGLE:
         rotary = ("an angle", "degrees", "deg")
-        which, other, short = rotary if joint == ROTARY else ("a position", "millimetres", "mm")
+        which, likely, short = rotary if joint == ROTARY else ("a position", "millimetres", "mm")
         raise FileFormatError(
-            f"{path}: {which} of {np.abs(angle).max():g} {unit}; is it in {other}? name the "
+            f"{path}: {which} of {np.abs(angle).max():g} {unit}; is it in {likely}? name the "
             f"column {label}_{short}"
         )
     if angle[0] == angle[-1]:

@@ -33,7 +33,9 @@ _SAMPLES = ("values", "data")
 """Fields of a structure that is one signal, as Simulink and recorders write it."""
 _LONGEST_NAME = 100
 """Letters of a column's heading: more are no name, and would fill every message."""
-_MOST_ROWS, _MOST_COLUMNS, _MOST_OF_ARRAY = 2_000_000, 1000, 10_000
+_MOST_ROWS = 2_000_000
+_MOST_COLUMNS = 1000
+_MOST_OF_ARRAY = 10_000
 """Rows and columns of a text, and columns of an array, which may be a long row."""
 _LONGEST_LINE = 200_000
 """Bytes of a text's line: two hundred for each of the most columns. What no column can be is not
@@ -75,16 +77,18 @@ class Table:
             (str, str), (_plain, _plain), (_without_unit, _plain), (_without_unit, _without_unit),
             (_last_field, _last_field),
         ):  # fmt: skip
-            found = [
-                k for k, one in enumerate(self.columns) if of_column(one.name) == of_name(name)
+            places = [
+                k
+                for k, column in enumerate(self.columns)
+                if of_column(column.name) == of_name(name)
             ]
-            if len(found) > 1:
+            if len(places) > 1:
                 raise FileFormatError(
-                    f"{self.path}: {len(found)} columns are called {name!r}; give one's number, "
-                    f"{' or '.join(map(str, found))}"
+                    f"{self.path}: {len(places)} columns are called {name!r}; give one's number, "
+                    f"{' or '.join(map(str, places))}"
                 )
-            if found:
-                return self.columns[found[0]]
+            if places:
+                return self.columns[places[0]]
         if name.isdecimal() and int(name) < len(self.columns):
             return self.columns[int(name)]
         names = [column.name for column in self.columns]
@@ -96,10 +100,10 @@ class Table:
 
         FileFormatError with the remedy where none is.
         """
-        for one in self.columns:
-            names = {_plain(one.name), _without_unit(one.name), _last_field(one.name)}
+        for column in self.columns:
+            names = {_plain(column.name), _without_unit(column.name), _last_field(column.name)}
             if names & _CALLED[quantity]:
-                return one.name
+                return column.name
         if quantity == "time" and self.columns and self._first_is_time():
             return self.columns[0].name
         raise FileFormatError(
@@ -135,7 +139,8 @@ class Table:
         A unit that is given holds whatever the name says. FileFormatError where its name ends in
         what may be a unit or not; it names the options of a command that has some for it.
         """
-        column, known = self.find(name), UNITS[quantity]
+        column = self.find(name)
+        known = UNITS[quantity]
         if scale is not None:
             return column.values * scale
         written = normal(column.written)
@@ -203,7 +208,7 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
             columns = _of_variables(_arrays(path.suffix.lower(), content, strict), strict)
         else:
             _refuse_huge(content)
-            columns = [Column(*one) for one in read_text(content, strict)]
+            columns = [Column(*entry) for entry in read_text(content, strict)]
     columns = [replace(column, name=cut(column.name, _LONGEST_NAME)) for column in columns]
     if not columns and not strict:
         raise FileFormatError(f"{path}: it has no vectors of numbers; save the time and what rings")
@@ -255,20 +260,20 @@ def _of_variables(values: Mapping[str, Any], strict: bool, front: str = "") -> l
 
     Of several structures with a number, a signal by its label.
     """
-    found: list[Column] = []
+    columns: list[Column] = []
     for name, value in values.items():
         array = np.asarray(value)
         if isinstance(value, Mapping):
-            found += _of_structure(value, strict, front, name)
-        elif array.dtype == object and all(isinstance(one, Mapping) for one in array.flat):
-            for k, one in enumerate(array.flat, 1):
-                found += _of_structure(one, strict, front, f"{name}:{k}")
+            columns += _of_structure(value, strict, front, name)
+        elif array.dtype == object and all(isinstance(element, Mapping) for element in array.flat):
+            for k, element in enumerate(array.flat, 1):
+                columns += _of_structure(element, strict, front, f"{name}:{k}")
         elif array.dtype.names:
             fields = {field: np.ravel(array[field]) for field in array.dtype.names}
-            found += _of_variables(fields, strict, front)
+            columns += _of_variables(fields, strict, front)
         else:
-            found += _of_array(front + name, array if strict else np.squeeze(array), strict)
-    return found
+            columns += _of_array(front + name, array if strict else np.squeeze(array), strict)
+    return columns
 
 
 def _of_structure(fields: Mapping[str, Any], strict: bool, front: str, name: str) -> list[Column]:
@@ -278,7 +283,7 @@ def _of_structure(fields: Mapping[str, Any], strict: bool, front: str, name: str
     samples = next((by_name[field] for field in _SAMPLES if field in by_name), None)
     if samples is None or not any(field in by_name for field in _LABELS):
         return _of_variables(fields, strict, f"{front}{name}.")
-    label = next((text for one in labels if (text := one.strip("<> "))), name)
+    label = next(filter(None, (label.strip("<> ") for label in labels)), name)
     return _of_array(f"{front}{label}", np.squeeze(np.asarray(samples)), strict)
 
 

@@ -41,13 +41,15 @@ _OF_ACCELERATION = {"acceleration": HARD_REMEDIES["acceleration"]}
 """Of a floor, which nobody drives, and of a recorded path, whose smoothness has its own row."""
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
-_DRIVE_RISES, _OF_CYCLOID = 0.005, 0.1
+_DRIVE_RISES = 0.005
+_OF_CYCLOID = 0.1
 """A warning of the jerk: at its peak the acceleration would change by its own peak within this [s],
 the rise time (0.35 over the bandwidth) of a position loop of 70 Hz, and five set points at 1 kHz;
 and within this share of the time that the plain cycloid takes."""
 _FAR = 0.1
 """A limit that a motion does not come to this share of does not act, and silences no warning."""
-_SEEN, _ROUNDING = 1e-6, 1e-12
+_SEEN = 1e-6
+_ROUNDING = 1e-12
 """A joint turns back where it does so by more [rad]; smaller angles are rounding errors."""
 
 
@@ -72,20 +74,19 @@ def _arrival_rows(plan: Plan) -> list[Row]:
     """What a robust plan may leave, said first: it does not arrive at rest."""
     if plan.worst is None or plan.worst.residual < REST:
         return []
-    left = _tip(plan.task, plan.worst.residual)
-    return [("arrives", f"not at rest: with such errors up to {left} of vibration are left")]
+    residual = _tip(plan.task, plan.worst.residual)
+    return [("arrives", f"not at rest: with such errors up to {residual} of vibration are left")]
 
 
 def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
     """The motion without a profile that takes least energy, beside a plan of the same move."""
-    motion, check = floor.motion, floor.verification
+    motion = floor.motion
+    check = floor.verification
     beside = "none within these limits"
     if plan is not None:
         beside = f"{plan.energy:.6g} J, {plan.energy / floor.energy:.3g} times as much"
-    worst, missing = (
-        max(floor.starts) / min(floor.starts) - 1,
-        int(floor.record.settings["starts"] or 0) - len(floor.starts),
-    )
+    worst = max(floor.starts) / min(floor.starts) - 1
+    missing = int(floor.record.settings["starts"] or 0) - len(floor.starts)
     starts = [
         f"{floor.agreeing()} of {len(floor.starts)} end within 0.5 % of the best",
         *([f"the worst is {worst:.1%} above it"] if worst > 0.005 else []),
@@ -98,7 +99,7 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
         ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
         *_figure_rows(floor.task, motion, _OF_ACCELERATION),
         ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%})"),
-        ("intervals", ", ".join(f"{one.steps}: {one.energy:.6g} J" for one in floor.levels)),
+        ("intervals", ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)),
         ("starts", ", ".join(starts)),
         (f"{_size(plan)} terms", beside),
         ("status", floor.status.text + unsettled),

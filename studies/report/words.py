@@ -63,7 +63,8 @@ def window_words(window: float) -> str:
 
 def residual_place(task: PointToPoint) -> str:
     """Where and when a residual is measured: "at the tip within 1 s"."""
-    tips, scenarios = task.plant.tips, len(task.scenarios)
+    tips = task.plant.tips
+    scenarios = len(task.scenarios)
     words = "tip" if tips == 1 else f"worst of {tips} tips"
     words = words if scenarios == 1 else f"{words}, worst of {scenarios} scenarios"
     return f"at the {words} {window_words(task.residual_window)}"
@@ -74,7 +75,8 @@ def plant_words(plant: Plant) -> str:
     changed: list[str] = []
     units = plant.units()
     for entry in fields(plant):
-        value, unit = plant.parameters[entry.name], units[entry.name]
+        value = plant.parameters[entry.name]
+        unit = units[entry.name]
         if value != entry.default:
             changed.append(f"{entry.name} = {value:.5g}{'' if unit == '-' else f' {unit}'}")
     return f"{plant.name} with {', '.join(changed)}" if changed else plant.name
@@ -102,7 +104,8 @@ def move_of(task: PointToPoint) -> str:
 def state_words(state: ModalState, tip_unit: str) -> str:
     """What rings, in millimetres, "W 5 mm, W' -300 mm/s", or in rad where the tip has that."""
     shown, factor = tip_scale(tip_unit)
-    W, dW = (" and ".join(f"{factor * one:.3g}" for one in of) for of in (state.W, state.dW))
+    W = " and ".join(f"{factor * amplitude:.3g}" for amplitude in state.W)
+    dW = " and ".join(f"{factor * rate:.3g}" for rate in state.dW)
     return f"W {W} {shown}, W' {dW} {shown}/s"
 
 
@@ -118,4 +121,4 @@ def title_of(task: PointToPoint) -> str:
 
 def limit_words(task: PointToPoint) -> list[str]:
     """The limits of a task, as "acceleration within 40 rad/s^2"."""
-    return [f"{one.label} within {one.bounds}" for one in task.limits]
+    return [f"{limit.label} within {limit.bounds}" for limit in task.limits]

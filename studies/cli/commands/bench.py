@@ -76,9 +76,8 @@ def bench(given: Given) -> None:
 
     methods = list(map(spell_method, given.methods))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
-    asked = methods, given.runs, given.evaluations, given.seed, settings
     problems = problems_of(given.problems)
-    jobs, left_out = jobs_of(problems, *asked)
+    jobs, left_out = jobs_of(problems, methods, given.runs, given.evaluations, given.seed, settings)
     candidates = sum(job.budget or 0 for job in jobs)
     refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     runs, unreadable = load_runs(given.imported)
@@ -105,7 +104,8 @@ def bench(given: Given) -> None:
                 report=lambda job, front, done, total: progress(done, total), finished=finished,
             )  # fmt: skip
         except LostJobsError as error:
-            fronts, trouble = dict(error.fronts), error
+            fronts = dict(error.fronts)
+            trouble = error
     if fronts or trouble is None:
         _report(Results.of_jobs(fronts, imported), given)
     if trouble is not None:

@@ -32,11 +32,12 @@ def list_(given: Given) -> None:
       quietarm list single-link-30deg-0.8s --output fronts
       quietarm list nsga2
     """  # noqa: D301  # \b is click's: do not rewrap
-    names, shown = given.names or KINDS, list[str | list[tuple[str, str]]]()
+    names = given.names or KINDS
+    shown = list[str | list[tuple[str, str]]]()
     plants = known_plants() if given.plant_file is None else given.plant_file
     for name in names:
         title, rows = catalogue_rows(name, plants)
-        shown += [f"{title}:", [(f"  {one}", words) for one, words in rows]]
+        shown += [f"{title}:", [(f"  {entry}", words) for entry, words in rows]]
     problems = PROBLEMS if "problems" in names else [name for name in names if name in PROBLEMS]
     if given.output and not problems:
         raise ValueError("--output is for the reference fronts of problems; name one")
