@@ -41,8 +41,6 @@ _WAIT = 5
 """Milliseconds in which changes are gathered: a slider sends more of them than are drawn."""
 _WORK = ThreadPoolExecutor(1, "explore")
 """Where plans and fronts are computed, while the page goes on."""
-_ROUNDING = 1e-9
-_FOLLOW = "if (cb_obj.value !== null) other.value = cb_obj.value"
 _HERE = Path(__file__).parent
 
 
@@ -124,6 +122,7 @@ class Page:
 
     def _field(self, name: str, dial: Dial) -> UIElement:
         """A number; but for a limit with a slider that follows it and is followed."""
+        follow = "if (cb_obj.value !== null) other.value = cb_obj.value"
         field = Spinner(title=dial.label, format="0[.][0000]", placeholder="none")
         self._watch(name, field)
         if dial.group == "limits":
@@ -131,7 +130,7 @@ class Page:
         step = float(10 ** math.floor(math.log10((dial.most - dial.least) / 500)))
         slider = Slider(start=dial.least, end=dial.most, show_value=False, align="end")
         for source, target in ((field, slider), (slider, field)):
-            source.js_on_change("value", CustomJS(args={"other": target}, code=_FOLLOW))
+            source.js_on_change("value", CustomJS(args={"other": target}, code=follow))
             source.update(value=self._explored.shown[name] or 0.0, step=step)
         field.update(width=95, sizing_mode="fixed")
         return Row(children=[field, slider])
@@ -220,8 +219,9 @@ def _same(value: Any, shown: Any) -> bool:
 
     What is set back for that alone meets the next moves of the slider, and none of them ends.
     """
+    rounding = 1e-9
     if isinstance(value, float | int) and isinstance(shown, float | int):
-        return math.isclose(value, shown, rel_tol=_ROUNDING, abs_tol=_ROUNDING)
+        return math.isclose(value, shown, rel_tol=rounding, abs_tol=rounding)
     return value == shown
 
 

@@ -29,12 +29,6 @@ FRAMES = 25
 """A second."""
 FREQUENCY = 0.2
 """Largest error of the frequency that is looked at."""
-_POINTS = 200
-"""Of a curve: on a panel a third of a screen wide their corners cannot be seen."""
-_DIGITS = 6
-"""Of what is drawn, behind the point: lists are in the browser sooner than many arrays."""
-_HIGHER = 280
-_NO_FRONT = "Press Front to see what each millimetre saves"
 _PLAY = Path(__file__).with_name("play.js").read_text()
 """The frame of the moment, and the last one for a second."""
 Rows = list[tuple[Any, ...]]
@@ -68,8 +62,9 @@ class Plots:
 
     def show(self, explored: Explored) -> None:
         """Show another motion in all plots."""
+        no_front = "Press Front to see what each millimetre saves"
         self._sources["points"].selected.indices = []  # so that one can be clicked again
-        self._front.title.text = "front (cross: this motion)" if explored.front else _NO_FRONT
+        self._front.title.text = "front (cross: this motion)" if explored.front else no_front
         self._front.axis.visible = bool(explored.front)
         self._front.xaxis.axis_label = residual_label(
             explored.task.plant.tip_unit, explored.task.residual_window
@@ -80,7 +75,8 @@ class Plots:
 
     def _stage(self, document: Document) -> Any:
         """The structure, which the browser plays by itself."""
-        plot: Any = figure(name="stage", title=" ", tools="", height=_HIGHER, match_aspect=True)
+        higher = 280
+        plot: Any = figure(name="stage", title=" ", tools="", height=higher, match_aspect=True)
         plot.grid.visible = plot.axis.visible = False
         shown = ColumnDataSource({name: [] for name in _BODY})
         room = plot.scatter(*_POINT, source=self._sources["corners"], alpha=0)
@@ -136,12 +132,14 @@ def _drawn(explored: Explored) -> dict[str, Rows]:
 
 def _quantity(lines: list[Line], name: str) -> Rows:
     """A quantity of motions; the limits that these come near, and the arrival of the last one."""
+    # of a curve: on a panel a third of a screen wide their corners cannot be seen
+    points = 200
     rows = Rows()
     reach = [np.zeros(1)]
     end = lines[-1].plan.task.duration
     for line in lines:
         time = line.plan.trajectory.time
-        some = slice(None, None, max(1, len(time) // _POINTS))
+        some = slice(None, None, max(1, len(time) // points))
         for values in curves(line.plan, name):
             rows.append((_plain(time[some]), _plain(values[some]), line.colour, line.style))
             reach.append(values)
@@ -187,4 +185,6 @@ def _along(points: NDArray[np.float64]) -> tuple[Any, ...]:
 
 
 def _plain(values: ArrayLike) -> Any:
-    return np.round(np.asarray(values), _DIGITS).tolist()
+    # of what is drawn, behind the point: lists are in the browser sooner than many arrays
+    digits = 6
+    return np.round(np.asarray(values), digits).tolist()

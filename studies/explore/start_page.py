@@ -14,14 +14,13 @@ from quietarm.studies.reading.saved import format_of, load_front, load_plans
 from quietarm.studies.report.words import plant_words
 from quietarm.studies.sweep.library import MoveLibrary
 
-_TARGETS = {ROTARY: pi / 6, LINEAR: 0.3}
-_DURATION = 0.8
-"""The paper's first move, and 300 mm of a linear axis."""
-
 
 def open_plant(plant: Plant) -> Explored:
     """The plain cycloid of a plant, with the coefficients of six terms to be set."""
-    task = PointToPoint(plant, _TARGETS[plant.joint], _DURATION)
+    # the paper's first move, and 300 mm of a linear axis
+    targets = {ROTARY: pi / 6, LINEAR: 0.3}
+    duration = 0.8
+    task = PointToPoint(plant, targets[plant.joint], duration)
     profile = CycloidPolynomial()
     return Explored(evaluate_coefficients(task, profile.plain, profile=profile))
 

@@ -27,13 +27,6 @@ from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.saving import as_written
 from quietarm.studies.report.words import move_of, moved, residual_words, title_of, window_words
 
-_MOST_MOTIONS = 6
-_MOST_FRAMES = 500
-"""More could not be seen side by side, or would take minutes."""
-_LEAST_A_SECOND = 1
-_MOST_A_SECOND = 50
-_ROUNDING = 1e-6
-"""Of a frame: one that is this close to the end belongs to it."""
 _COLUMNS = {1: 1, 2: 2, 4: 2}
 """Panels in a row, by how many there are; else 3."""
 _PANEL = 4.0
@@ -48,7 +41,6 @@ _DISC = 1e-5
 _COLOURS = 128
 _MEGABYTES = 200.0
 """Most of a page, far above what `_MOST_FRAMES` take."""
-_CURVES = ("angle", "deflection", "power")
 
 Update = Callable[[int], object]
 """Brings an artist to a frame."""
@@ -150,8 +142,15 @@ def animate(
     ValueError
         When there is no motion or too many, or a number is out of range.
     """
+    least_a_second = 1
+    most_a_second = 50
+    # of a frame: one that is this close to the end belongs to it
+    rounding = 1e-6
+    # more could not be seen side by side, or would take minutes
+    most_motions = 6
+    most_frames = 500
     lines = lines_of(motions)
-    whole("number of motions", len(lines), 1, _MOST_MOTIONS, "more are too small side by side")
+    whole("number of motions", len(lines), 1, most_motions, "more are too small side by side")
     width = whole("width", width, *WIDTHS, "more pixels make a huge file")
     if deflection_scale is not None:
         positive("deflection scale", deflection_scale)
@@ -159,16 +158,16 @@ def animate(
     end = max(task.duration + task.residual_window for task in tasks)
     a_second = rate / positive("speed", speed)
     frames = end * a_second
-    if max(task.duration for task in tasks) * a_second < _MOST_FRAMES < frames:
-        frames = float(_MOST_FRAMES)
+    if max(task.duration for task in tasks) * a_second < most_frames < frames:
+        frames = float(most_frames)
         end = frames / a_second
-    if not _LEAST_A_SECOND <= rate <= _MOST_A_SECOND or frames > _MOST_FRAMES:
+    if not least_a_second <= rate <= most_a_second or frames > most_frames:
         raise ValueError(
             f"{end:g} s at {rate:g} frames per second and speed {speed:g} make {frames:.0f} "
-            f"frames, where {_MOST_FRAMES} are the most, and {_LEAST_A_SECOND} to {_MOST_A_SECOND} "
+            f"frames, where {most_frames} are the most, and {least_a_second} to {most_a_second} "
             "per second what browsers show; give another rate or speed"
         )
-    times = np.arange(float(int(frames + _ROUNDING) + 1)) * speed / rate
+    times = np.arange(float(int(frames + rounding) + 1)) * speed / rate
     return Film(structures_of(lines, times, end, deflection_scale), end, speed, rate, width)
 
 
@@ -197,6 +196,7 @@ _WRITERS: Mapping[str, Callable[..., AbstractMovieWriter]] = {
 
 def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     """The figure, laid out, and what brings it to a frame."""
+    curves = ("angle", "deflection", "power")
     structures = film.structures
     times = film.structures[0].times
     columns = _COLUMNS.get(len(structures), 3)
@@ -225,7 +225,7 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
             if drawn.line.plan.task.plant.name == name:
                 ax.update_datalim(drawn.corners)
         updates += _draw_structure(ax, structure)
-    for ax, quantity in zip(lower.subplots(1, len(_CURVES)), _CURVES):
+    for ax, quantity in zip(lower.subplots(1, len(curves)), curves):
         draw_quantity([structure.line for structure in structures], quantity, ax)
         ax.set_xlim(0.0, film.end)
         ax.xaxis.label.set_fontsize(9)

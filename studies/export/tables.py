@@ -23,17 +23,16 @@ _WAYS: Mapping[str, Mapping[str, float]] = {
     ROTARY: {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi},
     LINEAR: {"m": 1.0, "mm": 1e3},
 }
-_FORCES: Mapping[str, Mapping[str, float]] = {
-    ROTARY: {"Nm": 1.0, "mNm": 1e3},
-    LINEAR: {"N": 1.0, "kN": 1e-3},
-}
-_TIPS = {"m": _WAYS[LINEAR], "rad": _WAYS[ROTARY]}
-"""By the plant's `tip_unit`."""
-_LINEAR_NAMES = {"angle": "position", "torque": "force"}
 
 
 def units_of(joint: str, tip_unit: str) -> Mapping[str, Mapping[str, float]]:
     """What a column may hold, and its units; the first is that where none is given."""
+    forces = {
+        ROTARY: {"Nm": 1.0, "mNm": 1e3},
+        LINEAR: {"N": 1.0, "kN": 1e-3},
+    }
+    # by the plant's `tip_unit`
+    tips = {"m": _WAYS[LINEAR], "rad": _WAYS[ROTARY]}
     way = _WAYS[joint]
     speeds = {"rpm": 30 / np.pi} if joint == ROTARY else {}
     return {
@@ -42,8 +41,8 @@ def units_of(joint: str, tip_unit: str) -> Mapping[str, Mapping[str, float]]:
         "speed": {f"{unit}/s": factor for unit, factor in way.items()} | speeds,
         "acceleration": {f"{unit}/s^2": factor for unit, factor in way.items()},
         "jerk": {f"{unit}/s^3": factor for unit, factor in way.items()},
-        "tip": _TIPS[tip_unit],
-        "torque": _FORCES[joint],
+        "tip": tips[tip_unit],
+        "torque": forces[joint],
         "power": {"W": 1.0, "mW": 1e3},
     }
 
@@ -75,6 +74,7 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     own, `elbow_angle_deg`; each tip has one, and of a robust plan in each scenario, which its
     heading names.
     """
+    linear_names = {"angle": "position", "torque": "force"}
     times = times_of(plan, rate)
     motion = plan.sampled(times)
     tips = _tips(plan, times)
@@ -89,7 +89,7 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
         "torque": list(sample.torques),
         "power": [motion.power],
     }
-    names = {} if plant.joint == ROTARY else _LINEAR_NAMES
+    names = {} if plant.joint == ROTARY else linear_names
 
     def by_heading(name: str) -> dict[tuple[str, str], Array]:
         """A column, or one for each joint, by what stands before and after the unit."""

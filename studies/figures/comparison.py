@@ -32,12 +32,8 @@ from quietarm.studies.tips import tip_scale
 if TYPE_CHECKING:
     from quietarm.studies.compare.front_comparison import Comparison, Group
 
-_ASIDE = 0.9
-"""A logarithmic axis begins at this residual [m], or at this multiple of the least of all."""
 _END = 5.0
 """The end of small residuals reaches at least to this multiple of the least of all."""
-_TALLEST = 1.6
-"""Upper end of the panels, as a multiple of the best front's energy at its least residual."""
 
 Array = NDArray[np.float64]
 
@@ -116,6 +112,8 @@ def draw_comparison(
         The axes; of several seeds there is the median attainment surface, in a band from the best
         to the worst.
     """
+    # upper end of the panels, as a multiple of the best front's energy at its least residual
+    tallest = 1.6
     ax = axes_or_new(ax)
     right = _right(comparison)
     tip_unit = comparison.task.plant.tip_unit
@@ -148,7 +146,7 @@ def draw_comparison(
         label = f"any joint motion at rest{' (nominal plant)' * bool(comparison.task.ranges)}"
         ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
     highest = max(
-        [_TALLEST * comparison.best_front[0, 1], *(1.05 * point.energy for point in known)]
+        [tallest * comparison.best_front[0, 1], *(1.05 * point.energy for point in known)]
     )
     ax.set_ylim(top=min(ax.get_ylim()[1], highest))
     name_objectives(ax, tip_unit, comparison.task.residual_window)
@@ -198,7 +196,9 @@ def _up_to(points: Array, right: float) -> Array:
 
 
 def _left(comparison: Comparison) -> float:
-    return max(REST, _ASIDE * float(comparison.best_front[0, 0]))
+    # a logarithmic axis begins at this residual [m], or at this multiple of the least of all
+    aside = 0.9
+    return max(REST, aside * float(comparison.best_front[0, 0]))
 
 
 def _right(comparison: Comparison) -> float:

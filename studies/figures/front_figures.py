@@ -33,8 +33,6 @@ _MOST_NAMED = 10
 """More fronts than this are drawn without a name."""
 _LOGARITHMIC_FROM = 5.0
 """Residuals that span less than this factor are drawn on a linear axis."""
-_LEAST_SPAN = 0.01
-"""The axis of energies spans at least this share of their median: seeds that agree lie close."""
 
 
 @takes(fronts=[Front])
@@ -170,6 +168,8 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     Parameters and what is returned are those of `draw_hypervolume`; a seed that never reaches that
     residual is a cross.
     """
+    # the axis of energies spans at least this share of their median: seeds that agree lie close
+    least_span = 0.01
     ax = axes_or_new(ax)
     spread = energies_at(fronts)
     level = tip_words(SEARCH_RESIDUAL, _tip_unit(fronts))
@@ -196,7 +196,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     ax.margins(x=0.1, y=0.2)
     ax.ticklabel_format(axis="y", useOffset=False)
     low, high = ax.get_ylim()
-    room = max(0.0, _LEAST_SPAN * (low + high) / 2 - (high - low)) / 2
+    room = max(0.0, least_span * (low + high) / 2 - (high - low)) / 2
     ax.set_ylim(low - room, high + room)
     return ax
 

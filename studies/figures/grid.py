@@ -26,8 +26,6 @@ Array = NDArray[np.float64]
 _MOST_SLICES = 4
 _LEAST_PRICE = 1e-6
 """Shadow prices of the residual below this [J by the tip's unit] are none."""
-_GREYS = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")
-"""How cells ended, in the order of `STATES`; told apart in print by their lightness as well."""
 
 
 def grid_figure(store: Store) -> Figure:
@@ -152,9 +150,11 @@ def _states(
     places: list[tuple[int, ...]],
 ) -> None:  # fmt: skip
     """How cells ended, in colours of their own."""
+    # how cells ended, in the order of `STATES`; told apart in print by their lightness as well
+    greys = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")
     status = store.read(STATUS)
     present = sorted({*np.unique(status).astype(int).tolist()})
-    cmap = ListedColormap([_GREYS[k] for k in present])
+    cmap = ListedColormap([greys[k] for k in present])
     numbers = np.searchsorted(present, status)
     norm = BoundaryNorm(np.arange(len(present) + 1) - 0.5, len(present))
     panels[0].set_title("how it ended")

@@ -18,7 +18,6 @@ from quietarm.studies.report.words import span_words
 
 _MOST = 6
 """Parts that are drawn; of more the first."""
-_UNITS = {"tip": "m, or as recorded", "acceleration": "m/s²", "torque": "N m"}
 
 
 def identification_figure(machine: Identified, recordings: Sequence[Recording]) -> Figure:
@@ -54,6 +53,7 @@ def identification_figure(machine: Identified, recordings: Sequence[Recording]) 
 
 def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[Recording]) -> None:
     """Measured and fitted, the residuals, and their spectrum."""
+    units = {"tip": "m, or as recorded", "acceleration": "m/s²", "torque": "N m"}
     grid = row.add_gridspec(2, 2, width_ratios=(2.2, 1), height_ratios=(2, 1))
     over = row.add_subplot(grid[0, 0])
     below = row.add_subplot(grid[1, 0], sharex=over)
@@ -72,7 +72,7 @@ def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[R
         f"noise {part.noise:.1%}", loc="left", fontsize=8,
     )  # fmt: skip
     quantity = next(iter(recording.signals))
-    over.set_ylabel(f"{quantity}\n[{_UNITS[quantity]}]", fontsize=8)
+    over.set_ylabel(f"{quantity}\n[{units[quantity]}]", fontsize=8)
     over.tick_params(labelbottom=False)
     gap = np.append(np.diff(time) > 3 * np.median(np.diff(time)), False)
     below.plot(time, np.where(gap, np.nan, 100 * residual / size), color=RED, linewidth=0.6)

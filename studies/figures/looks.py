@@ -19,8 +19,6 @@ COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY, WINE, INDIGO)
 ones of Tol's, https://personal.sron.nl/~pault/."""
 GREY = "0.62"
 """For what stays in the background, such as the plain cycloid."""
-_DASHES: tuple[Dash, ...] = ("-", "--", (0, (1, 1)), (0, (4, 1, 1, 1)), (0, (7, 2)))
-_MARKS = "os^Dv<>PX"
 
 
 @dataclass(frozen=True)
@@ -34,6 +32,8 @@ class Look:
 
 def look(number: int) -> Look:
     """The look of a line by its number, from 0; no two alike among the first 360."""
+    marks = "os^Dv<>PX"
+    dashes = ("-", "--", (0, (1, 1)), (0, (4, 1, 1, 1)), (0, (7, 2)))
     return Look(
-        COLOURS[number % len(COLOURS)], _DASHES[number % len(_DASHES)], _MARKS[number % len(_MARKS)]
+        COLOURS[number % len(COLOURS)], dashes[number % len(dashes)], marks[number % len(marks)]
     )

@@ -33,10 +33,6 @@ Array = NDArray[np.float64]
 _SHOWN = 0.99
 _ABOVE = 1.15
 """A panel with short pulses ends at this multiple of the 99 % quantile over time."""
-_LETTERS = 48
-"""Of a title, for each column of panels."""
-_IN_SIGHT = 0.4
-"""A limit is drawn where a motion comes to this share of it; else it would flatten the motion."""
 _LABELS = {
     "angle": ("joint angle", "rad"),
     "power": ("power", "W"),
@@ -196,6 +192,8 @@ def motion_figure(
     ValueError
         As `draw_quantity`.
     """
+    # of a title, for each column of panels
+    letters = 48
     lines = lines_of(motions)
     if quantities is None:
         limited = {limit.name for line in lines for limit in line.plan.task.limits}
@@ -222,7 +220,7 @@ def motion_figure(
         legend_below(figure, axes, min(3, len(lines)), 9)
     title = title_of(lines[0].plan.task) if title is None else title
     if title:
-        figure.suptitle(fill(title, _LETTERS * columns), fontsize=12)
+        figure.suptitle(fill(title, letters * columns), fontsize=12)
     return figure
 
 
@@ -260,6 +258,8 @@ def lines_of(motions: Motions) -> list[Line]:
 
 def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list[float]:
     """The limits of a quantity that its values come near, in the unit that is shown."""
+    # a limit is drawn where a motion comes to this share of it; else it would flatten the motion
+    in_sight = 0.4
     limits = [line.plan.task.limit_of(quantity) for line in lines]
     scale = scale_of(quantity, lines[0].plan.task.plant.tip_unit)
     bounds = set[float]()
@@ -271,7 +271,7 @@ def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list
             bounds |= {limit.lower, limit.upper}
     return [
         level for level in sorted(scale * bound for bound in bounds)
-        if (values * np.sign(level)).max() >= _IN_SIGHT * abs(level)
+        if (values * np.sign(level)).max() >= in_sight * abs(level)
     ]  # fmt: skip
 
 

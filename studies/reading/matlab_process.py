@@ -21,10 +21,6 @@ _ROOM = 1 << 30
 """Bytes beyond those in use at the start, of which scipy needs several times the content."""
 
 
-_LONGEST = 1000
-"""Letters of a text, as of a signal's label."""
-
-
 def main() -> None:
     """Answer with the variables, or with the name of what went wrong."""
     most = int(sys.argv[1])
@@ -46,10 +42,12 @@ def main() -> None:
 
 def _packed(value: Any, arrays: list[Any]) -> Any:
     """How a value is made up: fields, cells, a text or an array's number; None of anything else."""
+    # letters of a text, as of a signal's label
+    longest = 1000
     if isinstance(value, Mapping):
         return {"entries": {name: _packed(entry, arrays) for name, entry in value.items()}}
     if isinstance(value, str):
-        return {"text": value[:_LONGEST]}
+        return {"text": value[:longest]}
     array = np.asarray(value)
     if array.dtype.names:
         fields = {name: _packed(array[name], arrays) for name in array.dtype.names}

@@ -15,10 +15,6 @@ from quietarm.studies.identify.recording import MOST_ANGLE
 from quietarm.studies.reading.table import read_table
 
 Array = NDArray[np.float64]
-_LEAST_ROWS = 5
-_MOST_ROWS = 5000
-_JUMP = 20.0
-"""A speed so many times that of three to six points before and after it is a jump."""
 
 
 @dataclass(frozen=True)
@@ -60,11 +56,15 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
 
 
 def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
+    least_rows = 5
+    most_rows = 5000
+    # a speed so many times that of three to six points before and after it is a jump
+    jump = 20.0
     label = joint_label("angle", joint)
     unit = joint_unit("rad", joint)
-    if not _LEAST_ROWS <= len(time) <= _MOST_ROWS:
+    if not least_rows <= len(time) <= most_rows:
         raise FileFormatError(
-            f"{path} has {len(time)} rows; give {_LEAST_ROWS} to {_MOST_ROWS}, for a move of a "
+            f"{path} has {len(time)} rows; give {least_rows} to {most_rows}, for a move of a "
             "second a hundred are plenty"
         )
     if not (np.isfinite(time).all() and np.isfinite(angle).all()):
@@ -86,7 +86,7 @@ def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
     speed = np.abs(np.diff(angle) / np.diff(time))
     k = int(speed.argmax())
     beside = [*speed[max(k - 6, 0) : max(k - 2, 0)], *speed[k + 3 : k + 7]]
-    if speed[k] > _JUMP * max(beside, default=np.inf):
+    if speed[k] > jump * max(beside, default=np.inf):
         raise FileFormatError(
             f"{path}: the {label} jumps by {abs(angle[k + 1] - angle[k]):.3g} {unit} after "
             f"{time[k]:.4g} s; give a path without jumps"

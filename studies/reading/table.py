@@ -25,21 +25,13 @@ ARRAYS = (".npy", ".npz", ".mat")
 """Endings of files of arrays; any other is a text."""
 TABLES = (".csv", ".txt", ".dat", *ARRAYS)
 """Endings by which a table is told from numbers."""
-_LEAST_STEPS = 8
-_EVEN = 0.95
-"""Share of the steps that are the usual one where a column rises evenly."""
 _LABELS = ("label", "name", "signalname")
 _SAMPLES = ("values", "data")
 """Fields of a structure that is one signal, as Simulink and recorders write it."""
-_LONGEST_NAME = 100
-"""Letters of a column's heading: more are no name, and would fill every message."""
 _MOST_ROWS = 2_000_000
 _MOST_COLUMNS = 1000
 _MOST_OF_ARRAY = 10_000
 """Rows and columns of a text, and columns of an array, which may be a long row."""
-_LONGEST_LINE = 200_000
-"""Bytes of a text's line: two hundred for each of the most columns. What no column can be is not
-looked at letter by letter."""
 _CALLED = {
     "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds", "millis", "micros"},
     "angle": {"angle", "theta", "position", "q"},
@@ -160,13 +152,16 @@ def rises_evenly(values: Array) -> bool:
 
     Stamps may be rounded: to so much that several are the same.
     """
+    least_steps = 8
+    # share of the steps that are the usual one where a column rises evenly
+    even = 0.95
     steps = np.diff(values[np.isfinite(values)])
     rising = steps[steps > 0]
-    if len(steps) < _LEAST_STEPS or (steps < 0).any() or len(rising) < len(steps) / 20:
+    if len(steps) < least_steps or (steps < 0).any() or len(rising) < len(steps) / 20:
         return False
     usual = max(float(np.median(steps)), float(np.ptp(values)) / len(steps))
     near = np.abs(steps - usual) <= max(0.25 * usual, 1.01 * float(rising.min()))
-    return bool(near.mean() >= _EVEN)
+    return bool(near.mean() >= even)
 
 
 def _plain(name: str) -> str:
@@ -202,6 +197,8 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
     of units may stand between. A `strict` table has its rows as they are, be it one row or column,
     and in a text nothing but a heading above them. Nothing in a file is run.
     """
+    # letters of a column's heading: more are no name, and would fill every message
+    longest_name = 100
     content = read_bytes(path)
     with reading(path):
         if path.suffix.lower() in ARRAYS:
@@ -209,7 +206,7 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
         else:
             _refuse_huge(content)
             columns = [Column(*entry) for entry in read_text(content, strict)]
-    columns = [replace(column, name=cut(column.name, _LONGEST_NAME)) for column in columns]
+    columns = [replace(column, name=cut(column.name, longest_name)) for column in columns]
     if not columns and not strict:
         raise FileFormatError(f"{path}: it has no vectors of numbers; save the time and what rings")
     return Table(path, tuple(columns))
@@ -236,6 +233,9 @@ def _arrays(kind: str, content: bytes, strict: bool) -> dict[str, Any]:
 
 def _refuse_huge(content: bytes) -> None:
     """Refuse a text of more rows or columns than any recording has."""
+    # bytes of a text's line: two hundred for each of the most columns. What no column can be is
+    # not looked at letter by letter
+    longest_line = 200_000
     rows = max(content.count(b"\n"), content.count(b"\r"))
     if rows > _MOST_ROWS:
         raise FileFormatError(f"it has {rows} rows; give at most {_MOST_ROWS}")
@@ -244,9 +244,9 @@ def _refuse_huge(content: bytes) -> None:
             continue
         columns = 1 + max(line.count(b","), line.count(b";"), line.count(b"\t"), line.count(b"|"))
         _refuse_wide(max(columns, len(line.split())), _MOST_COLUMNS)
-        if len(line) > _LONGEST_LINE:
+        if len(line) > longest_line:
             raise FileFormatError(
-                f"line {number} has {len(line)} letters; give at most {_LONGEST_LINE} in a line"
+                f"line {number} has {len(line)} letters; give at most {longest_line} in a line"
             )
 
 

@@ -22,9 +22,6 @@ from quietarm.studies.report.words import (
 )
 from quietarm.studies.tips import tip_words
 
-_ROWS = 10
-"""Points that the list of gains shows."""
-
 
 def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> str:
     """A front by the gradient, of which so many points were asked for."""
@@ -82,10 +79,12 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
 
 def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
     """What the points of a front gained by the gradient."""
+    # points that the list of gains shows
+    rows = 10
     shares = np.array([gain.share for gain in gains])
     tip_unit = given.task.plant.tip_unit
     dominated = len(given.points) - len(polished.points)
-    shown = np.linspace(0, len(gains) - 1, min(_ROWS, len(gains))).round().astype(int)
+    shown = np.linspace(0, len(gains) - 1, min(rows, len(gains))).round().astype(int)
     return "\n".join([
         f"{polished.record.method}: {counted(len(given.points), 'point')}, "
         f"{polished.record.iterations - given.record.iterations} iterations of the solver in "

@@ -11,7 +11,6 @@ from quietarm.studies.identify import Estimate, Identified, Part, Prediction
 from quietarm.studies.report.words import span_words
 
 Row = tuple[str, str]
-_HUB = {"": "", "creeps": ", with the hub's motion", "moves": ", all of the hub's motion with it"}
 
 
 def machine_rows(machine: Identified) -> list[Row]:
@@ -106,6 +105,11 @@ def _by_amplitude(machine: Identified, name: str) -> str:
 
 
 def _part(plant: Plant, part: Part) -> str:
+    hub = {
+        "": "",
+        "creeps": ", with the hub's motion",
+        "moves": ", all of the hub's motion with it",
+    }
     values = ", ".join(_short(plant, name, value) for name, value in part.values.items())
     misfit = f"misfit {part.misfit:.1%}, noise {part.noise:.1%}"
     saturated = f"; {part.saturated} saturated samples excluded" if part.saturated else ""
@@ -114,7 +118,7 @@ def _part(plant: Plant, part: Part) -> str:
     if part.largest:
         small = f"; fitted from an amplitude of {part.amplitude:.3g} on, of {part.largest:.3g}"
     span = span_words(part.begin, part.end)
-    return f"{span}: {values}, {misfit}{_HUB[part.hub]}{saturated}{drift}{small}"
+    return f"{span}: {values}, {misfit}{hub[part.hub]}{saturated}{drift}{small}"
 
 
 def _short(plant: Plant, name: str, value: float) -> str:

@@ -11,9 +11,6 @@ from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
 from quietarm.studies.tips import tip_scale, tip_words
 
-_MOST_LINES = 30
-"""Cells along one axis that are listed."""
-
 
 def sweep_rows(store: Store) -> list[tuple[str, str]]:
     """Axes, then how many cells ended how."""
@@ -54,10 +51,12 @@ def sweep_rows(store: Store) -> list[tuple[str, str]]:
 
 def cells_along(store: Store) -> str:
     """The trade-off along the only axis, a line a cell; empty where there are more or many."""
+    # cells along one axis that are listed
+    most_lines = 30
     import pandas  # not at the top: it takes long to load
 
     axis, *more_axes = store.definition.grid.axes
-    if more_axes or len(axis.values) > _MOST_LINES:
+    if more_axes or len(axis.values) > most_lines:
         return ""
     status, energy, residual = (store.read(name) for name in (STATUS, "energy", "residual"))
     shown, factor = tip_scale(store.definition.grid.task.plant.tip_unit)

@@ -14,9 +14,6 @@ from quietarm.ocp.checks import printable
 if TYPE_CHECKING:
     from quietarm.studies.report.report import Report
 
-_LEAST_VALUE = 30
-"""Least width of the column of values; below it they would be broken up."""
-
 
 def show_all(console: Console, *parts: Report | Sequence[tuple[str, str]] | str) -> None:
     """Print reports, facts and lines, one below the other; empty ones are left out."""
@@ -37,8 +34,10 @@ def print_lines(console: Console, *lines: str) -> None:
 
 def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
     """Print names and values in two columns, or one below the other on a narrow console."""
+    # least width of the column of values; below it they would be broken up
+    least_value = 30
     rows = [(printable(name), printable(value)) for name, value in rows]
-    if console.width < max(len(name) for name, _ in rows) + _LEAST_VALUE:
+    if console.width < max(len(name) for name, _ in rows) + least_value:
         for name, value in rows:
             print_lines(console, name, f"  {value}")
         return

@@ -23,9 +23,6 @@ from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from quietarm.studies.reading.recording import read_recording
 from quietarm.studies.report.machines import machine_notes, machine_rows, prediction_rows
 
-_RINGS = ("tip", "acceleration", "torque")
-"""Columns of which at least one shows how the machine rings."""
-
 
 @command(
     click.Argument(["files"], type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT"),
@@ -64,11 +61,13 @@ def identify(given: Given) -> None:
       quietarm identify --check arm.json new.csv --tip tip_mm
       quietarm plan arm.json --error measured --target 60deg --duration 0.9
     """  # noqa: D301  # \b is click's: do not rewrap
+    # columns of which at least one shows how the machine rings
+    rings = ("tip", "acceleration", "torque")
     columns = {
         quantity: [names] if isinstance(names, str) else list(names or ())
-        for quantity, names in given.pick("time", "angle", *_RINGS).items()
+        for quantity, names in given.pick("time", "angle", *rings).items()
     }
-    if not any(columns[quantity] for quantity in _RINGS):
+    if not any(columns[quantity] for quantity in rings):
         raise click.UsageError("give the column of what rings: --tip, --acceleration or --torque")
     kind = given.check or _plant_at_the_end(str(given.files[-1]))
     paths = given.files if given.check else given.files[:-1]

@@ -47,11 +47,8 @@ FREE = {"free": False, "free-smooth": True}
 """Profiles without a parametrisation, and whether the acceleration is continuous."""
 _FASTEST = "fastest"
 """In the place of a duration."""
-_BEGIN = 1.0
-"""The duration [s] from which the shortest is looked for."""
 _OF_AXES = {"parameters", *OF_MOVES}
 """Options that may be axes of a sweep."""
-_OF_COEFFICIENTS = ("terms", "bound", "residual_limit")
 _OF_SOLVES = ("starts", "seed", *(param.name or "" for param in SOLVER))
 
 
@@ -95,26 +92,27 @@ def plan(given: Given) -> None:
         answer = Answer(solution, [between.words], trouble=trouble)
     else:
         fastest = given.duration == _FASTEST
-        task = given.read_task(**{"duration": _BEGIN} if fastest else {})
+        first_duration = {"duration": 1.0} if fastest else {}  # the search begins from it
+        task = given.read_task(**first_duration)
         free = given.profile in FREE
         chosen = free or chooses_terms(given.profile, given.terms)
         profile = None if chosen else given.read_profile(task)
         residual_limit = given.read_residual_limit(task.plant)
-        settings: dict[str, Any] = {"solver": given.read_solver(), "seed": given.seed}
+        solves: dict[str, Any] = {"solver": given.read_solver(), "seed": given.seed}
+        within: dict[str, Any] = {"residual_limit": residual_limit, "bound": given.bound}
         if free:
-            settings |= {"smooth": FREE[given.profile], "starts": given.starts}
-            answer = _find_free_motion(task, **settings)
+            smooth = FREE[given.profile]
+            answer = _find_free_motion(task, smooth=smooth, starts=given.starts, **solves)
         elif fastest:
-            settings |= {"residual_limit": residual_limit, "bound": given.bound}
-            answer = _find_fastest(task, profile, **settings)
+            answer = _find_fastest(task, profile, **within, **solves)
         else:
-            settings |= {"residual_limit": residual_limit, "bound": given.bound}
-            answer = _find_least_energy(task, profile, starts=given.starts, **settings)
+            answer = _find_least_energy(task, profile, starts=given.starts, **within, **solves)
     finish_motion(answer, given.output, sensitivities=given.sensitivities)
 
 
 def _refuse_meaningless(given: Given) -> None:
     """Refuse options that have no meaning for what is asked."""
+    of_coefficients = ("terms", "bound", "residual_limit")
     if given.dataset is not None:
         given.refuse({param.name for param in TASK} - _OF_AXES, "is in the dataset of --from")
         given.refuse_others({*_OF_AXES, "dataset", "output"}, "is not for --from")
@@ -123,7 +121,7 @@ def _refuse_meaningless(given: Given) -> None:
     if given.profile not in families():
         why = f"is not for {given.profile}, only for profiles with coefficients"
         free = given.profile in FREE
-        given.refuse(_OF_COEFFICIENTS, why)
+        given.refuse(of_coefficients, why)
         given.refuse(["sensitivities"] if free else _OF_SOLVES, why)
         if fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
@@ -182,15 +180,16 @@ def _find_least_energy(task: PointToPoint, profile: JointProfile | None, **setti
 def finish_motion(answer: Answer, output: Sequence[Path], *, sensitivities: bool = False) -> None:
     """Save a motion; show its figures, and how they change with the parameters of the plant."""
     motion = answer.motion
+    shown = list[str | Sequence[tuple[str, str]]]()
     if isinstance(motion, Floor):
-        rows = floor_rows(motion, answer.beside)
+        shown.append(floor_rows(motion, answer.beside))
         draw = partial(figures.floor_figure, motion, answer.beside)
     else:
-        rows = plan_rows(motion)
+        shown.append(plan_rows(motion))
         draw = partial(figures.motion_figure, motion)
-    shown = [rows, *answer.notes]
-    if sensitivities:
-        title = "\nwhat a parameter that is 1 % larger adds to residual and energy:"
-        shown[1:1] = [title, sensitivity_rows(motion)]
+        if sensitivities:
+            shown.append("\nwhat a parameter that is 1 % larger adds to residual and energy:")
+            shown.append(sensitivity_rows(motion))
+    shown += answer.notes
     files = answer_files(output, draw, motion)
     finish(files, *shown, trouble=answer.trouble)
