@@ -16,11 +16,8 @@ from quietarm.models.interrupts import STOPS
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.checks import cut, printable, unknown
 
-BAD_INPUT, NOT_SOLVED = 2, 1
-_STANDARD_ERROR = 2
-"""The last of the numbers that a system gives to a process's own streams."""
-_LONGEST_MESSAGE = 2000
-"""Letters, of which a name in it may have a hundred thousand; the remedy stands at its end."""
+BAD_INPUT = 2
+NOT_SOLVED = 1
 
 COMMANDS = {
     "plan": "Find the move of least energy that arrives at rest.",
@@ -60,18 +57,18 @@ class LazyGroup(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str, click.Command, list[str]]:
         """The name and the command that was asked for, and the other words."""
-        name, *others = args
+        name, *rest = args
         if name in HEIRS:
             raise ValueError(f"quietarm {name} is gone; give quietarm {HEIRS[name]}")
         if name not in COMMANDS:
             raise ValueError(unknown("command", name, COMMANDS))
-        return name, command_of(name), others
+        return name, command_of(name), rest
 
 
 def command_of(name: str) -> click.Command:
     """A command by its name."""
-    own = "list_" if name == "list" else name
-    return getattr(import_module(f"quietarm.studies.cli.commands.{own}"), own)
+    function = "list_" if name == "list" else name
+    return getattr(import_module(f"quietarm.studies.cli.commands.{function}"), function)
 
 
 @click.group(
@@ -123,7 +120,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _open_what_is_closed() -> None:
     """Let words go nowhere where a stream is closed, as by `>&-`; no file takes its place."""
-    while (number := os.open(os.devnull, os.O_RDWR)) <= _STANDARD_ERROR:
+    standard_error = 2  # the last of the numbers that a system gives to a process's own streams
+    while (number := os.open(os.devnull, os.O_RDWR)) <= standard_error:
         os.set_inheritable(number, True)  # workers have them, too
     os.close(number)
     for name in ("stdout", "stderr"):
@@ -133,10 +131,10 @@ def _open_what_is_closed() -> None:
 
 def _take_ends_as_ctrl_c() -> None:
     """Let what ends a process stop the command as Ctrl-C does, unless it is handled or ignored."""
-    for one in signal.Signals:
-        if one.name in ("SIGTERM", "SIGHUP") and signal.getsignal(one) is signal.SIG_DFL:
-            signal.signal(one, signal.default_int_handler)
-            STOPS.append(one)
+    for number in signal.Signals:
+        if number.name in ("SIGTERM", "SIGHUP") and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, signal.default_int_handler)
+            STOPS.append(number)
 
 
 def _unless_ctrl_c(lost: sys.UnraisableHookArgs) -> None:
@@ -147,17 +145,17 @@ def _unless_ctrl_c(lost: sys.UnraisableHookArgs) -> None:
 
 def _run(arguments: Sequence[str] | None) -> int:
     words = sys.argv[1:] if arguments is None else list(arguments)
-    given = None if arguments is None else words  # of None click looks for files on Windows
+    passed = None if arguments is None else words  # of None click looks for files on Windows
     try:
-        status = quietarm.main(given, prog_name="quietarm", standalone_mode=False, obj=words) or 0
+        status = quietarm.main(passed, prog_name="quietarm", standalone_mode=False, obj=words)
         sys.stdout.flush()
-        return status
+        return status or 0
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         return BAD_INPUT
     except click.NoSuchOption as error:
-        gone, heir = error.option_name, OPTION_HEIRS.get(error.option_name)
-        message = f"{gone} is gone; give {heir}" if heir else error.format_message()
+        heir = OPTION_HEIRS.get(error.option_name)
+        message = f"{error.option_name} is gone; give {heir}" if heir else error.format_message()
         return _complain(message, BAD_INPUT)
     except click.ClickException as error:
         return _complain(error.format_message(), BAD_INPUT)
@@ -179,6 +177,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _complain(message: str, status: int) -> int:
-    line = cut(printable(" ".join(message.split())), _LONGEST_MESSAGE)
+    # a name in it may have a hundred thousand letters; the remedy stands at its end
+    line = cut(printable(" ".join(message.split())), 2000)
     click.echo(f"quietarm: {line}", err=True)
     return status

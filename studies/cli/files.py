@@ -18,19 +18,17 @@ from quietarm.ocp.files import check_writable, unwritable
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
 from quietarm.studies.report.saving import STDOUT, SUFFIXES, File, drawing
-from quietarm.studies.report.terminal import show, show_facts
-from quietarm.studies.report.words import print_lines
+from quietarm.studies.report.terminal import show_all
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from quietarm.studies.report import Report
 
-PICTURE, FOLDER, DATASET = SUFFIXES[0], "", ".zarr"
+PICTURE = SUFFIXES[0]
+FOLDER = ""
+DATASET = ".zarr"
 TRAJECTORY = ".yaml"
-_SAME = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv", ".yml": ".yaml"}
-"""Endings that mean the same as another."""
-_NAMES = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
 
 
 def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.Option:
@@ -38,10 +36,12 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.
 
     A command whose answers go to standard output as well has the ending .json.
     """
-    listed = "; ".join(f"{_NAMES.get(kind, kind)} for {words}" for kind, words in kinds.items())
+    names = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
+    listed = "; ".join(f"{names.get(kind, kind)} for {words}" for kind, words in kinds.items())
 
     def check(text: str) -> Path:
-        path, kind = Path(text), ending_of(Path(text))
+        path = Path(text)
+        kind = ending_of(path)
         if path == STDOUT:
             if ".json" not in kinds:
                 raise ValueError(f"this cannot go to standard output; give a name, or ./{text}")
@@ -74,7 +74,11 @@ def check_folder(path: str | Path) -> Path:
 
 def ending_of(path: Path) -> str:
     """The ending that says what goes into a file; that of JSON for standard output."""
-    return ".json" if path == STDOUT else _SAME.get(path.suffix.lower(), path.suffix.lower())
+    if path == STDOUT:
+        return ".json"
+    same = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv"}
+    suffix = path.suffix.lower()
+    return same.get(suffix, suffix)
 
 
 def answer_files(
@@ -104,7 +108,8 @@ def finish(
     In this order, so that nothing is lost where standard output is closed. Ctrl-C waits until the
     files are there. Words go to standard error where standard output is one of the files.
     """
-    written, failures = list[str](), list[Exception]()
+    written = list[str]()
+    failures = list[Exception]()
     with note_interrupts() as came, busy("writing"):
         for path, write in files:
             try:
@@ -115,28 +120,21 @@ def finish(
                 failures.append(error)
             else:
                 written += [] if path == STDOUT else [str(path)]
-    console = Console(stderr=STDOUT in dict(files))
-    for part in filter(None, shown):
-        if isinstance(part, str):
-            print_lines(console, part)
-        elif isinstance(part, Sequence):
-            show_facts(console, part)
-        else:
-            show(console, part)
-    for name in written:
-        print_lines(console, f"wrote {name}")
     if came and trouble is None:
         trouble = QuietarmError(f"interrupted; wrote {', '.join(written) or 'nothing'}")
-    _raise([*([trouble] if trouble else []), *failures])
+    error = _error_of_all([*([trouble] if trouble else []), *failures])
+    console = Console(stderr=STDOUT in dict(files))
+    show_all(console, *shown, *(f"wrote {name}" for name in written))
+    if error is not None:
+        raise error
 
 
-def _raise(errors: Sequence[Exception]) -> None:
-    """Raise an error that has no words for the user, or the only one, or the words of all."""
+def _error_of_all(errors: Sequence[Exception]) -> Exception | None:
+    """The error that has no words for the user, or the only one, or one with the words of all."""
     for error in errors:
         if not isinstance(error, ValueError | QuietarmError) or len(errors) == 1:
-            raise error
-    if errors:
-        raise ValueError("; ".join(map(str, errors)))
+            return error
+    return ValueError("; ".join(map(str, errors))) if errors else None
 
 
 def _save(path: Path, write: Callable[[Path], object]) -> None:

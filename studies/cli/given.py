@@ -3,43 +3,36 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection
 from typing import Any
 
 import click
 from click.core import ParameterSource
-from rich.console import Console
 
 from quietarm.models import Plant, Robot
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import JointProfile, PointToPoint, Solver
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
 from quietarm.ocp.solvers.choice import SOLVERS
+from quietarm.studies.cli.effort import announce_minutes, refuse_endless, seconds_of_solve
 from quietarm.studies.cli.plants import (
+    ROBOT_IS_NO_PLANT,
     Kind,
     build_plant,
     build_uncertainty,
     choose_kind,
-    read_parameters,
     warn_of_payload,
 )
-from quietarm.studies.cli.quantities import RESIDUAL_LIMIT, parse_of_plant
+from quietarm.studies.cli.quantities import (
+    RESIDUAL_LIMIT,
+    parse_of_plant,
+    parse_parameters,
+    single_values,
+)
 from quietarm.studies.cli.robots import read_robot_task
+from quietarm.studies.identify import Identified
 from quietarm.studies.reading.profiles import profile_of
-from quietarm.studies.report.words import print_lines
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
-
-_OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()), TORQUE_SPEED)
-"""Options that are read once the plant is known: in radians, or in metres of a linear axis."""
-_OTHERS = ("residual_window", "initial", "final", "energy")
-_MANY_HOURS = 10
-_MANY_COEFFICIENTS = 40
-"""With so many a solve takes minutes; six to thirty take seconds."""
-_FEW_COEFFICIENTS, _SECONDS_OF_FEW = 6, 0.05
-"""A solve of so many takes this long; the time rises with a power of their number: of the square
-where they enter linearly (28 terms of a polynomial take 1 s), and faster where they do not (31
-coefficients of ten nodes take 18 s, of ten Gaussians 9 s; all by processor time)."""
-_NEEDED = {"target": "30deg", "duration": "0.8"}
 
 
 class Given:
@@ -69,30 +62,15 @@ class Given:
 
     def refuse(self, names: Collection[str], why: str) -> None:
         """Refuse options that were typed where they have no meaning."""
-        for one in self._context.command.params:
-            if one.name in names and self.typed(one.name):
-                name = one.opts[0] if isinstance(one, click.Option) else one.name.upper()
+        for param in self._context.command.params:
+            if param.name in names and self.typed(param.name):
+                name = param.opts[0] if isinstance(param, click.Option) else param.name.upper()
                 raise ValueError(f"{name} {why}; leave it out")
 
     def refuse_others(self, than: Collection[str], why: str) -> None:
         """Refuse all options that were typed but some."""
-        self.refuse({one.name for one in self._context.command.params if one.name} - {*than}, why)
-
-    def refuse_endless(self, number: int, what: str, seconds: float) -> None:
-        """Refuse work of many hours, so many seconds each, unless --yes is typed."""
-        hours = number * seconds / 3600
-        if hours > _MANY_HOURS and not self.yes:
-            raise ValueError(
-                f"{number} {what} take some {hours:.3g} hours on a core; give fewer, or --yes"
-            )
-
-    def _refuse_endless_solves(self, profile: JointProfile) -> None:
-        """Refuse hours of solves from all starts, for each point of a front, unless --yes."""
-        options = self._context.params
-        points = len(options.get("weights", ())) or options.get("points", 1)
-        power = 3.5 if profile.sharp else 2.0
-        seconds = _SECONDS_OF_FEW * max(1.0, profile.size / _FEW_COEFFICIENTS) ** power
-        self.refuse_endless(self.starts * points, "solves", seconds)
+        names = {param.name for param in self._context.command.params if param.name}
+        self.refuse(names - {*than}, why)
 
     def read_residual_limit(self, plant: Plant) -> float | None:
         """The residual limit in the unit of the plant's tips; None where none was typed."""
@@ -107,26 +85,37 @@ class Given:
             hint = f"'--{name.replace('_', '-')}'"
             raise click.BadParameter(str(error), param_hint=hint) from None
 
+    def read_place(self, plant: Plant) -> dict[str, float]:
+        """Where a move is in the grid of a sweep: a value of each axis that was typed."""
+        typed = [name for name in OF_MOVES if self.typed(name)]
+        values = {name: self.read_of_plant(name, plant) for name in typed}
+        return single_values(values | parse_parameters(plant, self.parameters))
+
     def read_plant(self, named: Kind | None) -> Plant:
         """The plant, with the parameters that were typed."""
         kind = choose_kind(named, self.plant_file)
-        return build_plant(kind, single_values(read_parameters(kind, self.parameters)))
+        return build_plant(kind, single_values(self._parameters_of(kind)))
+
+    def _parameters_of(self, kind: Kind) -> dict[str, tuple[float, ...]]:
+        if isinstance(kind, Robot):
+            raise ValueError(ROBOT_IS_NO_PLANT)
+        plant = kind.plant if isinstance(kind, Identified) else kind
+        return parse_parameters(plant, self.parameters)
 
     def read_solver(self) -> Solver:
         """The solver that was typed, with its options: the one place where commands make it."""
         return SOLVERS[self.solver]()
 
     def read_profile(self, task: PointToPoint) -> JointProfile:
-        """The joint profile; where it has many coefficients, a word of how long that takes."""
+        """The joint profile; hours of solves from all starts, for all points, are refused."""
+        options = self._context.params
         profile = profile_of(self.profile, task, self.terms)
-        if "starts" in self._context.params:
-            self._refuse_endless_solves(profile)
-        by_gradient = self._context.command.name != "search"
-        if profile.size > _MANY_COEFFICIENTS and by_gradient:
-            print_lines(
-                Console(stderr=True, quiet=self.quiet),
-                f"{profile.size} coefficients: a plan takes minutes; with fewer --terms seconds",
-            )
+        if "starts" in options:
+            points = len(options.get("weights", ())) or options.get("points", 1)
+            seconds = seconds_of_solve(profile)
+            refuse_endless(self.starts * points, "solves", seconds, yes=self.yes)
+        if self._context.command.name != "search" and not self.quiet:
+            announce_minutes(profile)
         return profile
 
     def read_task(self, **known: float) -> PointToPoint:
@@ -142,17 +131,19 @@ class Given:
             return self._read_robot(kind, **known)
         if self._context.command.name != "evaluate":  # which has recorded paths
             self.refuse(["path"], "is for a robot, whose file is PLANT, as ur5.yaml")
-        parameters = read_parameters(kind, self.parameters)
+        parameters = self._parameters_of(kind)
         plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
         uncertainty = build_uncertainty(kind, self.errors, parameters)
-        given: dict[str, Any] = self.pick(*_OTHERS)
-        given |= {name: (value,) for name, value in known.items()}
-        typed = [name for name in _OF_JOINT if name not in known]
-        given |= {name: self.read_of_plant(name, plant) for name in typed}
-        for name, example in _NEEDED.items():
-            if given[name] is None:
+        options = self.pick("residual_window", "initial", "final", "energy")
+        options |= {name: (value,) for name, value in known.items()}
+        limits = [quantity.limit for quantity in QUANTITIES.values()]
+        for name in [*OF_MOVES, *limits, TORQUE_SPEED]:
+            if name not in known:
+                options[name] = self.read_of_plant(name, plant)
+        for name, example in {"target": "30deg", "duration": "0.8"}.items():
+            if options[name] is None:
                 raise click.UsageError(f"Missing option '--{name}'. Give it as --{name} {example}")
-        moves = {name: given.pop(name) for name in OF_MOVES}
+        moves = {name: options.pop(name) for name in OF_MOVES}
         units = {name: joint_unit(unit, plant.joint) for name, unit in OF_MOVES.items()}
         axes = [
             Axis(name, values, (plant.units() | units)[name])
@@ -161,7 +152,7 @@ class Given:
         ]
         # of several values the furthest from 0, so that the grid's own task is a move
         furthest: dict[str, Any] = {name: max(values, key=abs) for name, values in moves.items()}
-        task = PointToPoint(plant, **furthest, **given, uncertainty=uncertainty)
+        task = PointToPoint(plant, **furthest, **options, uncertainty=uncertainty)
         warn_of_payload(kind, plant, parameters)
         return Grid(task, tuple(axes))
 
@@ -174,14 +165,3 @@ class Given:
         if duration is None:
             (duration,) = parse_of_plant("duration", str(text), "rotary", "m")
         return Grid(read_robot_task(self, robot, duration), ())
-
-
-def single_values(given: Mapping[str, Sequence[float]]) -> dict[str, float]:
-    """Values by name; a click error where there are several of one."""
-    for name, values in given.items():
-        if len(values) > 1:
-            raise click.UsageError(
-                f"{name} has {len(values)} values here; give one (a number has a decimal point), "
-                "or quietarm sweep for all"
-            )
-    return {name: values[0] for name, values in given.items()}

@@ -46,17 +46,13 @@ COMMON = (
 )  # fmt: skip
 
 
-_WITHOUT_ANSWER = ("explore",)
-"""Commands that show a page: what they say on standard output is not what they are for."""
-
-
 class Command(click.Command):
     """A command with the options that all have; its function takes what was `Given`."""
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
         """Its own options and those of all commands."""
-        *own, its_help = super().get_params(ctx)
-        return [*own, *COMMON, its_help]
+        *params, help_option = super().get_params(ctx)
+        return [*params, *COMMON, help_option]
 
     def invoke(self, ctx: click.Context) -> None:
         """Run it, unless one file is named twice, or its answer would go nowhere."""
@@ -73,8 +69,10 @@ def command(*params: click.Parameter) -> Callable[[Callable[[Given], None]], cli
 
 def _refuse_same_file(values: Iterable[object]) -> None:
     """Refuse a line that names one file twice, so that nothing that is read is written over."""
-    every = [one for value in values for one in (value if isinstance(value, tuple) else (value,))]
-    paths = [one for one in every if isinstance(one, Path) and one != STDOUT]
+    paths = list[Path]()
+    for value in values:
+        several = value if isinstance(value, tuple) else (value,)
+        paths += [path for path in several if isinstance(path, Path) and path != STDOUT]
     places = list(map(os.path.realpath, paths))  # of a link, too
     for path, place in zip(paths, places):
         if places.count(place) > 1:
@@ -86,7 +84,8 @@ def _refuse_lost_answer(ctx: click.Context) -> None:
     output = ctx.params.get("output") or STDOUT
     files = output if isinstance(output, tuple) else (output,)
     closed = getattr(sys.stdout, "name", "") == os.devnull
-    if closed and STDOUT in files and ctx.command.name not in _WITHOUT_ANSWER:
+    shows_a_page = ctx.command.name == "explore"
+    if closed and STDOUT in files and not shows_a_page:
         raise ValueError("standard output is closed; give the name of a file")
 
 
@@ -174,17 +173,17 @@ PART = option("--part", type=Parsed("i/n", parse_share_of_work), default="1/1",
               help="Do every n-th piece alone, as 2/8 in a queue's array job.")  # fmt: skip
 
 
-def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.Option]:
-    """--profile and --terms; `others` are profiles without coefficients."""
+def profile_options(*more: str, words: str = "") -> tuple[click.Option, click.Option]:
+    """--profile and --terms; `more` are profiles without coefficients."""
     no_front = (
         "{0} is an input shaper: it has one motion for a move, and therefore no front; give one of "
         f"{', '.join(families())}, or quietarm plan"
     )
-    none = {} if others else {name: no_front.format(name) for name in SHAPERS}
+    none = {} if more else {name: no_front.format(name) for name in SHAPERS}
     sizes = ", ".join(f"{family.terms} for {name}" for name, family in families().items())
     sizes += "; of a polynomial within limits 18, or 24 where the plant has several modes"
     return (
-        option("--profile", type=Named("profile", lambda: [*families(), *others], none),
+        option("--profile", type=Named("profile", lambda: [*families(), *more], none),
                default=POLYNOMIAL,
                help="How the joint moves: a cycloid of a polynomial, of Gaussians, of a neural "
                f"network or of a spline{words}."),
@@ -194,7 +193,7 @@ def profile_options(*others: str, words: str = "") -> tuple[click.Option, click.
 
 
 def method_option(
-    own: Iterable[str], others: Mapping[str, str], default: str, words: str
+    methods: Iterable[str], elsewhere: Mapping[str, str], default: str, words: str
 ) -> click.Option:
-    """--method; an error says of others what they are, and which command has them."""
-    return option("--method", type=Named("method", own, others), default=default, help=words)
+    """--method; an error says of methods `elsewhere` which command has them."""
+    return option("--method", type=Named("method", methods, elsewhere), default=default, help=words)

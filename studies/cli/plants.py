@@ -4,24 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import MISSING, fields, replace
-from functools import partial
 from math import tau
 
 from rich.console import Console
 
 from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
 from quietarm.ocp import Uncertainty
-from quietarm.ocp.checks import has_no, unknown
-from quietarm.studies.cli.quantities import MEASURED, once, parse_parameter
+from quietarm.ocp.checks import unknown
+from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.identify import Identified
-from quietarm.studies.report.words import print_lines
-from quietarm.studies.sweep.grid import axis_values
+from quietarm.studies.report.terminal import print_lines
 
 Kind = type[Plant] | Identified | Robot
 """What PLANT names: a class of plants, an identified machine, or a robot."""
 OF_ROBOTS = (".yaml", ".yml")
 """Endings of the files of robots."""
-_NO_PLANT = (
+ROBOT_IS_NO_PLANT = (
     "a robot is a plant on a path alone; give it to quietarm plan, evaluate, front or search, with "
     "--start and --target or --path"
 )
@@ -42,51 +40,34 @@ def parse_plant(name: str) -> Kind:
     return plants[name]
 
 
-def choose_kind(named: Kind | None, own: Mapping[str, type[Plant]] | None) -> Kind:
+def choose_kind(named: Kind | None, of_file: Mapping[str, type[Plant]] | None) -> Kind:
     """What PLANT names, or else the only plant of a plant file."""
-    if isinstance(named, Identified | Robot) or (named and own is None):
+    if isinstance(named, Identified | Robot) or (named and of_file is None):
         return named
-    if not own:
+    if not of_file:
         raise ValueError(
             "missing argument PLANT; give one, as single-link, or a file by --plant-file"
         )
-    its = f"the plant file defines {' and '.join(own)}"
-    if named is None and len(own) > 1:
-        raise ValueError(f"{its}; name one as PLANT")
-    if named and named not in own.values():
-        raise ValueError(f"{its}, not {named.name}; leave {named.name} or --plant-file out")
-    return named or next(iter(own.values()))
-
-
-def read_parameters(
-    kind: Kind | Plant, pairs: Iterable[tuple[str, str]]
-) -> dict[str, tuple[float, ...]]:
-    """The values that parameters are set to, several for an axis of a sweep."""
-    if isinstance(kind, Robot):
-        raise ValueError(_NO_PLANT)
-    plant = kind.plant if isinstance(kind, Identified) else kind
-    texts, known = once(pairs, "--set "), {entry.name: entry.metadata for entry in fields(plant)}
-    for name in texts:
-        if name not in known:
-            its = [other for other, of in known.items() if name in of.get("meaning", "")]
-            meant = f"; the {name} is {' or '.join(its)}" if its else ""
-            raise ValueError(has_no(plant.name, "parameter", name, known) + meant)
-    return {
-        name: axis_values(text, partial(parse_parameter, unit=plant.units()[name], name=name))
-        for name, text in texts.items()
-    }
+    defined = f"the plant file defines {' and '.join(of_file)}"
+    if named is None and len(of_file) > 1:
+        raise ValueError(f"{defined}; name one as PLANT")
+    if named and named not in of_file.values():
+        raise ValueError(f"{defined}, not {named.name}; leave {named.name} or --plant-file out")
+    return named or next(iter(of_file.values()))
 
 
 def build_plant(kind: Kind, values: Mapping[str, float]) -> Plant:
     """The plant with these values; of an identified machine it keeps the others."""
     if isinstance(kind, Robot):
-        raise ValueError(_NO_PLANT)
+        raise ValueError(ROBOT_IS_NO_PLANT)
     if isinstance(kind, Identified):
         return replace(kind.plant, **values)
-    needed = (one.name for one in fields(kind) if one.default is one.default_factory is MISSING)
-    for name in needed:
-        if name not in values:
-            raise ValueError(f"{kind.name} has no value for {name}; give --set {name}=...")
+    for entry in fields(kind):
+        is_needed = entry.default is entry.default_factory is MISSING
+        if is_needed and entry.name not in values:
+            raise ValueError(
+                f"{kind.name} has no value for {entry.name}; give --set {entry.name}=..."
+            )
     return kind(**values)
 
 
@@ -114,7 +95,8 @@ def warn_of_payload(kind: Kind, plant: Plant, changed: Collection[str]) -> None:
 
     It may have been weighed anew, or carry another payload.
     """
-    beam, mass = getattr(kind, "plant", None), plant.parameters.get("tip_mass", 0.0)
+    beam = getattr(kind, "plant", None)
+    mass = plant.parameters.get("tip_mass", 0.0)
     if not isinstance(beam, FlexibleBeam) or mass == beam.tip_mass or "omega" in changed:
         return
     loaded = beam.carrying(mass).omega / tau

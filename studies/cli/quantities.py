@@ -7,23 +7,26 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields
 from functools import partial, reduce
 from operator import add, lt
 from typing import Any, TypeVar
 
+import numpy as np
+
 from quietarm.metaheuristics.parallel import MOST_WORKERS
+from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.models.units import is_number, parse_quantity
 from quietarm.ocp import ModalState
-from quietarm.ocp.checks import finite, known, unknown, whole
+from quietarm.ocp.checks import finite, has_no, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
 from quietarm.studies.reading.units import UNITS as OF_COLUMNS
 from quietarm.studies.reading.units import normal
-from quietarm.studies.sweep.grid import OF_MOVES, axis_values
+from quietarm.studies.sweep.grid import MOST_VALUES, OF_MOVES
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -45,10 +48,10 @@ _RARE = {
 def parse_usual(unit: str, what: str, text: str) -> float:
     """Read a quantity; a number alone that is rarely meant in SI is asked about."""
     value = parse_quantity(text, unit, what)
-    most, name, other, short = _RARE.get(what) or _RARE.get(unit, (math.inf, "", "", ""))
+    most, name, likely, short = _RARE.get(what) or _RARE.get(unit, (math.inf, "", "", ""))
     if math.isfinite(value) and abs(value) > most and is_number(text):
         raise ValueError(
-            f"{text} is in {name}; were {other} meant? give {text}{short}, or {text}{unit}"
+            f"{text} is in {name}; were {likely} meant? give {text}{short}, or {text}{unit}"
         )
     return value
 
@@ -71,6 +74,33 @@ def parse_parameter(text: str, unit: str, name: str) -> float:
     return parse_quantity(text, unit, f"a value of {name}")
 
 
+def parse_parameters(
+    plant: Plant | type[Plant], pairs: Iterable[tuple[str, str]]
+) -> dict[str, tuple[float, ...]]:
+    """Read the values that a plant's parameters are set to, several for an axis of a sweep."""
+    units = plant.units()
+    meanings = {entry.name: entry.metadata.get("meaning", "") for entry in fields(plant)}
+    values: dict[str, tuple[float, ...]] = {}
+    for name, text in once(pairs, "--set ").items():
+        if name not in units:
+            symbols = [symbol for symbol, meaning in meanings.items() if name in meaning]
+            meant = f"; the {name} is {' or '.join(symbols)}" if symbols else ""
+            raise ValueError(has_no(plant.name, "parameter", name, meanings) + meant)
+        values[name] = parse_values(text, partial(parse_parameter, unit=units[name], name=name))
+    return values
+
+
+def single_values(values: Mapping[str, Sequence[float]]) -> dict[str, float]:
+    """Values by name; ValueError where there are several of one name."""
+    for name, several in values.items():
+        if len(several) > 1:
+            raise ValueError(
+                f"{name} has {len(several)} values here; give one (a number has a decimal point), "
+                "or quietarm sweep for all"
+            )
+    return {name: value for name, (value,) in values.items()}
+
+
 def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     """Read an end or the duration of a move, or a limit of it, in the units of joint and tip.
 
@@ -79,17 +109,18 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     if name in OF_MOVES:
         end = ("rad", "an angle") if joint == ROTARY else ("m", "a position")
         kind = ("s", "a time") if name == "duration" else end
-        return axis_values(text, partial(parse_usual, *kind))
+        return parse_values(text, partial(parse_usual, *kind))
     if name == TORQUE_SPEED:
         return parse_torque_speed(text, joint)
     if name == RESIDUAL_LIMIT:
         return parse_usual(tip_unit, "a length" if tip_unit == "m" else "an angle", text)
     quantities = quantities_of(joint, tip_unit)
     if "=" in text and quantities[name.removesuffix("_limit")].of_joints:
-        pairs = (parse_pair(one, "a limit", "elbow_joint=16") for one in text.split(","))
+        pairs = (parse_pair(part, "a limit", "elbow_joint=16") for part in text.split(","))
         by_joint = once(pairs, "the limit of ")
         return {of: parse_of_plant(name, value, joint, tip_unit) for of, value in by_joint.items()}
-    limited, sides = quantities[name.removesuffix("_limit")], text.split(":")
+    limited = quantities[name.removesuffix("_limit")]
+    sides = text.split(":")
     what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
     values = [parse_usual(limited.unit, what, side) for side in sides]
     if len(values) > 2:
@@ -99,12 +130,43 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     return tuple(values) if len(values) == 2 else values[0]
 
 
+def parse_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
+    """Read values: one, several as ``0.6,0.8,1.2``, or from, to, step as ``10deg:90deg:5deg``."""
+    if ":" in text:
+        ends = text.split(":")
+        if len(ends) != 3:
+            raise ValueError(f"{text!r} is no axis; give from:to:step, as 10deg:90deg:5deg")
+        first, last, step = map(parse, ends)
+        steps = (last - first) / step if step else math.inf
+        if not (steps > 0 and math.isfinite(steps)):
+            raise ValueError(
+                f"{text!r}: steps of {ends[2]} do not lead from {ends[0]} to {ends[1]}; give "
+                "from:to:step, as 10deg:90deg:5deg"
+            )
+        if steps >= MOST_VALUES:
+            raise ValueError(
+                f"{text!r}: steps of {ends[2]} make {steps + 1:.0f} values, and {MOST_VALUES} are "
+                "the most; give wider steps"
+            )
+        rounding_error = 1e-6 * steps
+        if abs(steps - round(steps)) > rounding_error:
+            raise ValueError(
+                f"{text!r}: steps of {ends[2]} from {ends[0]} do not reach {ends[1]}; give a step "
+                "that does"
+            )
+        return tuple(np.linspace(first, last, round(steps) + 1).round(12).tolist())
+    values = tuple(parse(value) for value in text.split(","))
+    if len(set(values)) < len(values):
+        raise ValueError(f"{text!r} has a value twice; give each once")
+    return tuple(sorted(values))
+
+
 def _two(
     mark: str,
     first: Callable[[str], S],
     second: Callable[[str], T],
     otherwise: str,
-    fits: Callable[[S, T], bool] = lambda one, other: True,
+    fits: Callable[[S, T], bool] = lambda first, second: True,
 ) -> Callable[[str], tuple[S, T]]:
     """What reads two values with a mark between them that fit each other.
 
@@ -113,18 +175,18 @@ def _two(
 
     def parse(text: str) -> tuple[S, T]:
         with suppress(ValueError):
-            one, other = text.split(mark)
-            found = first(one), second(other)
-            if fits(*found):
-                return found
+            left_text, right_text = text.split(mark)
+            values = first(left_text), second(right_text)
+            if fits(*values):
+                return values
         raise ValueError(f"{text!r} is no {otherwise}")
 
     return parse
 
 
 def _lengths(text: str) -> tuple[float, ...]:
-    lengths = (one.removesuffix("/s") for one in text.split(","))
-    return tuple(parse_quantity(one, "m", "a length") for one in lengths)
+    lengths = (length.removesuffix("/s") for length in text.split(","))
+    return tuple(parse_quantity(length, "m", "a length") for length in lengths)
 
 
 parse_weights = _two(":", float, float, "pair of weights; give those of residual and energy as 1:3")
@@ -204,7 +266,7 @@ def parse_error(text: str) -> tuple[str, float]:
 
 def parse_units(text: str) -> dict[str, str]:
     """Read units of a recording's quantities: ``time:ms,angle:deg``."""
-    pairs = (map(str.strip, one.partition(":")) for one in text.split(","))
+    pairs = (map(str.strip, pair.partition(":")) for pair in text.split(","))
     units = once(((quantity, unit) for quantity, _, unit in pairs), "the unit of ")
     for quantity, unit in units.items():
         factors = _of_column(quantity)
@@ -215,7 +277,7 @@ def parse_units(text: str) -> dict[str, str]:
 
 def parse_scales(text: str) -> list[tuple[str, float]]:
     """Read what counts of recorded quantities are in SI units: ``angle=2pi/4096,tip=1e-5``."""
-    return [_scale(one) for one in text.split(",")]
+    return [_scale(scale) for scale in text.split(",")]
 
 
 def _scale(text: str) -> tuple[str, float]:
@@ -249,7 +311,9 @@ def parse_rate(text: str) -> float:
 def parse_coefficients(text: str) -> list[float]:
     """Read numbers that are separated by commas."""
     try:
-        return [_finite(f"coefficient {i}", one) for i, one in enumerate(text.split(","), start=1)]
+        return [
+            _finite(f"coefficient {i}", number) for i, number in enumerate(text.split(","), start=1)
+        ]
     except ValueError as error:
         raise ValueError(f"{error}, and commas between several, or a file of rows") from None
 
@@ -272,11 +336,11 @@ def _part_of_energy(text: str) -> Energy:
     if name not in energies:
         raise ValueError(unknown("energy", name, energies))
     wanted = [entry.name for entry in fields(energies[name])]
-    given = numbers.split(",") if colon else []
-    if len(given) != len(wanted):
+    values = numbers.split(",") if colon else []
+    if len(values) != len(wanted):
         form = f"{name}:{','.join(wanted)}" if wanted else name
-        raise ValueError(f"{text!r} has {len(given)} numbers of {len(wanted)}; give {form}")
-    energy = energies[name](*map(_finite, wanted, given))
+        raise ValueError(f"{text!r} has {len(values)} numbers of {len(wanted)}; give {form}")
+    energy = energies[name](*map(_finite, wanted, values))
     return _finite("weight", weight) * energy if times else energy
 
 

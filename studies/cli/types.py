@@ -17,7 +17,8 @@ class Parsed(click.ParamType):
     """A value read by a function that raises ValueError with a message for the user."""
 
     def __init__(self, name: str, parse: Callable[[str], Any]) -> None:
-        self.name, self.parse = name, parse
+        self.name = name
+        self.parse = parse
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Read the text; a click error names the option."""
@@ -59,5 +60,5 @@ LENGTH, TIME, SHARE = (
     for name, unit in {"length": "m", "time": "s", "share": "-"}.items()
 )
 SETTING = Parsed("name=value", parse_pair)
-NAMES = Parsed("names", lambda text: tuple(one.strip() for one in text.split(",")))
+NAMES = Parsed("names", lambda text: tuple(name.strip() for name in text.split(",")))
 INPUT = click.Path(path_type=Path)

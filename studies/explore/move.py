@@ -24,7 +24,11 @@ from quietarm.studies.sweep.library import MoveLibrary
 
 FRONT_POINTS = 20
 """Enough for a line, within a second."""
-_SHORTEST, _LONGEST, _FURTHEST, _LEAST, _MOST = 0.1, 5.0, 2.0, 1e-3, 1e4
+_SHORTEST = 0.1
+_LONGEST = 5.0
+_FURTHEST = 2.0
+_LEAST = 1e-3
+_MOST = 1e4
 """Ranges of durations [s], of a linear axis [m], and of limits in the unit that is shown."""
 _SHOWN = {"rad": ("deg", degrees(1.0)), "m": ("mm", 1e3)}
 """Units that are shown in the place of SI's, and the factors to them."""
@@ -92,7 +96,8 @@ class Explored:
     @cached_property
     def dials(self) -> dict[str, Dial]:
         """What can be set, by name."""
-        task, joint = self.opened or self.task, self.task.plant.joint
+        task = self.opened or self.task
+        joint = self.task.plant.joint
         tip_unit = task.plant.tip_unit
         way = tau if joint == ROTARY else max(_FURTHEST, abs(task.start), abs(task.target))
         ends = dict.fromkeys(OF_MOVES, (joint_unit("rad", joint), -way, way))
@@ -104,16 +109,16 @@ class Explored:
         limits |= {"residual_limit": ("residual", tip_unit), "bound": ("largest |a_n|", "-")}
         reach = "-", -self.reach, self.reach
         return {
-            **{name: _dial("move", name, *one) for name, one in ends.items()},
+            **{name: _dial("move", name, *end) for name, end in ends.items()},
             **{name: _dial("shape", name, *reach) for name in self.coefficients},
-            **{name: _dial("limits", *one) for name, one in limits.items()},
+            **{name: _dial("limits", *limit) for name, limit in limits.items()},
         }
 
     @cached_property
     def _values(self) -> dict[str, Any]:
         """Values of the dials in SI, None where one is empty."""
-        own = {"residual_limit": self.residual_limit, "bound": self.bound, **self.coefficients}
-        known = {**self.task.plant.parameters, **vars(self.task), **own}
+        settings = {"residual_limit": self.residual_limit, "bound": self.bound, **self.coefficients}
+        known = {**self.task.plant.parameters, **vars(self.task), **settings}
         return {name: known[name] for name in self.dials}
 
     @cached_property
@@ -139,23 +144,24 @@ class Explored:
                 values[name] = min(max(value, dial.least), dial.most) / dial.factor
             elif dial.group == "limits":
                 values[name] = None
-        task, coefficients = self.task, [values[name] for name in self.coefficients]
+        task = self.task
+        coefficients = [values[name] for name in self.coefficients]
         if self.library:
             at = {name: values[name] for name in self.library.grid.names}
             task = self.library.task(**at)
             if not shown.keys().isdisjoint(at):
                 coefficients = self.library.coefficients(**at).tolist()
         task = replace(task, **{name: values[name] for name in _OF_TASK})
-        asked = {name: values[name] for name in ("residual_limit", "bound")}
+        settings = {name: values[name] for name in ("residual_limit", "bound")}
         same = task == self.task and values["bound"] == self.bound
-        return self._moved(task, coefficients, front=self.front if same else None, **asked)
+        return self._moved(task, coefficients, front=self.front if same else None, **settings)
 
     def _moved(
-        self, task: PointToPoint, coefficients: Any, profile: Any = None, **others: Any
+        self, task: PointToPoint, coefficients: Any, profile: Any = None, **options: Any
     ) -> Explored:
         """The same with another motion, which nothing has optimised."""
         plan = evaluate_coefficients(task, coefficients, profile=profile or self.plan.profile)
-        return replace(self, plan=plan, **others)
+        return replace(self, plan=plan, **options)
 
     def begin_again(self) -> Explored:
         """The same move with the coefficients from which the gradient starts first."""
@@ -166,7 +172,8 @@ class Explored:
 
         The residual window is the plant's, too, unless it was given; in a file both are numbers.
         """
-        task, window = self.task, self.task.residual_window
+        task = self.task
+        window = self.task.residual_window
         by_default = default_window([(task.plant, task.target)])
         if window == by_default:
             window = by_default
@@ -180,18 +187,19 @@ class Explored:
 
     def solve(self) -> Explored:
         """The same with the gradient's motion; it raises what `plan_move` does."""
-        asked: dict[str, Any] = {"residual_limit": self.residual_limit, "bound": self.bound}
-        return replace(self, plan=plan_move(self.task, self.plan.profile, **asked))
+        settings: dict[str, Any] = {"residual_limit": self.residual_limit, "bound": self.bound}
+        return replace(self, plan=plan_move(self.task, self.plan.profile, **settings))
 
     def find_front(self, report: Progress = no_report) -> Explored:
         """The same with the front of this move; it raises what `epsilon_front` does."""
-        asked: dict[str, Any] = {"bound": self.bound, "points": FRONT_POINTS, "report": report}
-        return replace(self, front=epsilon_front(self.task, self.plan.profile, **asked))
+        settings: dict[str, Any] = {"bound": self.bound, "points": FRONT_POINTS, "report": report}
+        return replace(self, front=epsilon_front(self.task, self.plan.profile, **settings))
 
     def pick(self, number: int) -> Explored:
         """The same with the motion of a point of the front, by its number from 0."""
         assert self.front is not None
-        picked, record = self.front.points[number], self.front.record
+        picked = self.front.points[number]
+        record = self.front.record
         now = self._moved(self.task, picked.coefficients)
         plan = now.plan.restated(method=record.method, settings=record.settings)
         return replace(now, plan=plan)

@@ -41,8 +41,6 @@ _WAIT = 5
 """Milliseconds in which changes are gathered: a slider sends more of them than are drawn."""
 _WORK = ThreadPoolExecutor(1, "explore")
 """Where plans and fronts are computed, while the page goes on."""
-_ROUNDING = 1e-9
-_FOLLOW = "if (cb_obj.value !== null) other.value = cb_obj.value"
 _HERE = Path(__file__).parent
 
 
@@ -50,8 +48,10 @@ class Page:
     """One visitor's page: the motion in hand, and plants that can be chosen by their words."""
 
     def __init__(self, document: Document, explored: Explored, plants: Mapping[str, Plant]) -> None:
-        self._document, self._explored = document, explored
-        self._typed, self._fields = dict[str, Any](), dict[str, Any]()
+        self._document = document
+        self._explored = explored
+        self._typed = dict[str, Any]()
+        self._fields = dict[str, Any]()
         self._choices: dict[str, Callable[[Explored, Any], Explored]] = {
             "plant": lambda now, words: now.choose_plant(plants[words]),
             "profile": Explored.choose_profile,
@@ -62,7 +62,8 @@ class Page:
         self._file = ColumnDataSource({"name": [], "text": [], "time": []})
         save = CustomJS(args={"file": self._file}, code=(_HERE / "save.js").read_text())
         self._file.js_on_change("data", save)
-        self._shape, self._figures = Column(name="shape"), Div(name="figures")
+        self._shape = Column(name="shape")
+        self._figures = Div(name="figures")
         self._said = Div(name="said", tags=[self._file])  # it is part of the document as a tag
         self._buttons = [
             _button(
@@ -91,7 +92,8 @@ class Page:
         terms = Spinner(title="terms", low=1, step=1)
         for name, field in {"plant": plant, "profile": profile, "terms": terms}.items():
             self._watch(name, field)
-        move, limits = self._group("move"), _in_twos(self._group("limits"), "limits")
+        move = self._group("move")
+        limits = _in_twos(self._group("limits"), "limits")
         files = [_button(name, partial(self._save, name)) for name in FILES]
         answers = [plant, Row(children=[profile, terms]), _in_twos(self._buttons)]
         return [
@@ -120,15 +122,16 @@ class Page:
 
     def _field(self, name: str, dial: Dial) -> UIElement:
         """A number; but for a limit with a slider that follows it and is followed."""
+        follow = "if (cb_obj.value !== null) other.value = cb_obj.value"
         field = Spinner(title=dial.label, format="0[.][0000]", placeholder="none")
         self._watch(name, field)
         if dial.group == "limits":
             return field
         step = float(10 ** math.floor(math.log10((dial.most - dial.least) / 500)))
         slider = Slider(start=dial.least, end=dial.most, show_value=False, align="end")
-        for one, other in ((field, slider), (slider, field)):
-            one.js_on_change("value", CustomJS(args={"other": other}, code=_FOLLOW))
-            one.update(value=self._explored.shown[name] or 0.0, step=step)
+        for source, target in ((field, slider), (slider, field)):
+            source.js_on_change("value", CustomJS(args={"other": target}, code=follow))
+            source.update(value=self._explored.shown[name] or 0.0, step=step)
         field.update(width=95, sizing_mode="fixed")
         return Row(children=[field, slider])
 
@@ -137,7 +140,8 @@ class Page:
 
     def _save(self, name: str) -> None:
         if self._change():
-            text, now = self._explored.file(name), time.monotonic()
+            text = self._explored.file(name)
+            now = time.monotonic()
             # with the time the same file can be saved again
             self._file.data = {"name": [name], "text": [text], "time": [now]}
 
@@ -172,7 +176,9 @@ class Page:
 
     def _change(self, change: Change = lambda same: same, then: str = "") -> bool:
         """Change the motion in hand, after what was typed; False where it is said why not."""
-        typed, words, colour = self._typed, then, GREY
+        typed = self._typed
+        words = then
+        colour = GREY
         self._typed = {}
         dials = {name: value for name, value in typed.items() if name not in self._choices}
         try:
@@ -183,7 +189,8 @@ class Page:
                     self._explored = choose(self._explored, typed[name])
             self._explored = change(self._explored)
         except (ValueError, QuietarmError) as error:
-            words, colour = str(error), RED
+            words = str(error)
+            colour = RED
         self._show()
         self._say(words, colour)  # when all is shown
         return colour == GREY
@@ -212,8 +219,9 @@ def _same(value: Any, shown: Any) -> bool:
 
     What is set back for that alone meets the next moves of the slider, and none of them ends.
     """
+    rounding = 1e-9
     if isinstance(value, float | int) and isinstance(shown, float | int):
-        return math.isclose(value, shown, rel_tol=_ROUNDING, abs_tol=_ROUNDING)
+        return math.isclose(value, shown, rel_tol=rounding, abs_tol=rounding)
     return value == shown
 
 
@@ -235,5 +243,5 @@ def _button(label: str, pressed: Callable[[], Any], **look: Any) -> Button:
 
 
 def _in_twos(elements: Sequence[UIElement], name: str | None = None) -> UIElement:
-    places: Any = [(one, k // 2, k % 2) for k, one in enumerate(elements)]
+    places: Any = [(element, k // 2, k % 2) for k, element in enumerate(elements)]
     return GridBox(children=places, name=name)

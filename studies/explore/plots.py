@@ -29,17 +29,13 @@ FRAMES = 25
 """A second."""
 FREQUENCY = 0.2
 """Largest error of the frequency that is looked at."""
-_POINTS = 200
-"""Of a curve: on a panel a third of a screen wide their corners cannot be seen."""
-_DIGITS = 6
-"""Of what is drawn, behind the point: lists are in the browser sooner than many arrays."""
-_HIGHER = 280
-_NO_FRONT = "Press Front to see what each millimetre saves"
 _PLAY = Path(__file__).with_name("play.js").read_text()
 """The frame of the moment, and the last one for a second."""
 Rows = list[tuple[Any, ...]]
 """Of a source, in the order of its columns."""
-_CURVE, _BODY, _POINT = ("xs", "ys", "colour", "dash"), ("xs", "ys", "colour", "width"), ("x", "y")
+_CURVE = ("xs", "ys", "colour", "dash")
+_BODY = ("xs", "ys", "colour", "width")
+_POINT = ("x", "y")
 _COLUMNS: Mapping[str, tuple[str, ...]] = {
     "film": (*_BODY, "frames", "words"), "paths": ("xs", "ys"), "corners": _POINT,
     "points": _POINT, "here": _POINT, **dict.fromkeys(("robustness", *PANELS), _CURVE),
@@ -52,7 +48,7 @@ class Plots:
 
     def __init__(self, document: Document, plant: Plant, pick: Callable[[int], None]) -> None:
         self._sources = {
-            name: ColumnDataSource({one: [] for one in of}) for name, of in _COLUMNS.items()
+            name: ColumnDataSource({column: [] for column in of}) for name, of in _COLUMNS.items()
         }
         shown = tip_scale(plant.tip_unit)[0]
         below = "time [s]  (dotted: arrival)"
@@ -66,8 +62,9 @@ class Plots:
 
     def show(self, explored: Explored) -> None:
         """Show another motion in all plots."""
+        no_front = "Press Front to see what each millimetre saves"
         self._sources["points"].selected.indices = []  # so that one can be clicked again
-        self._front.title.text = "front (cross: this motion)" if explored.front else _NO_FRONT
+        self._front.title.text = "front (cross: this motion)" if explored.front else no_front
         self._front.axis.visible = bool(explored.front)
         self._front.xaxis.axis_label = residual_label(
             explored.task.plant.tip_unit, explored.task.residual_window
@@ -78,7 +75,8 @@ class Plots:
 
     def _stage(self, document: Document) -> Any:
         """The structure, which the browser plays by itself."""
-        plot: Any = figure(name="stage", title=" ", tools="", height=_HIGHER, match_aspect=True)
+        higher = 280
+        plot: Any = figure(name="stage", title=" ", tools="", height=higher, match_aspect=True)
         plot.grid.visible = plot.axis.visible = False
         shown = ColumnDataSource({name: [] for name in _BODY})
         room = plot.scatter(*_POINT, source=self._sources["corners"], alpha=0)
@@ -99,7 +97,8 @@ class Plots:
         """The front, and where the motion in hand lies."""
         plot: Any = figure(name="front", tools="tap", x_axis_label=" ",
                            y_axis_label="energy F2 [J]")  # fmt: skip
-        points, here = self._sources["points"], self._sources["here"]
+        points = self._sources["points"]
+        here = self._sources["here"]
         points.selected.on_change("indices", lambda _, old, new: pick(new[0]) if new else None)
         plot.line(*_POINT, source=points, color=BLUE)
         plot.scatter(*_POINT, source=points, color=BLUE, size=9, nonselection_alpha=1)
@@ -117,39 +116,48 @@ class Plots:
 
 def _drawn(explored: Explored) -> dict[str, Rows]:
     """Rows of every source: the motion in hand, over the plain cycloid and the one that is kept."""
-    plan, front = explored.plan, explored.front.points if explored.front else ()
+    plan = explored.plan
+    front = explored.front.points if explored.front else ()
     cycloid = evaluate_coefficients(plan.task, [])
     lines = [Line(cycloid, "", GREY, "solid"), Line(plan, "", BLUE, "solid")]
     if explored.kept:
         lines.insert(1, Line(explored.kept, "", ORANGE, "dashed"))
     scale = tip_scale(plan.task.plant.tip_unit)[1]
-    points, here = ([(scale * one.residual, one.energy) for one in of] for of in (front, [plan]))
+    points, here = (
+        [(scale * point.residual, point.energy) for point in of] for of in (front, [plan])
+    )
     rows = {"points": points, "here": here * bool(front), "robustness": _robustness(plan)}
     return rows | _film(lines[-1]) | {name: _quantity(lines, name) for name in PANELS}
 
 
 def _quantity(lines: list[Line], name: str) -> Rows:
     """A quantity of motions; the limits that these come near, and the arrival of the last one."""
-    rows, reach, end = Rows(), [np.zeros(1)], lines[-1].plan.task.duration
+    # of a curve: on a panel a third of a screen wide their corners cannot be seen
+    points = 200
+    rows = Rows()
+    reach = [np.zeros(1)]
+    end = lines[-1].plan.task.duration
     for line in lines:
         time = line.plan.trajectory.time
-        some = slice(None, None, max(1, len(time) // _POINTS))
+        some = slice(None, None, max(1, len(time) // points))
         for values in curves(line.plan, name):
             rows.append((_plain(time[some]), _plain(values[some]), line.colour, line.style))
             reach.append(values)
     limits = limits_in_sight(lines[-1:], name, np.concatenate(reach))
     rows += [([0.0, end], [level, level], RED, "dashed") for level in limits]
-    every = np.concatenate([*reach, limits])
-    return [*rows, ([end, end], _plain([every.min(), every.max()]), INK, "dotted")]
+    all_residuals = np.concatenate([*reach, limits])
+    return [*rows, ([end, end], _plain([all_residuals.min(), all_residuals.max()]), INK, "dotted")]
 
 
 def _robustness(plan: Plan) -> Rows:
     """The residual over the error of the frequency [%], and what is tolerated."""
     ranges = {"frequency": FREQUENCY}
-    found = evaluate_robustness(plan.candidate, ranges, samples=1)
+    robustness = evaluate_robustness(plan.candidate, ranges, samples=1)
     scale = tip_scale(plan.task.plant.tip_unit)[1]
-    (sweep,), tolerated = found.sweeps, scale * found.tolerated
-    errors, residuals = _plain(100 * sweep.errors), _plain(scale * sweep.figures.residual)
+    (sweep,) = robustness.sweeps
+    tolerated = scale * robustness.tolerated
+    errors = _plain(100 * sweep.errors)
+    residuals = _plain(scale * sweep.figures.residual)
     level = [errors[0], errors[-1]], [tolerated, tolerated], GREY, "dashed"
     return [(errors, residuals, BLUE, "solid"), level]
 
@@ -159,12 +167,16 @@ def _film(line: Line) -> dict[str, Rows]:
     plan = line.plan
     end = plan.task.duration + plan.task.residual_window
     times = np.arange(0.0, end, 1 / FRAMES)
-    (one,) = structures_of([line], times, end)
+    (structure,) = structures_of([line], times, end)
     residual = residual_words(plan.residual, plan.task.plant.tip_unit)
-    words = f"{plan.energy:.4g} J, {residual}; {one.scale_words}"
+    words = f"{plan.energy:.4g} J, {residual}; {structure.scale_words}"
     parts = [(*_along(part.points), part.colour, part.width, len(times), words)
-             for part in one.bent]  # fmt: skip
-    return {"film": parts, "corners": _plain(one.corners), "paths": [*map(_along, one.paths)]}
+             for part in structure.bent]  # fmt: skip
+    return {
+        "film": parts,
+        "corners": _plain(structure.corners),
+        "paths": [*map(_along, structure.paths)],
+    }
 
 
 def _along(points: NDArray[np.float64]) -> tuple[Any, ...]:
@@ -173,4 +185,6 @@ def _along(points: NDArray[np.float64]) -> tuple[Any, ...]:
 
 
 def _plain(values: ArrayLike) -> Any:
-    return np.round(np.asarray(values), _DIGITS).tolist()
+    # of what is drawn, behind the point: lists are in the browser sooner than many arrays
+    digits = 6
+    return np.round(np.asarray(values), digits).tolist()

@@ -27,7 +27,8 @@ from quietarm.studies.explore.start_page import menu
 _HOSTS = ("localhost", "127.0.0.1", "[::1]")
 """What this machine is called in a browser. A name of the network that leads here belongs to a
 stranger, whose page would read this one."""
-_MOST_PAGES, _WHILE = 10, 15.0
+_MOST_PAGES = 10
+_WHILE = 15.0
 """So many pages are made in so many seconds: each takes some 0.3 s, in which no other moves."""
 
 

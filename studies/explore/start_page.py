@@ -14,13 +14,14 @@ from quietarm.studies.reading.saved import format_of, load_front, load_plans
 from quietarm.studies.report.words import plant_words
 from quietarm.studies.sweep.library import MoveLibrary
 
-_TARGETS, _DURATION = {ROTARY: pi / 6, LINEAR: 0.3}, 0.8
-"""The paper's first move, and 300 mm of a linear axis."""
-
 
 def open_plant(plant: Plant) -> Explored:
     """The plain cycloid of a plant, with the coefficients of six terms to be set."""
-    task, profile = PointToPoint(plant, _TARGETS[plant.joint], _DURATION), CycloidPolynomial()
+    # the paper's first move, and 300 mm of a linear axis
+    targets = {ROTARY: pi / 6, LINEAR: 0.3}
+    duration = 0.8
+    task = PointToPoint(plant, targets[plant.joint], duration)
+    profile = CycloidPolynomial()
     return Explored(evaluate_coefficients(task, profile.plain, profile=profile))
 
 
@@ -51,7 +52,7 @@ def menu(plant: Plant) -> dict[str, Plant]:
     plants = {plant_words(plant): plant}
     for kind in known_plants().values():
         with suppress(TypeError):  # a parameter without a value
-            other = kind()
-            if other.joint == plant.joint:
-                plants.setdefault(plant_words(other), other)
+            plant_of_kind = kind()
+            if plant_of_kind.joint == plant.joint:
+                plants.setdefault(plant_words(plant_of_kind), plant_of_kind)
     return plants

@@ -31,16 +31,22 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
             "of letters, digits and _ that begins with a letter"
         )
     if isinstance(moves, Plan):
-        task, versions, between, axes = moves.task, moves.record.versions, None, ()
+        task = moves.task
+        versions = moves.record.versions
+        between = None
+        axes = ()
         title = f"{moved(task)}, {move_of(task)}"
         residual = tip_words(moves.residual, task.plant.tip_unit)
         figures = f"energy {moves.energy:.4g} J, residual {residual} "
         figures += window_words(task.residual_window)
         figures = ", ".join([figures, *limit_words(task)])
     else:
-        task, versions = moves.grid.task, moves.store.note("versions")
-        between, axes = moves.interpolation, moves.grid.axes
-        title, figures = f"moves of {moved(task)}", moves.between().words
+        task = moves.grid.task
+        versions = moves.store.note("versions")
+        between = moves.interpolation
+        axes = moves.grid.axes
+        title = f"moves of {moved(task)}"
+        figures = moves.between().words
         figures += f", residuals {window_words(task.residual_window)}"
     move = dict(zip(OF_MOVES, map(repr, task.move)))
     helpers, statements = _path_in_c(moves.profile)
@@ -62,15 +68,17 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
 
 def _path_in_c(profile: JointProfile) -> tuple[list[str], str]:
     """Functions that are called, and the statements of the joint's path, by CasADi's generator."""
-    fraction, a, move = ca.SX.sym("t"), ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
+    fraction = ca.SX.sym("t")
+    a = ca.SX.sym("a", profile.size)
+    move = ca.SX.sym("move", 3)
     joint = profile.motion(ca.vertsplit(a), fraction, *ca.vertsplit(move), jerk=False)
     results = ca.densify(ca.vertcat(joint.angle, joint.speed, joint.acceleration))
     generator = ca.CodeGenerator("path", {"with_export": False})
     generator.add(ca.Function("path", [fraction, a, move], [results], {"cse": True}))
     text = generator.dump().replace("casadi_real", "double")
-    found = _STATEMENTS.search(text)
-    assert found is not None
-    return _HELPER.findall(text), found[1]
+    match = _STATEMENTS.search(text)
+    assert match is not None
+    return _HELPER.findall(text), match[1]
 
 
 def _row(values: Iterable[float]) -> str:

@@ -27,21 +27,20 @@ from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.saving import as_written
 from quietarm.studies.report.words import move_of, moved, residual_words, title_of, window_words
 
-_MOST_MOTIONS, _MOST_FRAMES = 6, 500
-"""More could not be seen side by side, or would take minutes."""
-_LEAST_A_SECOND, _MOST_A_SECOND = 1, 50
-_ROUNDING = 1e-6
-"""Of a frame: one that is this close to the end belongs to it."""
 _COLUMNS = {1: 1, 2: 2, 4: 2}
 """Panels in a row, by how many there are; else 3."""
-_PANEL, _HIGH, _CURVES_HIGH, _LINE, _LETTERS = 4.0, 2.6, 2.0, 0.2, 11.5
+_PANEL = 4.0
+_HIGH = 2.6
+_CURVES_HIGH = 2.0
+_LINE = 0.2
+_LETTERS = 11.5
 """Width and height of a panel, heights of curves and of a line [inch]; letters an inch."""
-_THIN, _DISC = 0.8, 1e-5
+_THIN = 0.8
+_DISC = 1e-5
 """Of the widths of parts; a part as small as this [m] is a disc."""
 _COLOURS = 128
 _MEGABYTES = 200.0
 """Most of a page, far above what `_MOST_FRAMES` take."""
-_CURVES = ("angle", "deflection", "power")
 
 Update = Callable[[int], object]
 """Brings an artist to a frame."""
@@ -143,8 +142,15 @@ def animate(
     ValueError
         When there is no motion or too many, or a number is out of range.
     """
+    least_a_second = 1
+    most_a_second = 50
+    # of a frame: one that is this close to the end belongs to it
+    rounding = 1e-6
+    # more could not be seen side by side, or would take minutes
+    most_motions = 6
+    most_frames = 500
     lines = lines_of(motions)
-    whole("number of motions", len(lines), 1, _MOST_MOTIONS, "more are too small side by side")
+    whole("number of motions", len(lines), 1, most_motions, "more are too small side by side")
     width = whole("width", width, *WIDTHS, "more pixels make a huge file")
     if deflection_scale is not None:
         positive("deflection scale", deflection_scale)
@@ -152,16 +158,16 @@ def animate(
     end = max(task.duration + task.residual_window for task in tasks)
     a_second = rate / positive("speed", speed)
     frames = end * a_second
-    if max(task.duration for task in tasks) * a_second < _MOST_FRAMES < frames:
-        frames = float(_MOST_FRAMES)
+    if max(task.duration for task in tasks) * a_second < most_frames < frames:
+        frames = float(most_frames)
         end = frames / a_second
-    if not _LEAST_A_SECOND <= rate <= _MOST_A_SECOND or frames > _MOST_FRAMES:
+    if not least_a_second <= rate <= most_a_second or frames > most_frames:
         raise ValueError(
             f"{end:g} s at {rate:g} frames per second and speed {speed:g} make {frames:.0f} "
-            f"frames, where {_MOST_FRAMES} are the most, and {_LEAST_A_SECOND} to {_MOST_A_SECOND} "
+            f"frames, where {most_frames} are the most, and {least_a_second} to {most_a_second} "
             "per second what browsers show; give another rate or speed"
         )
-    times = np.arange(float(int(frames + _ROUNDING) + 1)) * speed / rate
+    times = np.arange(float(int(frames + rounding) + 1)) * speed / rate
     return Film(structures_of(lines, times, end, deflection_scale), end, speed, rate, width)
 
 
@@ -174,9 +180,10 @@ class _GifWriter(PillowWriter):
         """Write the file, unless there is no frame yet, as after Ctrl-C."""
         if not self._frames:
             return
-        last, none = self._frames[-1], Image.Dither.NONE
+        last = self._frames[-1]
+        none = Image.Dither.NONE
         palette = last.quantize(_COLOURS, dither=none)
-        self._frames = [one.quantize(palette=palette, dither=none) for one in self._frames]
+        self._frames = [frame.quantize(palette=palette, dither=none) for frame in self._frames]
         super().finish()
 
 
@@ -189,11 +196,14 @@ _WRITERS: Mapping[str, Callable[..., AbstractMovieWriter]] = {
 
 def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     """The figure, laid out, and what brings it to a frame."""
-    structures, times = film.structures, film.structures[0].times
+    curves = ("angle", "deflection", "power")
+    structures = film.structures
+    times = film.structures[0].times
     columns = _COLUMNS.get(len(structures), 3)
-    rows, inches = -(-len(structures) // columns), _PANEL * max(columns, 2)
-    same = len({one.line.plan.task for one in structures}) == 1
-    titles = [_title(one, same, int(_LETTERS * inches / columns)) for one in structures]
+    rows = -(-len(structures) // columns)
+    inches = _PANEL * max(columns, 2)
+    same = len({structure.line.plan.task for structure in structures}) == 1
+    titles = [_title(structure, same, int(_LETTERS * inches / columns)) for structure in structures]
     words = title_of(structures[0].line.plan.task) if same else "several moves on one clock"
     heading = wrap(words, int(_LETTERS * inches) - 24)  # the clock stands beside it
     above = _LINE * len(heading) + rows * (_HIGH + _LINE * max(map(len, titles)))
@@ -208,15 +218,15 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     panels = list(upper.subplots(rows, columns, squeeze=False).flat)
     for spare in panels[len(structures) :]:
         spare.axis("off")
-    for one, title, ax in zip(structures, titles, panels):
+    for structure, title, ax in zip(structures, titles, panels):
         ax.set_title("\n".join(title), **TITLE)
-        name = one.line.plan.task.plant.name
-        for other in structures:
-            if other.line.plan.task.plant.name == name:
-                ax.update_datalim(other.corners)
-        updates += _draw_structure(ax, one)
-    for ax, quantity in zip(lower.subplots(1, len(_CURVES)), _CURVES):
-        draw_quantity([one.line for one in structures], quantity, ax)
+        name = structure.line.plan.task.plant.name
+        for drawn in structures:
+            if drawn.line.plan.task.plant.name == name:
+                ax.update_datalim(drawn.corners)
+        updates += _draw_structure(ax, structure)
+    for ax, quantity in zip(lower.subplots(1, len(curves)), curves):
+        draw_quantity([structure.line for structure in structures], quantity, ax)
         ax.set_xlim(0.0, film.end)
         ax.xaxis.label.set_fontsize(9)
         cursor = ax.axvline(0.0, color="0.2", linewidth=1.2)
@@ -224,24 +234,25 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     with as_written(figure):
         figure.draw_without_rendering()
     figure.set_layout_engine(None)  # any, even one that does nothing, draws every frame twice
-    return figure, lambda k: [one(k) for one in updates]
+    return figure, lambda k: [update(k) for update in updates]
 
 
-def _title(one: Structure, same: bool, room: int) -> list[str]:
+def _title(structure: Structure, same: bool, room: int) -> list[str]:
     """The lines above a panel."""
-    plan, task = one.line.plan, one.line.plan.task
+    plan = structure.line.plan
+    task = structure.line.plan.task
     residual = residual_words(plan.residual, task.plant.tip_unit)
     if residual == "rest":
         residual = "at rest"
     lines = [
-        f"{one.line.label}, {one.scale_words}",
+        f"{structure.line.label}, {structure.scale_words}",
         *([] if same else [f"{moved(task)}, {move_of(task)}"]),
         f"energy {plan.energy:.3g} J, residual: {residual} {window_words(task.residual_window)}",
     ]
     return [part for line in lines for part in wrap(line, room)]
 
 
-def _draw_structure(ax: Axes, one: Structure) -> Iterator[Update]:
+def _draw_structure(ax: Axes, structure: Structure) -> Iterator[Update]:
     """Set up a structure's panel, in metres; what brings its parts to a frame."""
     ax.tick_params(labelsize=8)
     ax.autoscale_view()
@@ -251,13 +262,13 @@ def _draw_structure(ax: Axes, one: Structure) -> Iterator[Update]:
         (artist,) = ax.plot([], [], solid_capstyle="round", **look)
         return lambda k: artist.set_data(*points[k].T)
 
-    for points, _, _ in one.unbent:
+    for points, _, _ in structure.unbent:
         yield part(points, color="0.55", linewidth=1.0, linestyle="--")
-    arrived = int(np.searchsorted(one.times, one.line.plan.task.duration))
-    for path in one.paths:
+    arrived = int(np.searchsorted(structure.times, structure.line.plan.task.duration))
+    for path in structure.paths:
         trail = [path[arrived : k + 1] for k in range(len(path))]
-        yield part(trail, color=one.line.colour, linewidth=2.0, alpha=0.5)
-    for points, colour, width in one.bent:
+        yield part(trail, color=structure.line.colour, linewidth=2.0, alpha=0.5)
+    for points, colour, width in structure.bent:
         disc = np.ptp(points[0], axis=0).max() < _DISC
         yield part(points, color=colour, linewidth=_THIN * width, marker="o" if disc else "",
                    markersize=_THIN * width)  # fmt: skip

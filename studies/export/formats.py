@@ -12,7 +12,10 @@ from quietarm.ocp.checks import positive
 from quietarm.ocp.files import write_whole
 from quietarm.studies.export.tables import csv_text, mat_bytes, ros_text
 
-COLUMNS, RATE, FRAMES, JOINT = "time,angle,speed,acceleration", 1000.0, 25.0, "joint"
+COLUMNS = "time,angle,speed,acceleration"
+RATE = 1000.0
+FRAMES = 25.0
+JOINT = "joint"
 WIDTHS = 200, 2000
 """Least and largest width of a film [pixels]."""
 _FILM = ("speed", "deflection_scale", "width", "rate")
@@ -56,7 +59,7 @@ def format_of(path: Path) -> str:
             return name
     if ending == ".h":
         raise ValueError(f"{path} is written beside its C source; give {path.with_suffix('.c')}")
-    known = ", ".join(one for form in FORMATS.values() for one in form.endings)
+    known = ", ".join(ending for form in FORMATS.values() for ending in form.endings)
     raise ValueError(f"{path} does not say in which form it is; end its name in one of {known}")
 
 
@@ -106,8 +109,8 @@ def content_of(
     """What the only file of a format holds; arguments as of `export_plan`."""
     form = FORMATS[name]
     assert form.content is not None
-    given = {"columns": columns, "rate": positive("sample rate", rate, "Hz"), "joint": joint}
-    return form.content(plan, **{taken: given[taken] for taken in form.takes})
+    settings = {"columns": columns, "rate": positive("sample rate", rate, "Hz"), "joint": joint}
+    return form.content(plan, **{taken: settings[taken] for taken in form.takes})
 
 
 def export_moves(dataset: Path, path: Path) -> list[Path]:

@@ -50,11 +50,12 @@ def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POIN
         return ""
     wanted = max(plan.residual, plan.residual_limit or 0.0)
     most = wanted + _TOLD * plan.motion.peak_deflection
-    note, plant = "", plan.task.plant
+    note = ""
+    plant = plan.task.plant
     while rate * plan.task.duration < MOST_SOLVER_STEPS:
-        left = residual_between(plan, rate, derivatives)
-        words = tip_words(left, plant.tip_unit)
-        if left <= most:
+        residual = residual_between(plan, rate, derivatives)
+        words = tip_words(residual, plant.tip_unit)
+        if residual <= most:
             return note and f"{note}; --rate {rate:g} leaves {words}"
         between = _BETWEEN[derivatives].format(joint_label("angle", plant.joint))
         coarse = f"{rate:g} Hz is coarse: a controller that interpolates by {between} leaves"
@@ -84,9 +85,9 @@ def residual_between(plan: Plan, rate: float, derivatives: int) -> float:
         pieces = CubicSpline(times, joint[:, 0], bc_type="clamped")
     else:
         pieces = PPoly.from_bernstein_basis(BPoly.from_derivatives(times, joint))
-    given = np.vstack([pieces.c, np.diff(times)])
+    table = np.vstack([pieces.c, np.diff(times)])
     remedy = "; give a higher --rate"
-    path = PiecewiseMotion(_polynomial, given, derivatives == len(OF_POINTS), False, remedy)
+    path = PiecewiseMotion(_polynomial, table, derivatives == len(OF_POINTS), False, remedy)
     task = replace(plan.task, duration=float(times[-1]))
     return Candidate(task, path).residual
 

@@ -23,26 +23,26 @@ _WAYS: Mapping[str, Mapping[str, float]] = {
     ROTARY: {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi},
     LINEAR: {"m": 1.0, "mm": 1e3},
 }
-_FORCES: Mapping[str, Mapping[str, float]] = {
-    ROTARY: {"Nm": 1.0, "mNm": 1e3},
-    LINEAR: {"N": 1.0, "kN": 1e-3},
-}
-_TIPS = {"m": _WAYS[LINEAR], "rad": _WAYS[ROTARY]}
-"""By the plant's `tip_unit`."""
-_LINEAR_NAMES = {"angle": "position", "torque": "force"}
 
 
 def units_of(joint: str, tip_unit: str) -> Mapping[str, Mapping[str, float]]:
     """What a column may hold, and its units; the first is that where none is given."""
-    way, speeds = _WAYS[joint], {"rpm": 30 / np.pi} if joint == ROTARY else {}
+    forces = {
+        ROTARY: {"Nm": 1.0, "mNm": 1e3},
+        LINEAR: {"N": 1.0, "kN": 1e-3},
+    }
+    # by the plant's `tip_unit`
+    tips = {"m": _WAYS[LINEAR], "rad": _WAYS[ROTARY]}
+    way = _WAYS[joint]
+    speeds = {"rpm": 30 / np.pi} if joint == ROTARY else {}
     return {
         "time": {"s": 1.0, "ms": 1e3, "us": 1e6},
         "angle": way,
         "speed": {f"{unit}/s": factor for unit, factor in way.items()} | speeds,
         "acceleration": {f"{unit}/s^2": factor for unit, factor in way.items()},
         "jerk": {f"{unit}/s^3": factor for unit, factor in way.items()},
-        "tip": _TIPS[tip_unit],
-        "torque": _FORCES[joint],
+        "tip": tips[tip_unit],
+        "torque": forces[joint],
         "power": {"W": 1.0, "mW": 1e3},
     }
 
@@ -52,9 +52,10 @@ def columns_of(text: str, plant: Plant) -> dict[str, tuple[str, float]]:
 
     ValueError where one or its unit is unknown, or one comes twice.
     """
-    columns, known = dict[str, tuple[str, float]](), units_of(plant.joint, plant.tip_unit)
-    for one in text.split(","):
-        name, _, unit = (part.strip() for part in one.partition(":"))
+    columns = dict[str, tuple[str, float]]()
+    known = units_of(plant.joint, plant.tip_unit)
+    for heading in text.split(","):
+        name, _, unit = (part.strip() for part in heading.partition(":"))
         if name not in known:
             raise ValueError(unknown("column", name, known))
         if name in columns:
@@ -73,9 +74,12 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     own, `elbow_angle_deg`; each tip has one, and of a robust plan in each scenario, which its
     heading names.
     """
+    linear_names = {"angle": "position", "torque": "force"}
     times = times_of(plan, rate)
-    motion, tips = plan.sampled(times), _tips(plan, times)
-    plant, sample = plan.task.plant, motion.sample
+    motion = plan.sampled(times)
+    tips = _tips(plan, times)
+    plant = plan.task.plant
+    sample = motion.sample
     values: dict[str, list[Array]] = {
         "time": [motion.time],
         "angle": [joint.angle for joint in sample.joints],
@@ -85,33 +89,34 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
         "torque": list(sample.torques),
         "power": [motion.power],
     }
-    names = {} if plant.joint == ROTARY else _LINEAR_NAMES
+    names = {} if plant.joint == ROTARY else linear_names
 
     def by_heading(name: str) -> dict[tuple[str, str], Array]:
         """A column, or one for each joint, by what stands before and after the unit."""
-        word, columns = names.get(name, name), values[name]
+        word = names.get(name, name)
+        columns = values[name]
         if len(columns) == 1:
             return {(word, ""): columns[0]}
         return {(f"{joint}_{word}", ""): v for joint, v in zip(plant.joint_names, columns)}
 
-    found: dict[str, Array] = {}
+    table: dict[str, Array] = {}
     for name, (unit, factor) in columns_of(columns, plan.task.plant).items():
         ending = unit.replace("/", "_").replace("^", "")
         of_name = tips if name == "tip" else by_heading(name)
-        found |= {f"{one}_{ending}{after}": factor * v for (one, after), v in of_name.items()}
-    return found
+        table |= {f"{front}_{ending}{after}": factor * v for (front, after), v in of_name.items()}
+    return table
 
 
 def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:
     """Displacements of every tip in every scenario, by what stands before and after the unit."""
-    found: dict[tuple[str, str], Array] = {}
+    by_name: dict[tuple[str, str], Array] = {}
     for candidate, errors in zip(plan.candidate.scenarios, plan.task.scenarios):
         named = zip(plan.task.error_names, errors)
         scenario = "".join(f" {name} {100 * error:+.4g} %" for name, error in named if error)
         tips = candidate.sample(times).tips.T
         names = ["tip"] if len(tips) == 1 else [f"tip_{i}" for i in range(1, len(tips) + 1)]
-        found |= {(name, scenario): tip for name, tip in zip(names, tips)}
-    return found
+        by_name |= {(name, scenario): tip for name, tip in zip(names, tips)}
+    return by_name
 
 
 def times_of(plan: Plan, rate: float) -> Array:
@@ -131,7 +136,8 @@ def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
     """A MATLAB v5 file: a column vector for each column, the coefficients and the duration."""
     from scipy.io import savemat  # slow to load
 
-    file, vectors = io.BytesIO(), dict[str, Any]()
+    file = io.BytesIO()
+    vectors = dict[str, Any]()
     for name, column in table(plan, columns, rate).items():
         words = name.replace("-", "minus ").replace("+", "plus ").replace(" %", "")
         vectors[re.sub(r"\W+", "_", words)] = column
@@ -154,8 +160,8 @@ def ros_text(plan: Plan, rate: float, joint: str) -> str:
         (divmod(round(time * 1e9), 1_000_000_000), [map(_decimal, row) for row in moving])
         for time, *moving in zip(motion.time, *orders)
     ]
-    own = plan.task.plant.joint_names
-    names = (joint,) if len(own) == 1 else own
+    joint_names = plan.task.plant.joint_names
+    names = (joint,) if len(joint_names) == 1 else joint_names
     quoted = ["'" + name.replace("'", "''") + "'" for name in names]  # as YAML reads it back
     texts = templates(keep_trailing_newline=True)
     return texts.get_template("export/templates/move.yaml").render(joints=quoted, points=points)

@@ -32,12 +32,8 @@ from quietarm.studies.tips import tip_scale
 if TYPE_CHECKING:
     from quietarm.studies.compare.front_comparison import Comparison, Group
 
-_ASIDE = 0.9
-"""A logarithmic axis begins at this residual [m], or at this multiple of the least of all."""
 _END = 5.0
 """The end of small residuals reaches at least to this multiple of the least of all."""
-_TALLEST = 1.6
-"""Upper end of the panels, as a multiple of the best front's energy at its least residual."""
 
 Array = NDArray[np.float64]
 
@@ -116,24 +112,27 @@ def draw_comparison(
         The axes; of several seeds there is the median attainment surface, in a band from the best
         to the worst.
     """
-    ax, right = axes_or_new(ax), _right(comparison)
+    # upper end of the panels, as a multiple of the best front's energy at its least residual
+    tallest = 1.6
+    ax = axes_or_new(ax)
+    right = _right(comparison)
     tip_unit = comparison.task.plant.tip_unit
     scale = tip_scale(tip_unit)[1]
     if small:
         right = min(max(*comparison.levels, _END * float(comparison.best_front[0, 0])), right)
-    for group, own, wider in _drawn(comparison):
+    for group, look_of_group, wider in _drawn(comparison):
         line = group.by_gradient and len(group.runs) == 1 and comparison.fill
         shown = _up_to(group.runs[0].between if line else group.median, right)
         draw_front(
             ax, shown[:, 0], shown[:, 1], tip_unit, exact=line, width=1.2 + wider,
-            color=own.colour, linestyle=own.dash, label=group.label,
+            color=look_of_group.colour, linestyle=look_of_group.dash, label=group.label,
         )  # fmt: skip
         if len(group.runs) > 1:
             residuals, best, worst = group.band
             shown = residuals <= right
             ax.fill_between(
                 residuals[shown] * scale, best[shown], worst[shown], step="post",
-                color=own.colour, alpha=0.2, linewidth=0,
+                color=look_of_group.colour, alpha=0.2, linewidth=0,
             )  # fmt: skip
     for point, mark in zip(known, cycle("*Pv")):
         if point.residual is None:
@@ -146,7 +145,9 @@ def draw_comparison(
     if comparison.floor is not None:
         label = f"any joint motion at rest{' (nominal plant)' * bool(comparison.task.ranges)}"
         ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
-    highest = max([_TALLEST * comparison.best_front[0, 1], *(1.05 * one.energy for one in known)])
+    highest = max(
+        [tallest * comparison.best_front[0, 1], *(1.05 * point.energy for point in known)]
+    )
     ax.set_ylim(top=min(ax.get_ylim()[1], highest))
     name_objectives(ax, tip_unit, comparison.task.residual_window)
     ax.set_title("small residuals" if small else "the whole fronts", **TITLE)
@@ -163,11 +164,13 @@ def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
     Points rather than staircases: the steps of a coarse front would make it look bad between its
     points. Parameters, and what is returned, are those of `draw_comparison`.
     """
-    ax, scale = axes_or_new(ax), tip_scale(comparison.task.plant.tip_unit)[1]
-    for group, own, wider in _drawn(comparison):
+    ax = axes_or_new(ax)
+    scale = tip_scale(comparison.task.plant.tip_unit)[1]
+    for group, look_of_group, wider in _drawn(comparison):
         ax.plot(
             np.maximum(group.median[:, 0], _left(comparison)) * scale,
-            100 * comparison.above_best(group.median), own.mark, color=own.colour,
+            100 * comparison.above_best(group.median), look_of_group.mark,
+            color=look_of_group.colour,
             markersize=3.2 + wider, markeredgewidth=0, label=group.label,
         )  # fmt: skip
     ax.set_yscale("symlog", linthresh=0.1, linscale=0.5)
@@ -193,20 +196,22 @@ def _up_to(points: Array, right: float) -> Array:
 
 
 def _left(comparison: Comparison) -> float:
-    return max(REST, _ASIDE * float(comparison.best_front[0, 0]))
+    # a logarithmic axis begins at this residual [m], or at this multiple of the least of all
+    aside = 0.9
+    return max(REST, aside * float(comparison.best_front[0, 0]))
 
 
 def _right(comparison: Comparison) -> float:
-    return 1.04 * max([*(one.best[-1, 0] for one in comparison.groups), *comparison.levels])
+    return 1.04 * max([*(group.best[-1, 0] for group in comparison.groups), *comparison.levels])
 
 
 def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
-    left = _left(comparison)
-    logarithmic(ax, [left, right])
+    least_residual = _left(comparison)
+    logarithmic(ax, [least_residual, right])
     tip_unit = comparison.task.plant.tip_unit
     scale = tip_scale(tip_unit)[1]
-    ax.set_xlim(left * scale, right * scale)
+    ax.set_xlim(least_residual * scale, right * scale)
     ax.set_xlabel(f"{residual_label(tip_unit, comparison.task.residual_window)}, logarithmic")
     for level in comparison.levels:
-        if left <= level <= right:
+        if least_residual <= level <= right:
             ax.axvline(level * scale, color="0.75", linewidth=0.8, zorder=0)

@@ -33,8 +33,6 @@ _MOST_NAMED = 10
 """More fronts than this are drawn without a name."""
 _LOGARITHMIC_FROM = 5.0
 """Residuals that span less than this factor are drawn on a linear axis."""
-_LEAST_SPAN = 0.01
-"""The axis of energies spans at least this share of their median: seeds that agree lie close."""
 
 
 @takes(fronts=[Front])
@@ -70,7 +68,8 @@ def draw_fronts(
     ValueError
         When there are not as many labels as fronts.
     """
-    ax, tip_unit = axes_or_new(ax), _tip_unit(fronts)
+    ax = axes_or_new(ax)
+    tip_unit = _tip_unit(fronts)
     scale = tip_scale(tip_unit)[1]
     for k, (begin, end) in enumerate(gap for front in fronts for gap in front.gaps):
         label = "_" if k else "no weight reaches these"  # once in the legend
@@ -79,26 +78,26 @@ def draw_fronts(
     if len(names) != len(fronts):
         raise ValueError(f"{len(fronts)} fronts have {len(names)} labels; give each front one")
     for i, (front, name) in enumerate(zip(fronts, names)):
-        own = look(i)
+        look_of_front = look(i)
         middles = [(begin + end) / 2 for begin, end in front.gaps]
         places = np.searchsorted(front.residuals, middles)  # no line crosses a gap
         draw_front(
             ax,
             np.insert(np.maximum(front.residuals, REST), places, np.nan),  # rest has no logarithm
             np.insert(front.energies, places, np.nan),
-            tip_unit, exact=is_gradient(front.record.method), color=own.colour,
-            marker=own.mark, markersize=3, alpha=0.8, label=name,
+            tip_unit, exact=is_gradient(front.record.method), color=look_of_front.colour,
+            marker=look_of_front.mark, markersize=3, alpha=0.8, label=name,
         )  # fmt: skip
-    failures = [one for front in fronts for one in front.failures]
+    failures = [failure for front in fronts for failure in front.failures]
     if failures:  # weights have no residual
-        limits = [scale * one.asked.get(RESIDUAL_LIMIT, np.nan) for one in failures]
+        limits = [scale * failure.asked.get(RESIDUAL_LIMIT, np.nan) for failure in failures]
         ax.plot(
             limits, np.full(len(limits), 0.03), "x", color=RED,
             transform=ax.get_xaxis_transform(), label=f"{len(limits)} not found",
         )  # fmt: skip
     if not linear:
-        every = [max(point.residual, REST) for front in fronts for point in front.points]
-        logarithmic(ax, every, least_span=_LOGARITHMIC_FROM)
+        all_residuals = [max(point.residual, REST) for front in fronts for point in front.points]
+        logarithmic(ax, all_residuals, least_span=_LOGARITHMIC_FROM)
     name_objectives(ax, tip_unit)
     if len(fronts) <= _MOST_NAMED and len(ax.get_legend_handles_labels()[1]) > 1:
         ax.legend(fontsize=8)
@@ -113,9 +112,11 @@ def _tip_unit(fronts: Sequence[Front]) -> str:
 def _names(fronts: Sequence[Front]) -> list[str]:
     """What to call every front: its method where there are several; of several runs the seed."""
     methods = [label_of(front.record.method) for front in fronts]
-    several, names = len(set(methods)) > 1, list[str]()
+    several = len(set(methods)) > 1
+    names = list[str]()
     for i, (front, method) in enumerate(zip(fronts, methods), start=1):
-        runs, seed = methods.count(method) > 1, front.record.seed
+        runs = methods.count(method) > 1
+        seed = front.record.seed
         run = f"front {i}" if seed is None else f"seed {seed}"
         names.append(", ".join([method] * (several or not runs) + [run] * runs))
     return names
@@ -143,9 +144,12 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     evaluations = [mark.evaluations for mark in fronts[0].history[:length]]
     shares = np.array([shares_of_box(front)[:length] for front in fronts])
     spreads = [Spread.of(column) for column in shares.T.tolist()]
-    ax.plot(evaluations, [one.median for one in spreads], color=BLUE, marker=".", label="median")
+    ax.plot(
+        evaluations, [spread.median for spread in spreads], color=BLUE, marker=".", label="median"
+    )
     if len(fronts) > 1:
-        low, high = [one.lower for one in spreads], [one.upper for one in spreads]
+        low = [spread.lower for spread in spreads]
+        high = [spread.upper for spread in spreads]
         ax.fill_between(evaluations, low, high, color=BLUE, alpha=0.3, linewidth=0,
                         label="quartiles")  # fmt: skip
         ax.legend(fontsize=8, loc="lower right")
@@ -164,10 +168,14 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     Parameters and what is returned are those of `draw_hypervolume`; a seed that never reaches that
     residual is a cross.
     """
-    ax, spread = axes_or_new(ax), energies_at(fronts)
+    # the axis of energies spans at least this share of their median: seeds that agree lie close
+    least_span = 0.01
+    ax = axes_or_new(ax)
+    spread = energies_at(fronts)
     level = tip_words(SEARCH_RESIDUAL, _tip_unit(fronts))
     for place, front in enumerate(fronts):
-        energy, colour = front.least_energy(SEARCH_RESIDUAL), look(place).colour
+        energy = front.least_energy(SEARCH_RESIDUAL)
+        colour = look(place).colour
         if np.isfinite(energy):
             ax.plot(place, energy, "o", color=colour, markersize=6)
         else:
@@ -188,7 +196,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     ax.margins(x=0.1, y=0.2)
     ax.ticklabel_format(axis="y", useOffset=False)
     low, high = ax.get_ylim()
-    room = max(0.0, _LEAST_SPAN * (low + high) / 2 - (high - low)) / 2
+    room = max(0.0, least_span * (low + high) / 2 - (high - low)) / 2
     ax.set_ylim(low - room, high + room)
     return ax
 
@@ -221,8 +229,8 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     if len(fronts) == 1 and len(fronts[0].points) > 2:
         knee = fronts[0].knee()
         label = f"knee: {knee.energy:.4g} J at {tip_words(knee.residual, tip_unit)}"
-        left = tip_scale(tip_unit)[1] * max(knee.residual, REST)
-        axes[0].plot(left, knee.energy, "o", color=BLUE,
+        shown_residual = tip_scale(tip_unit)[1] * max(knee.residual, REST)
+        axes[0].plot(shown_residual, knee.energy, "o", color=BLUE,
                      fillstyle="none", label=label)  # fmt: skip
         axes[0].legend(fontsize=8)
     for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:]):
@@ -239,9 +247,9 @@ def polish_figure(before: Front, polish: Polish) -> Figure:
     tip_unit = before.task.plant.tip_unit
     name_objectives(ax, tip_unit, before.task.residual_window)
     residuals = [max(gain.residual, REST) for gain in polish.gains]
-    left = np.multiply(tip_scale(tip_unit)[1], residuals)
+    shown_residuals = np.multiply(tip_scale(tip_unit)[1], residuals)
     shares = [100 * gain.share for gain in polish.gains]
-    axes_or_new(saved).plot(left, shares, "o", color=BLUE, markersize=3)
+    axes_or_new(saved).plot(shown_residuals, shares, "o", color=BLUE, markersize=3)
     label = residual_label(tip_unit, before.task.residual_window)
     saved.set(xlabel=label, ylabel="energy saved [%]")
     saved.set_ylim(bottom=0)

@@ -26,8 +26,6 @@ Array = NDArray[np.float64]
 _MOST_SLICES = 4
 _LEAST_PRICE = 1e-6
 """Shadow prices of the residual below this [J by the tip's unit] are none."""
-_GREYS = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")
-"""How cells ended, in the order of `STATES`; told apart in print by their lightness as well."""
 
 
 def grid_figure(store: Store) -> Figure:
@@ -39,11 +37,13 @@ def grid_figure(store: Store) -> Figure:
     if len(axes) == 1:
         return _over_one(store, axes[0])
     places = [*np.ndindex(*store.definition.grid.shape[:-2])][:_MOST_SLICES]
-    slices, variables = [(place, _words(axes, place)) for place in places], _variables(store)
+    slices = [(place, _words(axes, place)) for place in places]
+    variables = _variables(store)
     count = len(variables) + 1
     figure = new_figure(0.6 + 3.6 * count, 0.6 + 3.1 * len(slices))
     panels = figure.subplots(len(slices), count, squeeze=False, sharex=True, sharey=True)
-    (x, x_name), (y, y_name) = _shown(axes[-1]), _shown(axes[-2])
+    (x, x_name) = _shown(axes[-1])
+    (y, y_name) = _shown(axes[-2])
     for column, (label, values, least) in enumerate(variables):
         norm = _norm(values)
         panels[0, column].set_title(label)
@@ -71,7 +71,8 @@ def grid_figure(store: Store) -> Figure:
 def fronts_figure(store: Store) -> Figure:
     """Fronts over the last axis, a panel for each of the first values of those before."""
     axes = store.definition.grid.axes
-    residual, energy = store.read("front_residual"), store.read("front_energy")
+    residual = store.read("front_residual")
+    energy = store.read("front_energy")
     tip_unit = store.definition.grid.task.plant.tip_unit
     places = [*np.ndindex(*residual.shape[:-2])][:_MOST_SLICES]
     figure = new_figure(1.0 + 4.0 * len(places), 3.8)
@@ -81,8 +82,8 @@ def fronts_figure(store: Store) -> Figure:
     colours = ScalarMappable(norm, "viridis")
     for ax, place in zip(panels, places):
         for k, value in enumerate(values):
-            left = tip_scale(tip_unit)[1] * residual[(*place, k)]
-            ax.plot(left, energy[(*place, k)], color=colours.to_rgba(value))
+            shown_residual = tip_scale(tip_unit)[1] * residual[(*place, k)]
+            ax.plot(shown_residual, energy[(*place, k)], color=colours.to_rgba(value))
         ax.set_title(_words(axes, place), loc="left", fontsize=9)
         name_objectives(ax, tip_unit, store.definition.grid.task.residual_window)
         ax.grid(alpha=0.25)
@@ -98,8 +99,8 @@ def _over_one(store: Store, axis: Axis) -> Figure:
     values, name = _shown(axis)
     without = np.isnan(store.read("energy"))
     for number, (ax, (label, shown, _)) in enumerate(zip(panels, variables)):
-        own = look(number)
-        ax.plot(values, shown, own.mark + "-", color=own.colour)
+        look_of_front = look(number)
+        ax.plot(values, shown, look_of_front.mark + "-", color=look_of_front.colour)
         logarithmic(ax, shown, "y")
         ax.plot(values[without], np.full(without.sum(), 0.02), "x", color="0.4",
                 transform=ax.get_xaxis_transform())  # fmt: skip
@@ -119,11 +120,13 @@ def _variables(store: Store) -> list[tuple[str, Array, float]]:
         "residual": (residual, scale, REST * scale),
         "price_residual": (f"shadow price [J/{shown}]", 1 / scale, _LEAST_PRICE / scale),
     }
-    every = [
+    all_variables = [
         (label, np.maximum(factor * store.read(name), least), least)
         for name, (label, factor, least) in variables.items()
     ]
-    return [one for one in every if np.isfinite(one[1]).any()] or every[:1]
+    return [
+        variable for variable in all_variables if np.isfinite(variable[1]).any()
+    ] or all_variables[:1]
 
 
 def _words(axes: tuple[Axis, ...], place: tuple[int, ...]) -> str:
@@ -137,7 +140,8 @@ def _norm(values: Array) -> Normalize:
     known = values[np.isfinite(values) & (values > 0)]
     if not known.size:
         return Normalize(0.0, 1.0)
-    least, most = float(known.min()), float(known.max())
+    least = float(known.min())
+    most = float(known.max())
     return LogNorm(least, most) if most > 1.01 * least else LogNorm(least / 2, 2 * most)
 
 
@@ -146,9 +150,11 @@ def _states(
     places: list[tuple[int, ...]],
 ) -> None:  # fmt: skip
     """How cells ended, in colours of their own."""
+    # how cells ended, in the order of `STATES`; told apart in print by their lightness as well
+    greys = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")
     status = store.read(STATUS)
     present = sorted({*np.unique(status).astype(int).tolist()})
-    cmap = ListedColormap([_GREYS[k] for k in present])
+    cmap = ListedColormap([greys[k] for k in present])
     numbers = np.searchsorted(present, status)
     norm = BoundaryNorm(np.arange(len(present) + 1) - 0.5, len(present))
     panels[0].set_title("how it ended")

@@ -30,16 +30,13 @@ from quietarm.studies.report.words import raised, title_of
 from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
-_SHOWN, _ABOVE = 0.99, 1.15
+_SHOWN = 0.99
+_ABOVE = 1.15
 """A panel with short pulses ends at this multiple of the 99 % quantile over time."""
-_LETTERS = 48
-"""Of a title, for each column of panels."""
-_IN_SIGHT = 0.4
-"""A limit is drawn where a motion comes to this share of it; else it would flatten the motion."""
 _LABELS = {
     "angle": ("joint angle", "rad"),
     "power": ("power", "W"),
-    **{one.name: (one.label, one.unit) for one in QUANTITIES.values()},
+    **{quantity.name: (quantity.label, quantity.unit) for quantity in QUANTITIES.values()},
 }
 QUANTITIES_DRAWN = (
     "angle",
@@ -111,14 +108,16 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     """
     if quantity not in QUANTITIES_DRAWN:
         raise ValueError(unknown("quantity", quantity, QUANTITIES_DRAWN))
-    ax, lines = axes_or_new(ax), lines_of(motions)
-    plant, drawn = lines[0].plan.task.plant, list[Array]()
+    ax = axes_or_new(ax)
+    lines = lines_of(motions)
+    plant = lines[0].plan.task.plant
+    drawn = list[Array]()
     title = heading(quantity, plant.joint, plant.tip_unit)
     for line in lines:
         drawn += curves(line.plan, quantity)
-        others = [style for style in (":", "-.", "--") if style != line.style]
+        other_styles = [style for style in (":", "-.", "--") if style != line.style]
         for i, values in enumerate(curves(line.plan, quantity)):
-            style = others[(i - 1) % len(others)] if i else line.style
+            style = other_styles[(i - 1) % len(other_styles)] if i else line.style
             label = line.label + _which(plant, quantity, i)
             ax.plot(line.plan.trajectory.time, values, color=line.colour, linestyle=style,
                     linewidth=1.6, label=label)  # fmt: skip
@@ -193,6 +192,8 @@ def motion_figure(
     ValueError
         As `draw_quantity`.
     """
+    # of a title, for each column of panels
+    letters = 48
     lines = lines_of(motions)
     if quantities is None:
         limited = {limit.name for line in lines for limit in line.plan.task.limits}
@@ -202,7 +203,8 @@ def motion_figure(
     rows = -(-count // columns)
     figure = new_figure(0.8 + 3.8 * columns, 0.8 + 2.6 * rows)
     axes: list[Axes] = list(figure.subplots(rows, columns, sharex=True, squeeze=False).flat)
-    panels, spare = axes[:count], axes[count:]
+    panels = axes[:count]
+    spare = axes[count:]
     for quantity, ax in zip(quantities, panels):
         draw_quantity(lines, quantity, ax).tick_params(labelbottom=True)
     for ax in panels[:-columns]:  # another stands below it
@@ -218,7 +220,7 @@ def motion_figure(
         legend_below(figure, axes, min(3, len(lines)), 9)
     title = title_of(lines[0].plan.task) if title is None else title
     if title:
-        figure.suptitle(fill(title, _LETTERS * columns), fontsize=12)
+        figure.suptitle(fill(title, letters * columns), fontsize=12)
     return figure
 
 
@@ -247,13 +249,17 @@ def lines_of(motions: Motions) -> list[Line]:
         instance(f"motion {i}", line, Line)
     looks = map(look, range(len(motions)))
     return [
-        line if line.colour else replace(line, colour=own.colour, style=own.dash)
-        for line, own in zip(motions, looks)
+        line
+        if line.colour
+        else replace(line, colour=look_of_motion.colour, style=look_of_motion.dash)
+        for line, look_of_motion in zip(motions, looks)
     ]
 
 
 def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list[float]:
     """The limits of a quantity that its values come near, in the unit that is shown."""
+    # a limit is drawn where a motion comes to this share of it; else it would flatten the motion
+    in_sight = 0.4
     limits = [line.plan.task.limit_of(quantity) for line in lines]
     scale = scale_of(quantity, lines[0].plan.task.plant.tip_unit)
     bounds = set[float]()
@@ -265,7 +271,7 @@ def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list
             bounds |= {limit.lower, limit.upper}
     return [
         level for level in sorted(scale * bound for bound in bounds)
-        if (values * np.sign(level)).max() >= _IN_SIGHT * abs(level)
+        if (values * np.sign(level)).max() >= in_sight * abs(level)
     ]  # fmt: skip
 
 

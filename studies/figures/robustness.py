@@ -47,7 +47,8 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     ax = axes_or_new(ax)
     limit = 100 * TOLERATED
     for number, (label, plan) in enumerate(plans.items()):
-        (sweep,), how = [one for one in plan.sweeps if one.name == name], look(number)
+        (sweep,) = [candidate for candidate in plan.sweeps if candidate.name == name]
+        how = look(number)
         per_cent = 100 / plan.cycloid if plan.cycloid > 0 else 0.0  # a joint that moves no mode
         ax.plot(
             100 * sweep.errors, per_cent * sweep.figures.residual, color=how.colour,
@@ -85,7 +86,8 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None, tip_unit: st
     for number, judged in enumerate(motions):
         if judged.motion is None:
             continue
-        how, energy = look(number), judged.motion.energy
+        how = look(number)
+        energy = judged.motion.energy
         worst = judged.motion.residual if judged.worst is None else judged.worst.residual
         scale = tip_scale(tip_unit)[1]
         ends = [scale * max(residual, REST) for residual in (judged.motion.residual, worst)]
@@ -105,7 +107,7 @@ def _window(motions: Sequence[Judged]) -> float | None:
 
 def motions_figure(motions: Sequence[Judged], title: str, tip_unit: str = "m") -> Figure:
     """Draw motions over each other: `draw_motions`, and `draw_robustness` for each error."""
-    curves = {one.name: one.robustness for one in motions if one.robustness is not None}
+    curves = {motion.name: motion.robustness for motion in motions if motion.robustness is not None}
     names = list(next(iter(curves.values())).ranges) if curves else []
     figure, axes = side_by_side(1 + len(names), title, width=6.0)
     draw_motions(motions, axes[0], tip_unit)

@@ -19,7 +19,6 @@ INK = "#404040"
 _SCALES = (1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0)
 _BENT = 0.2
 """Share of a structure's size up to which deflections are drawn larger than they are."""
-_SAMPLES = 1500
 _DOT = np.array([[0.0, 0.0], [1e-6, 0.0]])
 """A line of hardly any length [m], which with round ends shows as a disc."""
 
@@ -65,8 +64,8 @@ class Structure:
     @property
     def corners(self) -> Array:
         """Least and largest coordinates of all that is drawn [m], shape (2, 2)."""
-        every = np.vstack([part.points.reshape(-1, 2) for part in (*self.bent, *self.unbent)])
-        return np.array([every.min(axis=0), every.max(axis=0)])
+        points = np.vstack([part.points.reshape(-1, 2) for part in (*self.bent, *self.unbent)])
+        return np.array([points.min(axis=0), points.max(axis=0)])
 
     @property
     def scale_words(self) -> str:
@@ -95,7 +94,8 @@ class Structure:
     def _parts(self, tips: Array) -> list[Part]:
         parts = list[Part]()
         for bodies in zip(*self._bodies(tips)):
-            points, body = np.array([one.points for one in bodies]), bodies[0]
+            points = np.array([bent.points for bent in bodies])
+            body = bodies[0]
             if points.shape[1] == 1:
                 parts.append(Part(points + _DOT, INK, 16.0))
                 continue
@@ -119,10 +119,11 @@ def structures_of(
 
 def _until(motion: Plan | Floor, end: float) -> Trajectory:
     """A motion from its start to the end of the film."""
+    samples = 1500
     task = motion.task
     if task.duration + task.residual_window == end:
         return motion.trajectory
     if isinstance(motion, Plan):
-        return motion.sampled(np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration]))
+        return motion.sampled(np.union1d(np.linspace(0.0, end, samples), [task.duration]))
     task = replace(task, residual_window=end - task.duration)
     return Candidate.of_free_motion(task, motion.free).trajectory

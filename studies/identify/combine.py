@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.studies.identify.machine import Estimate, Part
-from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _LEVEL = 0.95
@@ -36,7 +35,7 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> tuple[list[Estimate]
         combined = _widened(estimate(name, values, deviations, recordings), spreads)
         if combined.value == 0 or combined.error >= 1:
             low, high = combined.widest
-            wide[name] = say("parameter.wide", low=low, high=high)
+            wide[name] = f"its interval, {low:.3g} to {high:.3g}, is as wide as its value"
         else:
             estimates.append(combined)
     return estimates, wide

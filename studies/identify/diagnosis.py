@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from quietarm.studies.identify.recording import noise_of, resolution_of
 from quietarm.studies.identify.running import running_median
-from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _STANDS_OUT = 14.0
@@ -20,12 +19,6 @@ _MUCH = 0.1
 """Share of the swing, from which on what is left is doubted even where it looks like noise."""
 _AT_LIMIT = 6
 """Samples at the same extreme value, from which on a sensor may be saturated."""
-
-
-def doubt(cause: str, /, **facts: object) -> dict[str, str]:
-    """Cause and warning of a part."""
-    name = "amplitude" if cause == "changes" else cause.partition(".")[0]
-    return {"cause": name, "warning": say(f"doubt.{cause}", **facts)}
 
 
 def spectrum_of(time: Array, residual: Array) -> tuple[Array, Array]:
@@ -61,14 +54,30 @@ def doubt_of(
     if share < _MATTERS:
         misfit = float((residual**2).mean(axis=0).max() / whole) ** 0.5
         large = misfit >= max(_MUCH, 4 * noise)
-        return doubt("misfit", misfit=misfit, noise=noise) if large else {}
+        warning = (
+            f"the misfit is {misfit:.0%} of the swing, and its noise {noise:.0%}: it is no free "
+            "decay of one mode; look at the picture, and select the free decay by --part"
+        )
+        return {"cause": "misfit", "warning": warning} if large else {}
     band = np.digitize(at, [0.6 * frequency, 1.5 * frequency])
     most = int(np.bincount(band, excess).argmax())
     peak = float(at[(excess * (band == most)).argmax()])
     ratio = round(peak / frequency)
     harmonic = ratio in (2, 3, 5) and abs(peak / frequency - ratio) < 0.04
     cause = ("drift", "amplitude", "harmonic" if harmonic else "mode")[most]
-    return doubt(cause, share=share, peak=peak, ratio=ratio)
+    words = {
+        "drift": f", below the swing at {peak:.3g} Hz: the sensor drifts, the base sways, or the "
+        "hub moves; fix them, or name the joint's angle by --angle",
+        "amplitude": ", at the swing's own frequency: frequency or damping change with the "
+        f"amplitude, a second mode is near ({peak:.3g} Hz), or the hub gives way; name its angle "
+        "by --angle, or push as hard as your moves do",
+        "harmonic": f", at {ratio:.0f} times the swing's frequency ({peak:.4g} Hz): the sensor or "
+        "the link is not linear, as one that saturates; push less",
+        "mode": f", at {peak:.4g} Hz: a second mode; plan with it (--set mode_count=2, where the "
+        "plant has it), or keep to a band below it",
+    }
+    warning = f"a misfit of {share:.1%} of the swing beside the noise{words[cause]}"
+    return {"cause": cause, "warning": warning}
 
 
 def _beside(power: Array) -> Array:

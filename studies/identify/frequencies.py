@@ -13,7 +13,6 @@ from quietarm.studies.identify.envelope import envelope, evenly
 from quietarm.studies.identify.recording import LEAST_ROWS, Recording
 from quietarm.studies.identify.ring_downs import rests
 from quietarm.studies.identify.spectra import highest_peaks, spectrogram
-from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _SLOWEST, _FASTEST = 0.02, 500.0
@@ -55,7 +54,10 @@ def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
             among = share
         best = float(f[among.argmax()]) if share.any() else 0.0
         if best and not _SLOWEST <= best <= _FASTEST:
-            raise ValueError(say("refused.swings", name=one.name, frequency=best))
+            raise ValueError(
+                f"{one.name} swings at {best:.3g} Hz, as no arm does; is its time in another unit? "
+                "say so by --units, as time:ms"
+            )
         found.append(best)
     return found
 
@@ -64,17 +66,25 @@ def doubt_units(
     recordings: Sequence[Recording], frequencies: Sequence[float], joint: str
 ) -> list[str]:
     """What units may be wrong, of a kind of joint."""
-    found = list[str]()
-    for one, frequency in zip(recordings, frequencies):
-        turns = 0.0 if one.angle is None else float(np.ptp(one.angle))
-        doubts = {
-            "slow": one.step >= _COARSE or 0 < frequency < _DOUBTFUL,
-            "fast": frequency > _FASTEST / 2,
-            "turned": joint == ROTARY and turns > _TURNS,
-        }
-        facts = {"name": one.name, "frequency": frequency, "step": one.step, "turns": turns}
-        found += [say(f"units.{unit}", **facts) for unit, is_so in doubts.items() if is_so]
-    return found
+    doubts = list[str]()
+    for recording, frequency in zip(recordings, frequencies):
+        turns = 0.0 if recording.angle is None else float(np.ptp(recording.angle))
+        if recording.step >= _COARSE or 0 < frequency < _DOUBTFUL:
+            doubts.append(
+                f"{recording.name}: {frequency:.3g} Hz by samples {recording.step:.3g} s apart; "
+                "is its time in milliseconds? say so by --units time:ms"
+            )
+        if frequency > _FASTEST / 2:
+            doubts.append(
+                f"{recording.name}: {frequency:.4g} Hz is fast for an arm; is its time in seconds? "
+                "say so by --units time:s"
+            )
+        if joint == ROTARY and turns > _TURNS:
+            doubts.append(
+                f"{recording.name}: its joint turns by {turns:.3g} rad, more than two turns; is it "
+                "in degrees? say so by --units angle:deg, or rename a column whose name says rad"
+            )
+    return doubts
 
 
 def _candidates_of(recording: Recording) -> dict[float, float]:

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from quietarm.studies.identify.columns import FreeDecay
-from quietarm.studies.identify.diagnosis import doubt
 from quietarm.studies.identify.machine import Part
 from quietarm.studies.identify.part_fitter import PartFitter
 from quietarm.studies.identify.recording import noise_of
@@ -34,7 +33,11 @@ def _doubted(fitter: PartFitter, part: Part, frequency: float, fails: bool) -> P
     shift = abs(fitter.frequency_of(part.vector) / frequency - 1)
     if part.warning or part.hub or not (fails or shift > most_shift):
         return part
-    return replace(part, **doubt("hub.swings"))
+    warning = (
+        "the hub swings with the tip, so that the frequency is not that of a held one: hold it, by "
+        "a brake or a stiffer controller"
+    )
+    return replace(part, cause="hub", warning=warning)
 
 
 def _hub_swings(fitter: PartFitter, part: Part) -> bool:

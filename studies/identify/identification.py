@@ -24,11 +24,10 @@ from quietarm.studies.identify.machine import (
 from quietarm.studies.identify.mending import without_glitches
 from quietarm.studies.identify.part_fitter import PartFitter
 from quietarm.studies.identify.recording import Recording
-from quietarm.studies.identify.recording_parts import fit_parts
+from quietarm.studies.identify.recording_parts import NO_SWING, fit_parts
 from quietarm.studies.identify.ring_downs import moves
 from quietarm.studies.identify.swing_model import Model
 from quietarm.studies.identify.whole_recording import fit_whole, sensitivities
-from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _DEPENDENT = 1e-3
@@ -84,7 +83,7 @@ def identify(
     at_rest = "torque" not in kinds and all(is_modal(plant, name) for name in names)
     fitted, left_out, moving = list[Part](), dict[str, str](), list[PartFitter]()
     for fitter in fitters:
-        found, why = fit_parts(fitter, parts) if at_rest else ([], say("recording.silent"))
+        found, why = fit_parts(fitter, parts) if at_rest else ([], NO_SWING)
         fitted += found
         if not found and fitter.frequency and (moves(fitter.recording) or not at_rest):
             moving.append(fitter)
@@ -92,7 +91,10 @@ def identify(
             left_out[fitter.recording.name] = why
     if not fitted and not moving:
         if not any(frequencies):
-            raise ValueError(say("refused.silent", name=recordings[0].name))
+            raise ValueError(
+                f"{recordings[0].name}: {NO_SWING}; push harder, or record longer and with more "
+                "samples"
+            )
         raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
     unknown = {} if fitted else _not_identifiable(moving)
     sought = [name for name in names if name not in unknown]
@@ -122,19 +124,22 @@ def curve_of(found: Identified, part: Part, recordings: Sequence[Recording]) -> 
 def _check(recordings: Sequence[Recording], plant: Plant) -> list[str]:
     """The kinds of the recordings' signals, that are the same in all of them."""
     if not recordings:
-        raise ValueError(say("refused.none"))
-    first, tips = recordings[0], {"plant": plant.name, "tips": plant.tips}
+        raise ValueError("no recording is given; give one")
+    first = recordings[0]
     kinds = [*first.signals]
-    for one in recordings:
-        if [*one.signals] != kinds:
-            own, others = " and ".join(one.signals), " and ".join(kinds)
+    for recording in recordings:
+        if [*recording.signals] != kinds:
             raise ValueError(
-                say("refused.kinds", name=one.name, own=own, first=first.name, others=others)
+                f"{recording.name} has {' and '.join(recording.signals)}, {first.name} "
+                f"{' and '.join(kinds)}; give recordings of the same signals"
             )
-        for kind, values in one.signals.items():
+        for kind, values in recording.signals.items():
             count = values.shape[1]
             if kind != "torque" and count != plant.tips:
-                raise ValueError(say("refused.tips", name=one.name, count=count, kind=kind, **tips))
+                raise ValueError(
+                    f"{recording.name} has {count} of {kind}; {plant.name} has {plant.tips} tips, "
+                    "give one of each"
+                )
     return kinds
 
 
@@ -147,7 +152,10 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
         others = [name for name in plant.measured if name not in names]
         names += [name for name in others if in_torque_alone(plant, name)]
     if not names:
-        raise ValueError(say("refused.sought", plant=plant.name))
+        raise ValueError(
+            f"{plant.name} has no parameter in rad/s and none that begins with zeta; name what is "
+            "sought by free"
+        )
     return names
 
 
@@ -158,16 +166,22 @@ def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dic
     """
     worth, why = list[Part](), dict[str, list[str]]()
     for part in parts:
-        facts = {"begin": part.begin, "end": part.end}
+        span = f"{part.begin:.6g} to {part.end:.6g} s"
         driven = [
             value
             for name, value in part.values.items()
             if is_damping(plant, name) and value + part.deviations[name] < 0
         ]
         if part.unexplained > _BAD:
-            reason = say("recording.misfit", misfit=part.misfit, **facts)
+            reason = (
+                f"{span}: a misfit of {part.misfit:.0%} of the swing; look at its signal, and "
+                "select the free decay by --part"
+            )
         elif driven:
-            reason = say("recording.negative", damping=min(driven), **facts)
+            reason = (
+                f"{span}: a damping of {min(driven):.2g}: something drives it, so that it is no "
+                "free decay; switch it off, or select another part by --part"
+            )
         else:
             worth.append(part)
             continue
@@ -182,19 +196,22 @@ def _not_identifiable(each: Sequence[PartFitter]) -> dict[str, str]:
     """The parameters that recordings of moving joints do not identify, and why."""
     for one in each:
         if not moves(one.recording):
-            raise ValueError(say("refused.rests", name=one.recording.name))
+            raise ValueError(
+                f"{one.recording.name}: the joint does not move, and these parameters only matter "
+                "while it does; record its angle during a move"
+            )
     J, names = np.concatenate([sensitivities(one) for one in each]), each[0].names
     sizes = np.linalg.norm(J, axis=0)
     kept, cannot = list[int](), dict[str, str]()
     for k, name in enumerate(names):
         share, *_ = np.linalg.lstsq(J[:, kept], J[:, k], rcond=None)
         if sizes[k] <= 1e-9 * sizes.max():
-            cannot[name] = say("parameter.idle")
+            cannot[name] = "nothing that was recorded depends on it"
         elif kept and np.linalg.norm(J[:, k] - J[:, kept] @ share) < _DEPENDENT * sizes[k]:
-            other = names[kept[int(np.abs(share).argmax())]]
-            cannot[name] = say("parameter.same", other=other)
+            same = names[kept[int(np.abs(share).argmax())]]
+            cannot[name] = f"it does what {same} does"
         else:
             kept.append(k)
     if not kept:
-        raise ValueError(say("refused.nothing", names=", ".join(cannot)))
+        raise ValueError(f"the recordings tell nothing of {', '.join(cannot)}; name others by free")
     return cannot

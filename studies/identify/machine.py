@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.saved import Saved
 from quietarm.ocp.uncertainty import with_values
-from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _DAMPING = "zeta"
@@ -175,17 +174,24 @@ class Identified(Saved):
             When a parameter is not identifiable, the plant does not move as what was recorded, or
             one part alone does not tell how much the machine varies.
         """
-        own, doubtful = say("errors.own"), [part for part in self.parts if part.warning]
+        stated = "state errors of your own, as --error frequency=5%"
+        doubtful = [part for part in self.parts if part.warning]
         if 2 * len(doubtful) >= len(self.parts):
-            raise ValueError(f"{doubtful[0].recording}: {doubtful[0].warning}; or {own}")
+            raise ValueError(f"{doubtful[0].recording}: {doubtful[0].warning}; or {stated}")
         if self.not_identifiable:
             name, why = next(iter(self.not_identifiable.items()))
             known = " and ".join(one.parameter for one in self.estimates) or "omega"
-            raise ValueError(say("errors.unknown", parameter=name, why=why, known=known, own=own))
+            raise ValueError(
+                f"{name} is not identifiable by the recordings ({why}); {stated}, or identify "
+                f"again with {known} alone, by --free"
+            )
         moving = [one for one in self.estimates if not in_torque_alone(self.plant, one.parameter)]
         if len(self.parts) == 1:
             percent = 100 * max((one.error for one in moving), default=0.0)
-            raise ValueError(say("errors.one", percent=percent, own=own))
+            raise ValueError(
+                "one ring-down does not tell how much the machine varies, beyond "
+                f"{percent:.2g} % by its fit; record several, or {stated}"
+            )
         return {one.parameter: max(one.error, _LEAST_ERROR) for one in moving}
 
     def check_unchanged(self, names: Iterable[str]) -> None:
@@ -204,7 +210,10 @@ class Identified(Saved):
         for name in names:
             if name in self.plant.measured and not in_torque_alone(self.plant, name):
                 value = getattr(self.plant, name)
-                raise ValueError(say("errors.changed", parameter=name, value=value))
+                raise ValueError(
+                    f"the measured intervals are of the machine with {name} {value:.6g}; identify "
+                    f"it with the other {name}, or state errors of your own, as frequency=5%"
+                )
 
 
 def in_torque_alone(plant: Plant, name: str) -> bool:

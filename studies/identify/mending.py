@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from quietarm.studies.identify.recording import Recording, noise_of
 from quietarm.studies.identify.running import running_maximum
-from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 _LENGTHS = (1, 2, 4)
@@ -36,13 +35,10 @@ def without_glitches(
         for column in np.hstack(columns).T:
             glitches |= _glitches(recording.time, column)
         count = int(np.count_nonzero(glitches))
-        notes += [
-            say(f"mended.{how}", name=recording.name, **facts)
-            for how, facts in recording.mended.items()
-        ]
+        notes += [f"{recording.name}: {change}" for change in recording.mended.values()]
         if 0 < count <= _MOST * len(glitches):
             samples = "1 sample is" if count == 1 else f"{count} samples are"
-            notes.append(say("mended.glitches", name=recording.name, samples=samples))
+            notes.append(f"{recording.name}: {samples} left out, far from all beside")
             recording = recording.part(~glitches)
         mended.append(recording)
     return mended, notes

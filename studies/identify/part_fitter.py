@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY
 from quietarm.studies.identify.columns import Columns, Driven, Forced, FreeDecay
-from quietarm.studies.identify.diagnosis import doubt, doubt_of, saturated
+from quietarm.studies.identify.diagnosis import doubt_of, saturated
 from quietarm.studies.identify.fitting import Fit, fit
 from quietarm.studies.identify.joint_spline import smooth
 from quietarm.studies.identify.machine import Part, bounds_of, is_frequency, is_modal, values_of
@@ -174,24 +174,40 @@ class PartFitter:
         at_bound = np.flatnonzero(room < 1e-6)
         if not len(at_bound):
             return {}
-        return doubt("bound", parameter=self.names[int(at_bound[-1])])
+        warning = (
+            f"{self.names[int(at_bound[-1])]} ends at the bound of its search: the model does not "
+            "fit; begin after the release, by --part, or hold the joint"
+        )
+        return {"cause": "bound", "warning": warning}
 
     def _doubt(self, part: Part, best: Fit, time: Array, noise: float) -> dict[str, str]:
         """Why a fit of a part is doubted; empty where it is not."""
         if best.delay and part.hub == "moves" and best.misfit > 2 * noise:
             side = "late" if best.delay > 0 else "early"
-            milliseconds = abs(best.delay) * 1e3
-            return doubt("delay", misfit=best.misfit, delay=milliseconds, side=side)
+            warning = (
+                f"the misfit is {best.misfit:.1%} of the swing, less if the angle were not "
+                f"{1e3 * abs(best.delay):.3g} ms {side}: record both by one clock"
+            )
+            return {"cause": "delay", "warning": warning}
         # beyond both the hub's share in the frequency is not identifiable
         inflated = best.inflation > 20
         unsure = best.deviations > 1e-3 * np.abs(best.p)
         if (inflated & unsure)[self.are_rates].any():
-            return doubt("hub.hides")
+            warning = (
+                "the hub swings in proportion to the tip, so that its share in the frequency is "
+                "not identifiable: hold it, by a brake or a stiffer controller"
+            )
+            return {"cause": "hub", "warning": warning}
         doubts = doubt_of(time, best.residual, best.swinging, self.frequency, noise)
         damping = float(best.p[self.are_dampings].max(initial=0.0))
         more_than_a_beam = 0.12
         if not doubts and self.plant.joint == ROTARY and damping > more_than_a_beam:
             unknown = self.recording.angle is None
             remedy = ", or name its angle by --angle" if unknown else ""
-            return doubt("hub.damps", damping=damping, remedy=remedy)
+            warning = (
+                f"a damping ratio of {damping:.2g} is more than a beam on a held joint has: a "
+                "controller that gives way damps like that, and shifts the frequency; hold the "
+                f"joint{remedy}"
+            )
+            return {"cause": "hub", "warning": warning}
         return doubts

@@ -17,7 +17,6 @@ from quietarm.studies.identify.part_fitter import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.recording_parts import fit_parts
 from quietarm.studies.identify.swing_model import Model
-from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 PERIODS = 5.0
@@ -81,7 +80,7 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
                     one.name, *ends, float(share), *min(shares), fitter.frequency_of(own)
                 ))  # fmt: skip
     if not found:
-        raise ValueError(say("refused.predicted", name=recordings[0].name))
+        raise ValueError(f"{recordings[0].name}: no ring-down of three periods; record longer")
     return found
 
 

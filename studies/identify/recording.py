@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.studies.identify.stamps import mended
-from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
 
@@ -44,7 +43,7 @@ class Recording:
     name : str, optional
         What messages call it.
     mended : mapping, optional
-        What was mended in the times, a name of `words.toml` and its figures.
+        What was mended in the times, in words.
 
     Raises
     ------
@@ -59,32 +58,38 @@ class Recording:
     acceleration: Array | None = None
     torque: Array | None = None
     name: str = "the recording"
-    mended: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    mended: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         arrays = {name: np.asarray(values, float) for name, values in self._arrays.items()}
         if not arrays.keys() - {"time", "angle"}:
-            self._refuse("signals")
+            self._refuse(" has no tip, acceleration or torque; give one")
         rows, whole = len(arrays["time"]), True
         for name, values in arrays.items():
             if len(values) != rows:
-                self._refuse("lengths", rows=rows, others=len(values), what=name)
+                self._refuse(f" has {rows} times and {len(values)} of {name}")
             whole = whole & np.isfinite(values.reshape(rows, -1)).all(axis=1)
         whole_count = np.count_nonzero(whole)
         if not LEAST_ROWS <= whole_count <= _MOST_ROWS:
-            self._refuse("rows", rows=whole_count, least=LEAST_ROWS, most=_MOST_ROWS)
+            self._refuse(f" has {whole_count} rows; give {LEAST_ROWS} to {_MOST_ROWS}")
         whole_rows, changes = mended({name: values[whole] for name, values in arrays.items()})
         object.__setattr__(self, "mended", {**self.mended, **changes})
         for name, values in whole_rows.items():
             object.__setattr__(self, name, values)
         late = int(np.argmin(np.diff(self.time)))
         if self.time[late + 1] <= self.time[late]:
-            self._refuse("time", row=late + 1)
+            self._refuse(
+                f": the time does not increase from row {late + 1} to the next; sort the rows, or "
+                "mend it"
+            )
         if self.angle is not None and (largest := np.abs(self.angle).max()) > MOST_ANGLE:
-            self._refuse("angle", angle=largest)
+            self._refuse(
+                f": an angle of {largest:g} rad; is it in degrees? say so by its unit, or rename a "
+                "column whose name says rad"
+            )
 
-    def _refuse(self, why: str, **facts: object) -> NoReturn:
-        raise ValueError(say(f"recording.{why}", name=self.name, **facts))
+    def _refuse(self, why: str) -> NoReturn:
+        raise ValueError(f"{self.name}{why}")
 
     @property
     def _arrays(self) -> dict[str, Array]:

@@ -26,9 +26,10 @@ from quietarm.studies.identify.swing_changes import (
 )
 from quietarm.studies.identify.well_damped import find_well_damped
 from quietarm.studies.identify.whole_recording import wide_range
-from quietarm.studies.identify.words import say
 
 Spans = Sequence[tuple[float, float]]
+NO_SWING = "no swing stands out of the noise"
+"""Why a recording in which no frequency is found has no part."""
 POOR = 0.2
 """Misfit, from which on a swing may be one that is damped well, or of two modes."""
 
@@ -37,7 +38,7 @@ def fit_parts(fitter: PartFitter, by_hand: Spans = ()) -> tuple[list[Part], str]
     """The ring-downs of a recording, or why there are none; some may be chosen by hand."""
     recording = fitter.recording
     parts = list[Part]()
-    why = say("recording.silent")
+    why = NO_SWING
     if fitter.frequency:
         parts, why = _periodic(fitter, by_hand)
         doubtful = all(part.misfit > POOR or _is_doubted(part) for part in parts)
@@ -90,8 +91,8 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
         elif part.misfit < 1 or by_hand:
             parts.append(part)
         else:
-            facts = {"begin": part.begin, "end": part.end, "frequency": fitter.frequency}
-            why = say("recording.free", **facts)
+            span = f"{part.begin:.6g} to {part.end:.6g} s"
+            why = f"{span} is no free decay of {fitter.frequency:.3g} Hz"
     return parts, why
 
 
@@ -214,4 +215,4 @@ def _no_ring_down(fitter: PartFitter) -> str:
     if periods < LEAST_PERIODS:
         few = f": it lasts {periods:.2g} periods of {frequency:.3g} Hz"
     angle = "" if recording.angle is not None else ", or the joint's angle, too"
-    return say("recording.short", few=few, angle=angle)
+    return f"no ring-down of two periods{few}; record longer after a push{angle}"

@@ -18,7 +18,7 @@ _LEAST = 20
 """Rows between gaps that tell a rate."""
 
 
-def mended(arrays: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, dict[str, str]]]:
+def mended(arrays: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, str]]:
     """The arrays of a recording with increasing times where these can be told, and what was done.
 
     Rounded stamps are those of an even rate; of rows with the same stamp the first stays.
@@ -34,7 +34,10 @@ def mended(arrays: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, dic
     if even is not None:
         found["time"], tick = even
         step = float(np.median(np.diff(found["time"])))
-        return found, {"rounded": {"tick": f"{1e3 * tick:.3g}", "step": f"{1e3 * step:.6g}"}}
+        return found, {
+            "rounded": f"its times are rounded to {1e3 * tick:.3g} ms; an even rate is taken, a "
+            f"sample every {1e3 * step:.6g} ms"
+        }
     if not again.any() or np.count_nonzero(again) > _SOME * len(time):
         return found, {}
     return _without(arrays, again)
@@ -51,11 +54,12 @@ def _stand_twice(arrays: Mapping[str, Array], again: NDArray[np.bool_]) -> bool:
 
 def _without(
     arrays: Mapping[str, Array], again: NDArray[np.bool_]
-) -> tuple[dict[str, Array], dict[str, dict[str, str]]]:
-    """The arrays without some rows, and how many these are."""
+) -> tuple[dict[str, Array], dict[str, str]]:
+    """The arrays without some rows, and in words how many these are."""
     count = int(np.count_nonzero(again))
     rows = "1 row has" if count == 1 else f"{count} rows have"
-    return {name: values[~again] for name, values in arrays.items()}, {"twice": {"rows": rows}}
+    twice = f"{rows} the time of the row before: it stands twice, and is read once"
+    return {name: values[~again] for name, values in arrays.items()}, {"twice": twice}
 
 
 def _even(time: Array, steps: Array) -> tuple[Array, float] | None:

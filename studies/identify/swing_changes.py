@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from quietarm.studies.identify.amplitudes import spread_of
 from quietarm.studies.identify.close_modes import CloseModes, find_close_modes
-from quietarm.studies.identify.diagnosis import doubt, saturated
+from quietarm.studies.identify.diagnosis import saturated
 from quietarm.studies.identify.fitting import Fit
 from quietarm.studies.identify.machine import Part
 from quietarm.studies.identify.modulation import changes_along
@@ -53,8 +53,12 @@ def with_changes(fitter: PartFitter, part: Part, best: Fit, rows: slice) -> Part
     if certain and met.cause in ("", "amplitude", "misfit") and met.unexplained < MET:
         first = _words(fitter, pieces[0])
         last = _words(fitter, pieces[-1])
-        doubts = doubt("changes", misfit=part.misfit, first=first, last=last)
-        met = replace(met, **doubts)
+        warning = (
+            f"a misfit of {part.misfit:.1%} of the swing by one frequency and damping: {first} at "
+            f"first, {last} at last; they change with the amplitude, or a second mode is near. The "
+            "intervals hold for this swing, not for a larger one: push as hard as your moves do"
+        )
+        met = replace(met, cause="amplitude", warning=warning)
     if part.saturated:
         spread = _beyond_the_saturated(part, pieces, spread)
     return replace(met, spread=spread)
@@ -192,12 +196,14 @@ def _figures(close: CloseModes) -> dict[str, object]:
         f"{frequency / tau:.5g} Hz and {damping:.2g}"
         for frequency, damping in zip(close.frequencies, close.dampings)
     )
-    figures: dict[str, object] = {
+    return {
         "amplitude": close.amplitude,
         "misfit": close.misfit,
         "noise": close.noise,
+        "cause": "close",
+        "warning": f"two modes beat, {first}, and {second}: the intervals hold both, since a move "
+        "may excite either; plan for both by an error of your own, or damp or lock one of them",
     }
-    return figures | doubt("close", first=first, second=second)
 
 
 def _of_the_louder(fitter: PartFitter, part: Part, close: CloseModes, start: Array) -> Part:

@@ -11,7 +11,6 @@ _NUMBER = re.compile(
     r"[+-]?(?:\d{1,3}(?:,\d{3})+(?:\.\d*)?|\d{1,3}(?:\.\d{3})+(?:,\d*)?|\d+[.,]?\d*|[.,]\d+)"
     r"(?:[eE][+-]?\d+)?"
 )
-_NO_NUMBERS = ("nan", "inf", "infinity")
 _THOUSANDS = {mark: rf"[+-]?[1-9]\d{{0,2}}(?:\{mark}\d{{3}})+" for mark in ".,"}
 """Whole numbers whose digits a mark groups."""
 _CLOCK = re.compile(
@@ -20,13 +19,13 @@ _CLOCK = re.compile(
     r"\s*(?P<half>[AaPp]\.?[Mm]\.?)?\s*(?:Z|UTC|[+-]\d{2}:?\d{2})?"
 )
 """A time of day, with or without a date, or minutes and seconds."""
-_HALF_A_DAY = 43_200.0
 
 
 def is_number(cell: str) -> bool:
     """Whether a cell is a number, whatever its decimal mark and its thousands separator."""
+    no_numbers = ("nan", "inf", "infinity")
     plain = _GROUPED.sub("", cell)
-    return bool(_NUMBER.fullmatch(plain)) or plain.lstrip("+-").lower() in _NO_NUMBERS
+    return bool(_NUMBER.fullmatch(plain)) or plain.lstrip("+-").lower() in no_numbers
 
 
 def is_clock(cell: str) -> bool:
@@ -47,10 +46,10 @@ def numbers_of(cells: Any) -> Any:
     if odd.empty:
         return numbers
     odd = odd.astype(str).str.replace(_GROUPED, "", regex=True)
-    every = cells.stack().dropna().astype(str).str.replace(_GROUPED, "", regex=True)
-    thousands = _thousands_mark(every)
+    texts = cells.stack().dropna().astype(str).str.replace(_GROUPED, "", regex=True)
+    thousands = _thousands_mark(texts)
     if thousands:
-        plain = every.where(every.str.fullmatch(_NUMBER), "").str.replace(thousands, "")
+        plain = texts.where(texts.str.fullmatch(_NUMBER), "").str.replace(thousands, "")
         plain = plain.str.replace(",", ".")
         return to_numeric(plain, errors="coerce").unstack().reindex_like(numbers)
     plain = to_numeric(odd.str.replace(",", "."), errors="coerce").unstack()
@@ -77,17 +76,18 @@ def _thousands_mark(cells: Any) -> str:
             return mark
         if not with_mark.str.fullmatch(_THOUSANDS[mark]).all():
             continue
-        others = marked[marked.str.contains(decimal, regex=False)]
-        if len(others) and not others.str.fullmatch(_THOUSANDS[decimal]).all():
+        with_decimal = marked[marked.str.contains(decimal, regex=False)]
+        if len(with_decimal) and not with_decimal.str.fullmatch(_THOUSANDS[decimal]).all():
             return mark
         whole = cells[cells.str.fullmatch(r"[+-]?\d+")]
-        if mark == "," and not len(others) and len(whole) and whole.str.len().max() <= 4:
+        if mark == "," and not len(with_decimal) and len(whole) and whole.str.len().max() <= 4:
             return mark
     return ""
 
 
 def seconds_of(cells: Any) -> Any:
     """Seconds since the first of a column's times (of pandas); midnight is passed, not a date."""
+    half_a_day = 43_200.0
     import pandas as pd  # not at the top: it takes half a second to load
 
     to_numeric: Any = pd.to_numeric
@@ -98,5 +98,5 @@ def seconds_of(cells: Any) -> Any:
     hours = numbers["hours"].fillna(0).where(parts["half"].isna(), numbers["hours"] % 12)
     time = 3600 * (hours + 12 * late) + 60 * numbers["minutes"] + seconds
     known = time.dropna()
-    midnights = (known.diff() < -_HALF_A_DAY).cumsum()
-    return (time + 2 * _HALF_A_DAY * midnights.reindex(time.index).ffill()) - known.iloc[0]
+    midnights = (known.diff() < -half_a_day).cumsum()
+    return (time + 2 * half_a_day * midnights.reindex(time.index).ffill()) - known.iloc[0]

@@ -62,7 +62,8 @@ def read_found(path: Path) -> Found:
         coefficients = np.column_stack([columns[k].values for k in chosen])
     if not coefficients.size:
         raise FileFormatError(empty)
-    claims, ignored = np.full((len(coefficients), 2), np.nan), dict[str, None]()
+    claims = np.full((len(coefficients), 2), np.nan)
+    ignored = dict[str, None]()
     of_motions = set(chosen)
     window = None
     for k, column in enumerate(columns):
@@ -87,10 +88,11 @@ def _uncounted(columns: Sequence[Column], text: bool) -> Sequence[Column]:
     if not unnamed or not len(columns[0].values):
         return columns
     table = np.column_stack([column.values for column in columns])
-    first, rows = table[0], table[:, 0]
+    first = table[0]
+    rows = table[:, 0]
     if text and np.isnan(first[0]) and np.array_equal(first[1:], np.arange(len(first) - 1)):
         names = ["", *(str(k) for k in range(len(first) - 1))]
-        return [Column(name, "", one[1:]) for name, one in zip(names, table.T)]
+        return [Column(name, "", values[1:]) for name, values in zip(names, table.T)]
     if len(rows) > 1 and np.array_equal(rows, np.arange(len(rows))):
         raise FileFormatError(
             "its first column counts the rows; leave it out, in pandas by index=False"
@@ -100,9 +102,10 @@ def _uncounted(columns: Sequence[Column], text: bool) -> Sequence[Column]:
 
 def _coefficients(columns: Sequence[Column]) -> list[int]:
     """Which columns are coefficients, in their order: by their names, or those of one matrix."""
-    numbered, matrices = dict[int, int](), dict[str, list[int]]()
+    numbered = dict[int, int]()
+    matrices = dict[str, list[int]]()
     names = [column.name.lower() for column in columns]
-    matrix = next((one for one in _MATRICES if f"{one}:1" in names), "")
+    matrix = next((name for name in _MATRICES if f"{name}:1" in names), "")
     for k, column in enumerate(columns):
         name, colon, _ = column.name.partition(":")
         if matrix and name.lower() != matrix:
@@ -113,7 +116,7 @@ def _coefficients(columns: Sequence[Column]) -> list[int]:
             numbered[int(match[1])] = k
         elif colon:
             matrices.setdefault(name, []).append(k)
-    large = [one for one in matrices.values() if len(one) > 1]
+    large = [places for places in matrices.values() if len(places) > 1]
     if not numbered and len(large) == 1:
         return large[0]
     if not numbered:

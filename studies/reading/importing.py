@@ -39,24 +39,24 @@ def import_front(
     evaluations: int | None = None,
 ) -> tuple[Front, list[str]]:
     """The front of a file's coefficients, and how what it states compares, in sentences."""
-    found = read_found(file)
-    if found.window is not None and isinstance(task.residual_window, DefaultWindow):
-        task = replace(task, residual_window=found.window)
-    columns = found.coefficients.shape[1]
+    imported = read_found(file)
+    if imported.window is not None and isinstance(task.residual_window, DefaultWindow):
+        task = replace(task, residual_window=imported.window)
+    columns = imported.coefficients.shape[1]
     if terms is not None and family(terms).size != columns:
         raise ValueError(
             f"{file} has {columns} coefficients a motion, and a {family(terms).label} takes "
             f"{family(terms).size}; leave --terms out, or transpose the table"
         )
     try:
-        front, notes = _evaluated(file, task, family.of_size(columns), found, bound, evaluations)
+        front, notes = _evaluated(file, task, family.of_size(columns), imported, bound, evaluations)
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from None
     if not notes:
         notes.append("the file states neither residual nor energy in numbers: nothing to compare "
                      "with")  # fmt: skip
-    if found.ignored:
-        notes.append(f"ignored: {', '.join(found.ignored)[:200]}")
+    if imported.ignored:
+        notes.append(f"ignored: {', '.join(imported.ignored)[:200]}")
     return front, notes
 
 
@@ -64,12 +64,12 @@ def _evaluated(
     file: Path,
     task: PointToPoint,
     profile: JointProfile,
-    found: Found,
+    imported: Found,
     bound: float | None,
     evaluations: int | None,
 ) -> tuple[Front, list[str]]:
     """The front, and how the claims compare."""
-    table = found.coefficients
+    table = imported.coefficients
     whole("number of motions", len(table), 1, _MOST_ROWS)
     if evaluations is not None:
         evaluations = whole("evaluations", evaluations, len(table))
@@ -100,7 +100,7 @@ def _evaluated(
         plan = evaluate_coefficients(task, rows[row], profile=profile)
         return plan.residual, plan.energy
 
-    return front, _claims(found.claims, objectives[:, :2], judge)
+    return front, _claims(imported.claims, objectives[:, :2], judge)
 
 
 def _checked(
@@ -151,7 +151,7 @@ def _claims(
     figures = figures.copy()
     for row in np.flatnonzero(differ)[:_JUDGED].tolist():
         figures[row] = judge(row)
-    found = list[str]()
+    notes = list[str]()
     for theirs, ours, (figure, unit, least) in zip(stated.T, figures.T, FIGURES):
         known = ~np.isnan(theirs)
         wrong = known & ~agrees(theirs, ours, least)
@@ -159,7 +159,7 @@ def _claims(
             continue
         if not wrong.any():
             motions = "its motion" if known.sum() == 1 else f"all {known.sum()} motions"
-            found.append(f"the file's {figure} is right for {motions}")
+            notes.append(f"the file's {figure} is right for {motions}")
             continue
         gaps = (np.abs(theirs - ours) - least) / np.maximum(np.abs(ours), 1e-300)
         worst = int(np.argmax(np.where(wrong, gaps, -1.0)))
@@ -167,9 +167,9 @@ def _claims(
         hint = ""
         if telling.any() and abs(np.median(theirs[telling] / ours[telling]) / 1000 - 1) < 0.05:
             hint = f"; is it in m{unit}? name the column {figure}_m{unit}"
-        found.append(
+        notes.append(
             f"the file's {figure} is wrong for {wrong.sum()} of {known.sum()} motions, most for "
             f"motion {worst + 1}: {theirs[worst]:.4g} {unit} in the file, {ours[worst]:.4g} {unit} "
             f"by its coefficients{hint}"
         )
-    return found
+    return notes

@@ -15,8 +15,6 @@ import numpy as np
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.files import MOST_BYTES
 
-_SECONDS = 60
-"""Of the process; a file of the largest size takes a few."""
 _PROCESS = Path(__file__).with_name("matlab_process.py")
 
 
@@ -25,13 +23,15 @@ def read_matlab(content: bytes, *, simple: bool) -> dict[str, Any]:
 
     ValueError where the file is damaged, be it that the process ends, takes too long or too much.
     """
+    # of the process; a file of the largest size takes a few
+    seconds = 60
     line = [sys.executable, "-P", str(_PROCESS), str(MOST_BYTES), "simple" if simple else "whole"]
     try:
         process = subprocess.run(
-            line, input=content, capture_output=True, timeout=_SECONDS, check=True
+            line, input=content, capture_output=True, timeout=seconds, check=True
         )
     except subprocess.TimeoutExpired:
-        raise ValueError(f"reading it takes more than {_SECONDS} s") from None
+        raise ValueError(f"reading it takes more than {seconds} s") from None
     except subprocess.CalledProcessError as error:
         raise ValueError(f"what reads it ended with status {error.returncode}") from None
     with np.load(io.BytesIO(process.stdout), allow_pickle=False) as answer:

@@ -21,13 +21,10 @@ _ROOM = 1 << 30
 """Bytes beyond those in use at the start, of which scipy needs several times the content."""
 
 
-_LONGEST = 1000
-"""Letters of a text, as of a signal's label."""
-
-
 def main() -> None:
     """Answer with the variables, or with the name of what went wrong."""
-    most, simple = int(sys.argv[1]), sys.argv[2] == "simple"
+    most = int(sys.argv[1])
+    simple = sys.argv[2] == "simple"
     _limit_memory()
     arrays: list[Any] = []
     try:
@@ -36,7 +33,8 @@ def main() -> None:
         if sum(array.nbytes for array in arrays) > most:
             tree = {"error": "MemoryError", "words": "it holds too much"}
     except Exception as error:  # whatever scipy makes of a damaged file
-        tree, arrays = {"error": type(error).__name__, "words": str(error)}, []
+        tree = {"error": type(error).__name__, "words": str(error)}
+        arrays = []
     answer = io.BytesIO()
     np.savez(answer, *arrays, tree=np.frombuffer(json.dumps(tree).encode(), np.uint8))
     sys.stdout.buffer.write(answer.getvalue())
@@ -44,10 +42,12 @@ def main() -> None:
 
 def _packed(value: Any, arrays: list[Any]) -> Any:
     """How a value is made up: fields, cells, a text or an array's number; None of anything else."""
+    # letters of a text, as of a signal's label
+    longest = 1000
     if isinstance(value, Mapping):
         return {"entries": {name: _packed(entry, arrays) for name, entry in value.items()}}
     if isinstance(value, str):
-        return {"text": value[:_LONGEST]}
+        return {"text": value[:longest]}
     array = np.asarray(value)
     if array.dtype.names:
         fields = {name: _packed(array[name], arrays) for name in array.dtype.names}

@@ -15,9 +15,6 @@ from quietarm.studies.identify.recording import MOST_ANGLE
 from quietarm.studies.reading.table import read_table
 
 Array = NDArray[np.float64]
-_LEAST_ROWS, _MOST_ROWS = 5, 5000
-_JUMP = 20.0
-"""A speed so many times that of three to six points before and after it is a jump."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +35,13 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
     """Read a CSV file with columns such as time_s and angle_deg, position_mm of a linear joint."""
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
-    table, label = read_table(path), joint_label("angle", joint)
+    table = read_table(path)
+    label = joint_label("angle", joint)
     name, begin = (
         table.first(quantity, "name it so in its heading") for quantity in (label, "time")
     )
-    time, angle = table.in_si(begin, "time"), table.in_si(name, label)
+    time = table.in_si(begin, "time")
+    angle = table.in_si(name, label)
     _check(path, time, angle, joint)
     largest = np.abs(angle).max()
     if joint == ROTARY and largest > 2 * np.pi and not table.find(name).written:
@@ -57,10 +56,15 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
 
 
 def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
-    label, unit = joint_label("angle", joint), joint_unit("rad", joint)
-    if not _LEAST_ROWS <= len(time) <= _MOST_ROWS:
+    least_rows = 5
+    most_rows = 5000
+    # a speed so many times that of three to six points before and after it is a jump
+    jump = 20.0
+    label = joint_label("angle", joint)
+    unit = joint_unit("rad", joint)
+    if not least_rows <= len(time) <= most_rows:
         raise FileFormatError(
-            f"{path} has {len(time)} rows; give {_LEAST_ROWS} to {_MOST_ROWS}, for a move of a "
+            f"{path} has {len(time)} rows; give {least_rows} to {most_rows}, for a move of a "
             "second a hundred are plenty"
         )
     if not (np.isfinite(time).all() and np.isfinite(angle).all()):
@@ -72,9 +76,9 @@ def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
         )
     if np.abs(angle).max() > MOST_ANGLE:
         rotary = ("an angle", "degrees", "deg")
-        which, other, short = rotary if joint == ROTARY else ("a position", "millimetres", "mm")
+        which, likely, short = rotary if joint == ROTARY else ("a position", "millimetres", "mm")
         raise FileFormatError(
-            f"{path}: {which} of {np.abs(angle).max():g} {unit}; is it in {other}? name the "
+            f"{path}: {which} of {np.abs(angle).max():g} {unit}; is it in {likely}? name the "
             f"column {label}_{short}"
         )
     if angle[0] == angle[-1]:
@@ -82,7 +86,7 @@ def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
     speed = np.abs(np.diff(angle) / np.diff(time))
     k = int(speed.argmax())
     beside = [*speed[max(k - 6, 0) : max(k - 2, 0)], *speed[k + 3 : k + 7]]
-    if speed[k] > _JUMP * max(beside, default=np.inf):
+    if speed[k] > jump * max(beside, default=np.inf):
         raise FileFormatError(
             f"{path}: the {label} jumps by {abs(angle[k + 1] - angle[k]):.3g} {unit} after "
             f"{time[k]:.4g} s; give a path without jumps"

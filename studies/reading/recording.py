@@ -30,19 +30,20 @@ def read_recording(
     time = columns.get("time") or []
     if rate is None and not time:
         time = [table.first("time", "name it by --time, or give the samples per second by --rate")]
-    named, of_scale = {**columns, "time": time}, scales or {}
-    used = [table.find(one).name for names in named.values() for one in names]
-    for one in used:
-        if used.count(one) > 1:
+    named = {**columns, "time": time}
+    of_scale = scales or {}
+    used = [table.find(heading).name for names in named.values() for heading in names]
+    for column in used:
+        if used.count(column) > 1:
             raise FileFormatError(
-                f"{path}: column {one} is given for two signals; give each a column of its own"
+                f"{path}: column {column} is given for two signals; give each a column of its own"
             )
     signals = {
         quantity: np.column_stack([
             table.in_si(
-                one, quantity, units.get(quantity, ""), of_scale.get(quantity), by_options=True
+                heading, quantity, units.get(quantity, ""), of_scale.get(quantity), by_options=True
             )
-            for one in names
+            for heading in names
         ])
         for quantity, names in named.items()
         if names
@@ -55,7 +56,11 @@ def read_recording(
         raise FileFormatError(
             f"{path}: its columns have {' and '.join(map(str, sorted(rows)))} rows"
         )
-    flat = {one: signals[one][:, 0] for one in ("time", "angle", "torque") if one in signals}
+    flat = {
+        quantity: signals[quantity][:, 0]
+        for quantity in ("time", "angle", "torque")
+        if quantity in signals
+    }
     arrays: dict[str, Any] = {**signals, **flat}
     try:
         return Recording(**arrays, name=name)

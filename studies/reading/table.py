@@ -25,19 +25,13 @@ ARRAYS = (".npy", ".npz", ".mat")
 """Endings of files of arrays; any other is a text."""
 TABLES = (".csv", ".txt", ".dat", *ARRAYS)
 """Endings by which a table is told from numbers."""
-_LEAST_STEPS = 8
-_EVEN = 0.95
-"""Share of the steps that are the usual one where a column rises evenly."""
 _LABELS = ("label", "name", "signalname")
 _SAMPLES = ("values", "data")
 """Fields of a structure that is one signal, as Simulink and recorders write it."""
-_LONGEST_NAME = 100
-"""Letters of a column's heading: more are no name, and would fill every message."""
-_MOST_ROWS, _MOST_COLUMNS, _MOST_OF_ARRAY = 2_000_000, 1000, 10_000
+_MOST_ROWS = 2_000_000
+_MOST_COLUMNS = 1000
+_MOST_OF_ARRAY = 10_000
 """Rows and columns of a text, and columns of an array, which may be a long row."""
-_LONGEST_LINE = 200_000
-"""Bytes of a text's line: two hundred for each of the most columns. What no column can be is not
-looked at letter by letter."""
 _CALLED = {
     "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds", "millis", "micros"},
     "angle": {"angle", "theta", "position", "q"},
@@ -75,16 +69,18 @@ class Table:
             (str, str), (_plain, _plain), (_without_unit, _plain), (_without_unit, _without_unit),
             (_last_field, _last_field),
         ):  # fmt: skip
-            found = [
-                k for k, one in enumerate(self.columns) if of_column(one.name) == of_name(name)
+            places = [
+                k
+                for k, column in enumerate(self.columns)
+                if of_column(column.name) == of_name(name)
             ]
-            if len(found) > 1:
+            if len(places) > 1:
                 raise FileFormatError(
-                    f"{self.path}: {len(found)} columns are called {name!r}; give one's number, "
-                    f"{' or '.join(map(str, found))}"
+                    f"{self.path}: {len(places)} columns are called {name!r}; give one's number, "
+                    f"{' or '.join(map(str, places))}"
                 )
-            if found:
-                return self.columns[found[0]]
+            if places:
+                return self.columns[places[0]]
         if name.isdecimal() and int(name) < len(self.columns):
             return self.columns[int(name)]
         names = [column.name for column in self.columns]
@@ -96,10 +92,10 @@ class Table:
 
         FileFormatError with the remedy where none is.
         """
-        for one in self.columns:
-            names = {_plain(one.name), _without_unit(one.name), _last_field(one.name)}
+        for column in self.columns:
+            names = {_plain(column.name), _without_unit(column.name), _last_field(column.name)}
             if names & _CALLED[quantity]:
-                return one.name
+                return column.name
         if quantity == "time" and self.columns and self._first_is_time():
             return self.columns[0].name
         raise FileFormatError(
@@ -135,7 +131,8 @@ class Table:
         A unit that is given holds whatever the name says. FileFormatError where its name ends in
         what may be a unit or not; it names the options of a command that has some for it.
         """
-        column, known = self.find(name), UNITS[quantity]
+        column = self.find(name)
+        known = UNITS[quantity]
         if scale is not None:
             return column.values * scale
         written = normal(column.written)
@@ -155,13 +152,16 @@ def rises_evenly(values: Array) -> bool:
 
     Stamps may be rounded: to so much that several are the same.
     """
+    least_steps = 8
+    # share of the steps that are the usual one where a column rises evenly
+    even = 0.95
     steps = np.diff(values[np.isfinite(values)])
     rising = steps[steps > 0]
-    if len(steps) < _LEAST_STEPS or (steps < 0).any() or len(rising) < len(steps) / 20:
+    if len(steps) < least_steps or (steps < 0).any() or len(rising) < len(steps) / 20:
         return False
     usual = max(float(np.median(steps)), float(np.ptp(values)) / len(steps))
     near = np.abs(steps - usual) <= max(0.25 * usual, 1.01 * float(rising.min()))
-    return bool(near.mean() >= _EVEN)
+    return bool(near.mean() >= even)
 
 
 def _plain(name: str) -> str:
@@ -197,14 +197,16 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
     of units may stand between. A `strict` table has its rows as they are, be it one row or column,
     and in a text nothing but a heading above them. Nothing in a file is run.
     """
+    # letters of a column's heading: more are no name, and would fill every message
+    longest_name = 100
     content = read_bytes(path)
     with reading(path):
         if path.suffix.lower() in ARRAYS:
             columns = _of_variables(_arrays(path.suffix.lower(), content, strict), strict)
         else:
             _refuse_huge(content)
-            columns = [Column(*one) for one in read_text(content, strict)]
-    columns = [replace(column, name=cut(column.name, _LONGEST_NAME)) for column in columns]
+            columns = [Column(*entry) for entry in read_text(content, strict)]
+    columns = [replace(column, name=cut(column.name, longest_name)) for column in columns]
     if not columns and not strict:
         raise FileFormatError(f"{path}: it has no vectors of numbers; save the time and what rings")
     return Table(path, tuple(columns))
@@ -231,6 +233,9 @@ def _arrays(kind: str, content: bytes, strict: bool) -> dict[str, Any]:
 
 def _refuse_huge(content: bytes) -> None:
     """Refuse a text of more rows or columns than any recording has."""
+    # bytes of a text's line: two hundred for each of the most columns. What no column can be is
+    # not looked at letter by letter
+    longest_line = 200_000
     rows = max(content.count(b"\n"), content.count(b"\r"))
     if rows > _MOST_ROWS:
         raise FileFormatError(f"it has {rows} rows; give at most {_MOST_ROWS}")
@@ -239,9 +244,9 @@ def _refuse_huge(content: bytes) -> None:
             continue
         columns = 1 + max(line.count(b","), line.count(b";"), line.count(b"\t"), line.count(b"|"))
         _refuse_wide(max(columns, len(line.split())), _MOST_COLUMNS)
-        if len(line) > _LONGEST_LINE:
+        if len(line) > longest_line:
             raise FileFormatError(
-                f"line {number} has {len(line)} letters; give at most {_LONGEST_LINE} in a line"
+                f"line {number} has {len(line)} letters; give at most {longest_line} in a line"
             )
 
 
@@ -255,20 +260,20 @@ def _of_variables(values: Mapping[str, Any], strict: bool, front: str = "") -> l
 
     Of several structures with a number, a signal by its label.
     """
-    found: list[Column] = []
+    columns: list[Column] = []
     for name, value in values.items():
         array = np.asarray(value)
         if isinstance(value, Mapping):
-            found += _of_structure(value, strict, front, name)
-        elif array.dtype == object and all(isinstance(one, Mapping) for one in array.flat):
-            for k, one in enumerate(array.flat, 1):
-                found += _of_structure(one, strict, front, f"{name}:{k}")
+            columns += _of_structure(value, strict, front, name)
+        elif array.dtype == object and all(isinstance(element, Mapping) for element in array.flat):
+            for k, element in enumerate(array.flat, 1):
+                columns += _of_structure(element, strict, front, f"{name}:{k}")
         elif array.dtype.names:
             fields = {field: np.ravel(array[field]) for field in array.dtype.names}
-            found += _of_variables(fields, strict, front)
+            columns += _of_variables(fields, strict, front)
         else:
-            found += _of_array(front + name, array if strict else np.squeeze(array), strict)
-    return found
+            columns += _of_array(front + name, array if strict else np.squeeze(array), strict)
+    return columns
 
 
 def _of_structure(fields: Mapping[str, Any], strict: bool, front: str, name: str) -> list[Column]:
@@ -278,7 +283,7 @@ def _of_structure(fields: Mapping[str, Any], strict: bool, front: str, name: str
     samples = next((by_name[field] for field in _SAMPLES if field in by_name), None)
     if samples is None or not any(field in by_name for field in _LABELS):
         return _of_variables(fields, strict, f"{front}{name}.")
-    label = next((text for one in labels if (text := one.strip("<> "))), name)
+    label = next(filter(None, (label.strip("<> ") for label in labels)), name)
     return _of_array(f"{front}{label}", np.squeeze(np.asarray(samples)), strict)
 
 

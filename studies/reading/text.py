@@ -41,17 +41,20 @@ def read_text(content: bytes, strict: bool) -> list[tuple[str, str, Array]]:
         raise FileFormatError("it is empty; give rows of numbers")
     data = [k for k in filled if lines[k].lstrip()[0] not in "#%"]
     head = [lines[k] for k in data[:_HEAD]]
-    marks = [one for one in _SEPARATORS if one is None or any(one in line for line in head)]
+    marks = [mark for mark in _SEPARATORS if mark is None or any(mark in line for line in head)]
     begins = dict[str | None, tuple[int, int, int]]()
     for least in (1,) if strict else (2, 1):  # one column where there is nothing wider
-        begins = begins or {one: found for one in marks if (found := _begin(head, one, least))}
+        if not begins:
+            by_mark = {mark: _begin(head, mark, least) for mark in marks}
+            begins = {mark: begin for mark, begin in by_mark.items() if begin}
     if not begins:
         raise FileFormatError(
             f"no rows of numbers in it (its first line: {lines[filled[0]][:60]!r}); give columns "
             "of numbers, with semicolons between numbers with decimal commas"
         )
-    separator = min(begins, key=lambda one: begins[one][:2])
-    above, data = data[: begins[separator][2]], data[begins[separator][2] :]
+    separator = min(begins, key=lambda mark: begins[mark][:2])
+    above = data[: begins[separator][2]]
+    data = data[begins[separator][2] :]
     first_row = _cells(lines[data[0]], separator)
     width = len(first_row)
     before = [lines[k].lstrip(_MARKS) for k in filled if k < data[0]]

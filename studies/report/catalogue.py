@@ -21,18 +21,18 @@ KINDS = ("plants", "problems", "methods")
 def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, list[Row]]:
     """A title, and rows of one of `KINDS` or of an entry by its name; ValueError of no other."""
     known = [*KINDS, *plants, *PROBLEMS, *GRADIENT_LABELS, *PRESETS]
-    spelt = {spelling(one): one for one in known}
+    spelt = {spelling(name): name for name in known}
     if spelling(name) not in spelt:
         raise ValueError(unknown("name", name, known))
     name = spelt[spelling(name)]
     if name == "plants":
-        rows = [(one, (kind.__doc__ or "").partition("\n")[0]) for one, kind in plants.items()]
+        rows = [(plant, (kind.__doc__ or "").partition("\n")[0]) for plant, kind in plants.items()]
         return "plants, with `quietarm list NAME` for the parameters", rows
     if name == "problems":
-        rows = [(one, _problem(problem)) for one, problem in PROBLEMS.items()]
+        rows = [(label, _problem(problem)) for label, problem in PROBLEMS.items()]
         return "problems, each with a reference front", rows
     if name == "methods":
-        rows = [(one, label_of(one)) for one in (*GRADIENT_LABELS, *PRESETS)]
+        rows = [(method, label_of(method)) for method in (*GRADIENT_LABELS, *PRESETS)]
         return "methods, with `quietarm list NAME` for the settings", rows
     if name in plants:
         rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
@@ -45,8 +45,11 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
         return name, [("method", words)]
     preset = PRESETS[name]
     settings = [
-        (one.name, f"{'-' if one.default is None else one.default}: {one.meaning}")
-        for one in preset.settings
+        (
+            setting.name,
+            f"{'-' if setting.default is None else setting.default}: {setting.meaning}",
+        )
+        for setting in preset.settings
     ]
     size = ("population, generations", f"{preset.population}, {preset.generations}")
     return f"{name}: {preset.label}, {preset.source}", [size, *settings]

@@ -22,13 +22,11 @@ from quietarm.studies.report.words import (
 )
 from quietarm.studies.tips import tip_words
 
-_ROWS = 10
-"""Points that the list of gains shows."""
-
 
 def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> str:
     """A front by the gradient, of which so many points were asked for."""
-    levels, record = {level: front.least_energy(level) for level in LEVELS}, front.record
+    levels = {level: front.least_energy(level) for level in LEVELS}
+    record = front.record
     tip_unit = front.task.plant.tip_unit
     return "\n".join([
         *energy_words(front.task),
@@ -54,7 +52,8 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
 
 def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
     """Fronts of searches or tables, and the spread over several seeds."""
-    lines, tip_unit = energy_words(fronts[0].task), fronts[0].task.plant.tip_unit
+    lines = energy_words(fronts[0].task)
+    tip_unit = fronts[0].task.plant.tip_unit
     for front in fronts:
         record = front.record
         seed = "" if record.seed is None else f", seed {record.seed}"
@@ -66,7 +65,8 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
         ]
     lines.append(_residual_line(fronts[0].task))
     if len(fronts) > 1:
-        energies, level = energies_at(fronts), tip_words(SEARCH_RESIDUAL, tip_unit)
+        energies = energies_at(fronts)
+        level = tip_words(SEARCH_RESIDUAL, tip_unit)
         corner = fronts[0].reference
         lines += [
             f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to "
@@ -79,10 +79,12 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
 
 def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
     """What the points of a front gained by the gradient."""
+    # points that the list of gains shows
+    rows = 10
     shares = np.array([gain.share for gain in gains])
     tip_unit = given.task.plant.tip_unit
     dominated = len(given.points) - len(polished.points)
-    shown = np.linspace(0, len(gains) - 1, min(_ROWS, len(gains))).round().astype(int)
+    shown = np.linspace(0, len(gains) - 1, min(rows, len(gains))).round().astype(int)
     return "\n".join([
         f"{polished.record.method}: {counted(len(given.points), 'point')}, "
         f"{polished.record.iterations - given.record.iterations} iterations of the solver in "
@@ -104,12 +106,13 @@ def failure_lines(front: Front, asked_for: int) -> list[str]:
     """How many of the points asked for failed, and why; none where none did."""
     if not front.failures:
         return []
-    reasons, tip_unit = dict[str, list[str]](), front.task.plant.tip_unit
+    reasons = dict[str, list[str]]()
+    tip_unit = front.task.plant.tip_unit
     for failure in front.failures:
         reasons.setdefault(failure.reason, []).append(_asked(failure, tip_unit))
     return [
         f"{len(front.failures)} of {asked_for} points could not be found:",
-        *(f"  {', '.join(asked)}: {reason}" for reason, asked in reasons.items()),
+        *(f"  {', '.join(points)}: {reason}" for reason, points in reasons.items()),
     ]
 
 
@@ -139,9 +142,9 @@ def _point_in_words(front: Front, point: FrontPoint) -> str:
 
 def _check_line(check: CrossCheck) -> str:
     """By how much the other solver's energies differ."""
-    found = [point.difference for point in check.points if isfinite(point.other)]
-    missing = len(check.points) - len(found)
-    shares = found or [float("nan")]
+    shares = [point.difference for point in check.points if isfinite(point.other)]
+    missing = len(check.points) - len(shares)
+    shares = shares or [float("nan")]
     solver = {"sqp": "sequential quadratic programs", "ipopt": "IPOPT"}[check.solver.name]
     return (
         f"checked by {solver}, {counted(len(check.points), 'point')} from the plain cycloid: its "

@@ -41,13 +41,15 @@ _OF_ACCELERATION = {"acceleration": HARD_REMEDIES["acceleration"]}
 """Of a floor, which nobody drives, and of a recorded path, whose smoothness has its own row."""
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
-_DRIVE_RISES, _OF_CYCLOID = 0.005, 0.1
+_DRIVE_RISES = 0.005
+_OF_CYCLOID = 0.1
 """A warning of the jerk: at its peak the acceleration would change by its own peak within this [s],
 the rise time (0.35 over the bandwidth) of a position loop of 70 Hz, and five set points at 1 kHz;
 and within this share of the time that the plain cycloid takes."""
 _FAR = 0.1
 """A limit that a motion does not come to this share of does not act, and silences no warning."""
-_SEEN, _ROUNDING = 1e-6, 1e-12
+_SEEN = 1e-6
+_ROUNDING = 1e-12
 """A joint turns back where it does so by more [rad]; smaller angles are rounding errors."""
 
 
@@ -72,20 +74,19 @@ def _arrival_rows(plan: Plan) -> list[Row]:
     """What a robust plan may leave, said first: it does not arrive at rest."""
     if plan.worst is None or plan.worst.residual < REST:
         return []
-    left = tip_words(plan.worst.residual, plan.task.plant.tip_unit)
-    return [("arrives", f"not at rest: with such errors up to {left} of vibration are left")]
+    residual = _tip(plan.task, plan.worst.residual)
+    return [("arrives", f"not at rest: with such errors up to {residual} of vibration are left")]
 
 
 def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
     """The motion without a profile that takes least energy, beside a plan of the same move."""
-    motion, check = floor.motion, floor.verification
+    motion = floor.motion
+    check = floor.verification
     beside = "none within these limits"
     if plan is not None:
         beside = f"{plan.energy:.6g} J, {plan.energy / floor.energy:.3g} times as much"
-    worst, missing = (
-        max(floor.starts) / min(floor.starts) - 1,
-        int(floor.record.settings["starts"] or 0) - len(floor.starts),
-    )
+    worst = max(floor.starts) / min(floor.starts) - 1
+    missing = int(floor.record.settings["starts"] or 0) - len(floor.starts)
     starts = [
         f"{floor.agreeing()} of {len(floor.starts)} end within 0.5 % of the best",
         *([f"the worst is {worst:.1%} above it"] if worst > 0.005 else []),
@@ -98,7 +99,7 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
         ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
         *_figure_rows(floor.task, motion, _OF_ACCELERATION),
         ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%})"),
-        ("intervals", ", ".join(f"{one.steps}: {one.energy:.6g} J" for one in floor.levels)),
+        ("intervals", ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)),
         ("starts", ", ".join(starts)),
         (f"{_size(plan)} terms", beside),
         ("status", floor.status.text + unsettled),
@@ -131,18 +132,17 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
     for scenario in task.scenarios[1:]:
         errors = dict(zip(task.error_names, scenario))
         residual = candidate.perturbed(errors).residual
-        words = tip_words(residual, task.plant.tip_unit)
+        words = _tip(task, residual)
         rows.append(("residual", f"{words} with {_signed(errors)}"))
     return [*rows, ("verified", "by CVODES alone, along the spline")]
 
 
 def sensitivity_rows(plan: Plan) -> list[Row]:
     """What a parameter that is 1 % larger adds to residual and energy."""
-    tip_unit = plan.task.plant.tip_unit
     return [
         (
             change.parameter,
-            f"{tip_words(change.residual / 100, tip_unit)}, {change.energy / plan.energy:+.3g} %",
+            f"{_tip(plan.task, change.residual / 100)}, {change.energy / plan.energy:+.3g} %",
         )
         for change in plan.sensitivities
     ]
@@ -176,7 +176,7 @@ def _worst_of_plan(plan: Plan, worst: Worst) -> str:
 def _verified_row(plan: Plan) -> Row:
     """How far the two integrators agree; the word `verified` only where that is near enough."""
     check = plan.verification
-    residual = tip_words(abs(check.residual_difference), plan.task.plant.tip_unit)
+    residual = _tip(plan.task, abs(check.residual_difference))
     differ = f"{check.energy_share:.0e} in energy and {residual}"
     if check.agrees:
         return "verified", f"by CVODES, which differs by {differ}"
@@ -190,7 +190,7 @@ def _verified_row(plan: Plan) -> Row:
 def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and which of them the motion breaks."""
     tip_unit = task.plant.tip_unit
-    limits = [f"residual {tip_words(residual_limit, tip_unit)}"] * (residual_limit > 0)
+    limits = [f"residual {_tip(task, residual_limit)}"] if residual_limit > 0 else []
     for limit in task.limits:
         peak = limit.peak_of(motion)
         broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
@@ -205,10 +205,10 @@ def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) 
 
 def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> list[Row]:
     """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
-    residual = tip_words(motion.residual, task.plant.tip_unit)
+    residual = _tip(task, motion.residual)
     if motion.residual < REST:  # nobody sees a difference
         where = "as wanted" if task.final else "at rest"
-        residual = f"{where} (below {tip_words(REST, task.plant.tip_unit)})"
+        residual = f"{where} (below {_tip(task, REST)})"
     known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
@@ -223,6 +223,11 @@ def _peak_name(name: str, task: PointToPoint) -> str:
     return f"peak {'force' if force else name.replace('_', ' ')}"
 
 
+def _tip(task: PointToPoint, displacement: float) -> str:
+    """A displacement of the tip in the unit that is shown."""
+    return tip_words(displacement, task.plant.tip_unit)
+
+
 def _way(size: float, task: PointToPoint) -> str:
     """A way of the joint in its unit."""
     return f"{size:.3g} {joint_unit('rad', task.plant.joint)}"
@@ -230,16 +235,17 @@ def _way(size: float, task: PointToPoint) -> str:
 
 def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
-    peak, tip_unit = motion.peak(name), task.plant.tip_unit
-    unit = quantities_of(task.plant.joint, tip_unit)[name].unit
+    peak = motion.peak(name)
     if name == "deflection":
-        small, words = task.plant.small_deflection, tip_words(peak, tip_unit)
+        small = task.plant.small_deflection
+        words = _tip(task, peak)
         if small is None or max(motion.peak_deflection, motion.residual) <= small:
             return words
         return (
-            f"{words}  (warning: beyond {tip_words(small, tip_unit)}, up to which the plant's "
+            f"{words}  (warning: beyond {_tip(task, small)}, up to which the plant's "
             "deflections count as small; its equations are less exact there)"
         )
+    unit = quantities_of(task.plant.joint, task.plant.tip_unit)[name].unit
     warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
     too_hard = warnings[name](task, motion) if name in remedies else ""
     warning = f"  (warning: {too_hard}; {remedies[name]})" if too_hard else ""

@@ -23,7 +23,7 @@ from rich.progress import (
 
 from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Front
-from quietarm.studies.report.words import print_lines
+from quietarm.studies.report.terminal import print_lines
 from quietarm.studies.tips import tip_scale, tip_words
 
 PLAIN_SECONDS = 2.0
@@ -137,12 +137,14 @@ class SearchDisplay:
     """Called with every generation of one search, and with every search that ends."""
 
     def __init__(self, shown: Progress, lines: Lines) -> None:
-        self._bars, self._lines = shown, lines
+        self._bars = shown
+        self._lines = lines
         self._task = shown.add_task("", visible=False)
 
     def __call__(self, progress: SearchProgress) -> None:
         """Show where the only search is."""
-        done, total = progress.generation, progress.generations
+        done = progress.generation
+        total = progress.generations
         self._bars.update(
             self._task, completed=done, total=total, description=_brief(progress), visible=True
         )
@@ -163,8 +165,9 @@ def _found(front: Front) -> str:
 
 
 def _figures(progress: SearchProgress) -> str:
-    done, total = progress.generation, progress.generations
-    left = progress.seconds * (total - done) / max(done, 1)
+    done = progress.generation
+    total = progress.generations
+    seconds_left = progress.seconds * (total - done) / max(done, 1)
     share = progress.infeasible / max(progress.evaluations, 1)
     residual = tip_words(progress.residual, progress.tip_unit)
     best = f"residual {residual}, energy {progress.energy:.4g} J"
@@ -172,7 +175,7 @@ def _figures(progress: SearchProgress) -> str:
     broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""
     return (
         f"generation {done}/{total}, {best}, hypervolume {progress.hypervolume:.4f}, "
-        f"{_speed(progress):.0f} candidates/s{broken}, {left:.0f} s left"
+        f"{_speed(progress):.0f} candidates/s{broken}, {seconds_left:.0f} s left"
     )
 
 

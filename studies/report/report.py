@@ -125,13 +125,13 @@ def listed(words: Sequence[str]) -> str:
 
 
 def _environment() -> Environment:
-    found = templates()
+    environment = templates()
     filters: dict[str, Any] = {
         "table": table_in_markdown, "turned": turned, "mm": millimetres, "percents": percents,
         "listed": listed, "counted": counted,
     }  # fmt: skip
-    found.filters.update(filters)
-    return found
+    environment.filters.update(filters)
+    return environment
 
 
 def _svg(figure: Figure) -> str:

@@ -11,13 +11,12 @@ from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
 from quietarm.studies.tips import tip_scale, tip_words
 
-_MOST_LINES = 30
-"""Cells along one axis that are listed."""
-
 
 def sweep_rows(store: Store) -> list[tuple[str, str]]:
     """Axes, then how many cells ended how."""
-    grid, status, energy = store.definition.grid, store.read(STATUS), store.read("energy")
+    grid = store.definition.grid
+    status = store.read(STATUS)
+    energy = store.read("energy")
     rows = [("plant", moved(grid.task))]
     rows += [
         (
@@ -26,16 +25,19 @@ def sweep_rows(store: Store) -> list[tuple[str, str]]:
         )
         for axis in grid.axes
     ]
-    known, solved = np.isfinite(energy), f"{np.isfinite(energy).sum()} of {grid.cells}"
+    known = np.isfinite(energy)
+    solved = f"{known.sum()} of {grid.cells}"
     rows.append(("moves", f"{solved} have a plan, in {store.path}"))
     solved_states = (SolveStatus.OPTIMAL.value, SolveStatus.ACCEPTABLE.value)
     counts = [(state, int((status == k).sum())) for k, state in enumerate(STATES)]
-    others = [each for each in counts if each[0] not in solved_states]
-    rows += [(state, f"{count} cells") for state, count in others if count]
+    unsolved = [count for count in counts if count[0] not in solved_states]
+    rows += [(state, f"{count} cells") for state, count in unsolved if count]
     if known.any():
-        excess, jumps = store.read("cold_excess"), int((store.read(JUMP) > 0).sum())
+        excess = store.read("cold_excess")
+        jumps = int((store.read(JUMP) > 0).sum())
         checked = np.isfinite(excess)
-        largest, tip_unit = store.read("residual")[known].max(), grid.task.plant.tip_unit
+        largest = store.read("residual")[known].max()
+        tip_unit = grid.task.plant.tip_unit
         rows += [
             ("energy", f"{energy[known].min():.4g} to {energy[known].max():.4g} J"),
             ("residual", f"{tip_words(largest, tip_unit)} at most {residual_place(grid.task)}, "
@@ -49,19 +51,23 @@ def sweep_rows(store: Store) -> list[tuple[str, str]]:
 
 def cells_along(store: Store) -> str:
     """The trade-off along the only axis, a line a cell; empty where there are more or many."""
+    # cells along one axis that are listed
+    most_lines = 30
     import pandas  # not at the top: it takes long to load
 
-    axis, *others = store.definition.grid.axes
-    if others or len(axis.values) > _MOST_LINES:
+    axis, *more_axes = store.definition.grid.axes
+    if more_axes or len(axis.values) > most_lines:
         return ""
     status, energy, residual = (store.read(name) for name in (STATUS, "energy", "residual"))
     shown, factor = tip_scale(store.definition.grid.task.plant.tip_unit)
-    left = [f"{factor * one:.4g}" if one >= REST else "rest" for one in residual.tolist()]
+    residuals = [
+        f"{factor * value:.4g}" if value >= REST else "rest" for value in residual.tolist()
+    ]
     known = np.isfinite(energy)
     cells = {
         f"{axis.name} [{axis.unit}]": [f"{value:.6g}" for value in axis.values],
-        "energy [J]": np.where(known, [f"{one:.4g}" for one in energy.tolist()], "-"),
-        f"residual [{shown}]": np.where(known, left, "-"),
+        "energy [J]": np.where(known, [f"{value:.4g}" for value in energy.tolist()], "-"),
+        f"residual [{shown}]": np.where(known, residuals, "-"),
         "status": [STATES[k] for k in status.tolist()],
     }
     return "\n" + pandas.DataFrame(cells).to_string(index=False)

@@ -1,28 +1,19 @@
-"""Words on the screen: lines that stay whole, lengths in millimetres, plants, moves and tasks."""
+"""Words for what is shown: lengths in millimetres, plants, moves and tasks."""
 
 from __future__ import annotations
 
 from math import degrees, isfinite
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
 from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import ModalState, PointToPoint
-from quietarm.ocp.checks import printable
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.record import REST
 from quietarm.studies.tips import tip_scale, tip_words
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.spread import Spread
-
-
-def print_lines(console: Console, *lines: str) -> None:
-    """Print lines as they are, however narrow the console."""
-    text = printable("\n".join(lines))
-    console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def counted(number: int, what: str) -> str:
@@ -71,7 +62,8 @@ def window_words(window: float) -> str:
 
 def residual_place(task: PointToPoint) -> str:
     """Where and when a residual is measured: "at the tip within 1 s"."""
-    tips, scenarios = task.plant.tips, len(task.scenarios)
+    tips = task.plant.tips
+    scenarios = len(task.scenarios)
     words = "tip" if tips == 1 else f"worst of {tips} tips"
     words = words if scenarios == 1 else f"{words}, worst of {scenarios} scenarios"
     return f"at the {words} {window_words(task.residual_window)}"
@@ -82,7 +74,8 @@ def plant_words(plant: Plant) -> str:
     changed: list[str] = []
     units = plant.units()
     for entry in plant.parameter_fields():
-        value, unit = plant.parameters[entry.name], units[entry.name]
+        value = plant.parameters[entry.name]
+        unit = units[entry.name]
         if value != entry.default:
             changed.append(f"{entry.name} = {value:.5g}{'' if unit == '-' else f' {unit}'}")
     return f"{plant.label} with {', '.join(changed)}" if changed else plant.label
@@ -117,7 +110,8 @@ def ends_words(task: PointToPoint) -> str:
 def state_words(state: ModalState, tip_unit: str) -> str:
     """What rings, in millimetres, "W 5 mm, W' -300 mm/s", or in rad where the tip has that."""
     shown, factor = tip_scale(tip_unit)
-    W, dW = (" and ".join(f"{factor * one:.3g}" for one in of) for of in (state.W, state.dW))
+    W = " and ".join(f"{factor * amplitude:.3g}" for amplitude in state.W)
+    dW = " and ".join(f"{factor * rate:.3g}" for rate in state.dW)
     return f"W {W} {shown}, W' {dW} {shown}/s"
 
 
@@ -133,4 +127,4 @@ def title_of(task: PointToPoint) -> str:
 
 def limit_words(task: PointToPoint) -> list[str]:
     """The limits of a task, as "acceleration within 40 rad/s^2"."""
-    return [f"{one.label} within {one.bounds}" for one in task.limits]
+    return [f"{limit.label} within {limit.bounds}" for limit in task.limits]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import groupby, product
 from typing import Any
@@ -20,7 +20,6 @@ _SECONDS_OF_CELL = 0.005
 """Of six terms, without ranges of errors."""
 OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
 """Axes over the move, with their units; all others are parameters of the plant."""
-_WHOLE_STEPS = 1e-6
 MOST_VALUES, MOST_CELLS = 100_000, 5_000_000
 """Of an axis and of a grid; so many cells take some 7 hours on a core, and as dataset 1.5 GB."""
 
@@ -45,36 +44,6 @@ class Axis:
                 f"give 1 to {MOST_VALUES}, each once"
             )
         object.__setattr__(self, "values", values)
-
-
-def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
-    """Read values: one, several as ``0.6,0.8,1.2``, or from, to, step as ``10deg:90deg:5deg``."""
-    if ":" in text:
-        ends = text.split(":")
-        if len(ends) != 3:
-            raise ValueError(f"{text!r} is no axis; give from:to:step, as 10deg:90deg:5deg")
-        first, last, step = map(parse, ends)
-        steps = (last - first) / step if step else math.inf
-        if not (steps > 0 and math.isfinite(steps)):
-            raise ValueError(
-                f"{text!r}: steps of {ends[2]} do not lead from {ends[0]} to {ends[1]}; give "
-                "from:to:step, as 10deg:90deg:5deg"
-            )
-        if steps >= MOST_VALUES:
-            raise ValueError(
-                f"{text!r}: steps of {ends[2]} make {steps + 1:.0f} values, and {MOST_VALUES} are "
-                "the most; give wider steps"
-            )
-        if abs(steps - round(steps)) > _WHOLE_STEPS * steps:
-            raise ValueError(
-                f"{text!r}: steps of {ends[2]} from {ends[0]} do not reach {ends[1]}; give a step "
-                "that does"
-            )
-        return tuple(np.linspace(first, last, round(steps) + 1).round(12).tolist())
-    values = tuple(parse(one) for one in text.split(","))
-    if len(set(values)) < len(values):
-        raise ValueError(f"{text!r} has a value twice; give each once")
-    return tuple(sorted(values))
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -46,12 +45,9 @@ class MoveLibrary:
         self.profile = definition.profile
         if self.store.missing():
             raise ValueError(f"{path} has cells that are not computed; give its line again")
-
-    @cached_property
-    def interpolation(self) -> Interpolation:
-        """Between the cells of one branch."""
+        coefficients = self.store.read(COEFFICIENTS)
         axes = [np.array(axis.values) for axis in self.grid.axes]
-        return Interpolation(axes, self.store.read(COEFFICIENTS))
+        self.interpolation = Interpolation(axes, coefficients)
 
     def has(self, place: Array) -> bool:
         """Whether there are coefficients at a place, a value for each axis."""
@@ -130,13 +126,15 @@ class MoveLibrary:
         return assessed
 
 
-def plan_from(path: str | Path, **at: float) -> tuple[Plan, Between, InfeasibleTaskError | None]:
+def plan_from(
+    dataset: str | Path | MoveLibrary, **at: float
+) -> tuple[Plan, Between, InfeasibleTaskError | None]:
     """A move from the dataset of a sweep, without solving anything.
 
     Parameters
     ----------
-    path : str or Path
-        The dataset of `quietarm sweep`.
+    dataset : str, Path or MoveLibrary
+        The dataset of `quietarm sweep`, or what was opened of it.
     **at : float
         A value of every axis by its name [SI units].
 
@@ -151,7 +149,7 @@ def plan_from(path: str | Path, **at: float) -> tuple[Plan, Between, InfeasibleT
     FileFormatError, ValueError
         As of `MoveLibrary` and its `coefficients`.
     """
-    library = MoveLibrary(path)
+    library = dataset if isinstance(dataset, MoveLibrary) else MoveLibrary(dataset)
     plan = library.plan(**at)
     between = library.between()
     exceeded = plan.motion.exceeded(plan.task.limits, OVERRUN)

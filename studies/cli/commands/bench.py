@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 from rich.console import Console
 
+from quietarm.studies.cli.effort import refuse_endless
 from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
@@ -71,15 +72,14 @@ def bench(given: Given) -> None:
     from quietarm.studies.bench.results import Results, imported_runs
     from quietarm.studies.bench.statistics import say_power_of
     from quietarm.studies.reading.saved import load_runs
-    from quietarm.studies.report.words import print_lines
+    from quietarm.studies.report.terminal import print_lines
 
     methods = list(map(spell_method, given.methods))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
-    asked = methods, given.runs, given.evaluations, given.seed, settings
     problems = problems_of(given.problems)
-    jobs, left_out = jobs_of(problems, *asked)
+    jobs, left_out = jobs_of(problems, methods, given.runs, given.evaluations, given.seed, settings)
     candidates = sum(job.budget or 0 for job in jobs)
-    given.refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE)
+    refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     runs, unreadable = load_runs(given.imported)
     imported, not_imported = imports_on(problems, runs, given.imported)
     reported_runs(given.output)  # refuses a folder whose runs.csv is another's
@@ -108,7 +108,8 @@ def bench(given: Given) -> None:
                 finished=finished,
             )
         except LostJobsError as error:
-            fronts, trouble = dict(error.fronts), error
+            fronts = dict(error.fronts)
+            trouble = error
     if fronts or trouble is None:
         _report(Results.of_jobs(fronts, imported), given)
     if trouble is not None:

@@ -17,7 +17,7 @@ from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.types import INPUT, NAMES
 from quietarm.studies.compare.judged_motions import SAMPLES
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import print_lines
+from quietarm.studies.report.terminal import print_lines
 
 if TYPE_CHECKING:
     from quietarm.ocp import Front, Plan
@@ -54,8 +54,8 @@ def compare(given: Given) -> None:
 
     with busy("comparing"):
         answers = open_answers(given.files)
-        plans = {name: one for name, one in answers.items() if isinstance(one, Plan)}
-        fronts = {name: one for name, one in answers.items() if isinstance(one, Front)}
+        plans = {name: answer for name, answer in answers.items() if isinstance(answer, Plan)}
+        fronts = {name: answer for name, answer in answers.items() if isinstance(answer, Front)}
         if plans:
             given.refuse(["reference", "free"], "is for fronts")
             report = _of_plans(given, plans)
@@ -73,7 +73,7 @@ def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
 
     ranges = once(given.errors, "--error ")
     if ranges.pop(MEASURED, None) is not None:
-        measured = merged_ranges(one.task for one in plans.values())
+        measured = merged_ranges(plan.task for plan in plans.values())
         if not measured:
             raise ValueError(
                 "--error measured takes the ranges that the plans are made for, and these have "
@@ -91,10 +91,14 @@ def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
     from quietarm.studies.reproduce.paper import paper_points
 
     reference = None if given.reference is None else load_front(given.reference)
-    found = compare_by_task(fronts, reference, str(given.reference))
-    found = list(map(_with_floor, found)) if given.free else found
-    known = [paper_points(one.task, {run.front.profile.size for run in one.runs}) for one in found]
-    return fronts_report(found, known, without_checksum(map(Path, fronts)))
+    comparisons = compare_by_task(fronts, reference, str(given.reference))
+    if given.free:
+        comparisons = list(map(_with_floor, comparisons))
+    of_paper = [
+        paper_points(comparison.task, {run.front.profile.size for run in comparison.runs})
+        for comparison in comparisons
+    ]
+    return fronts_report(comparisons, of_paper, without_checksum(map(Path, fronts)))
 
 
 def _with_floor(comparison: Comparison) -> Comparison:

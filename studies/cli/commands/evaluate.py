@@ -7,10 +7,10 @@ from pathlib import Path
 import click
 
 from quietarm.models import Robot
-from quietarm.ocp import PointToPoint, evaluate_coefficients
+from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
-from quietarm.studies.cli.commands.plan import finish_plan
+from quietarm.studies.cli.commands.plan import Answer, finish_motion
 from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
@@ -63,30 +63,36 @@ def evaluate(given: Given) -> None:
           --output front.json --output front.png
     """  # noqa: D301  # \b is click's: do not rewrap
     if given.path is not None and not isinstance(given.plant, Robot):
-        return _evaluate_path(given)
+        _evaluate_path(given)
+    elif isinstance(given.coefficients, Path):
+        _evaluate_table(given)
+    else:
+        _evaluate_coefficients(given)
+
+
+def _evaluate_coefficients(given: Given) -> None:
+    """A plan of coefficients, or of an input shaper."""
     task = given.read_task()
-    if isinstance(given.coefficients, Path):
-        given.refuse(["sensitivities"], "is not for a table")
-        return _evaluate_table(given, task)
     given.refuse(["bound", "evaluations"], "is for a table of results")
     if given.profile in SHAPERS:
         given.refuse(["coefficients", "terms"], f"is not for {given.profile}")
-        motions = given.read_profile(task)
+        profile = given.read_profile(task)
     elif given.coefficients is None:
         raise click.UsageError("Missing option '--coefficients'.")
     else:
         given.refuse(["terms"], "follows from the number of --coefficients")
-        motions = families()[given.profile].of_size(len(given.coefficients))
+        profile = families()[given.profile].of_size(len(given.coefficients))
     with busy("integrating"):
-        found = evaluate_coefficients(task, given.coefficients or [], profile=motions)
-    return finish_plan(given, found)
+        plan = evaluate_coefficients(task, given.coefficients or [], profile=profile)
+    finish_motion(Answer(plan), given.output, sensitivities=given.sensitivities)
 
 
 def _evaluate_path(given: Given) -> None:
+    """The figures of a recorded path."""
     from quietarm.studies.reading.path import read_path
 
     given.refuse(["start", "target", "duration"], "is in the file of --path")
-    given.refuse_others({"path", *(one.name for one in TASK)}, "is not for a --path")
+    given.refuse_others({"path", *(param.name for param in TASK)}, "is not for a --path")
     recorded = read_path(given.path, given.read_plant(given.plant).joint)
     task = given.read_task(start=recorded.start, target=recorded.target, duration=recorded.duration)
     with busy("integrating"):
@@ -94,16 +100,19 @@ def _evaluate_path(given: Given) -> None:
     finish([], rows)
 
 
-def _evaluate_table(given: Given, task: PointToPoint) -> None:
+def _evaluate_table(given: Given) -> None:
     """A front of coefficients that another program found, beside what it states of them."""
     from quietarm.studies.reading.importing import import_front
 
+    task = given.read_task()
+    given.refuse(["sensitivities"], "is not for a table")
     if given.profile in SHAPERS:
         raise ValueError(
             f"{given.profile} has no coefficients; give one of {', '.join(families())}"
         )
-    asked = given.pick("terms", "bound", "evaluations")
+    family = families()[given.profile]
+    stated = given.pick("terms", "bound", "evaluations")
     with busy("evaluating"):
-        front, notes = import_front(given.coefficients, task, families()[given.profile], **asked)
+        front, notes = import_front(given.coefficients, task, family, **stated)
     files = answer_files(given.output, lambda: figures.front_figure([front]), front)
     finish(files, search_lines([front], notes))

@@ -11,9 +11,6 @@ from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, command, option
 from quietarm.studies.cli.plants import parse_plant
 
-_USUAL = "single-link"
-"""The plant where none is given."""
-
 
 @command(
     click.Argument(["what"], required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]"),
@@ -46,6 +43,6 @@ def explore(given: Given) -> None:
         explored = open_file(Path(what))
     else:
         of_file = what is None and given.plant_file is not None
-        kind = None if of_file else parse_plant(what or _USUAL)
+        kind = None if of_file else parse_plant(what or "single-link")
         explored = open_plant(given.read_plant(kind))
     serve(explored, click.echo, not given.no_browser)

@@ -77,28 +77,29 @@ def export(given: Given) -> None:
       quietarm export moves.zarr --output moves.c
       quietarm export plan.json zvd.json --output move.gif --speed 25%
     """  # noqa: D301  # \b is click's: do not rewrap
-    plans, output, name = given.plans, given.output, _format(given)
-    known = FORMATS[name]
-    for setting in dict.fromkeys(one for form in FORMATS.values() for one in form.takes):
-        takers = [one for one, form in FORMATS.items() if setting in form.takes]
-        if name not in takers:
-            given.refuse([setting], f"is for {', '.join(takers)}, not for {name}")
-    settings = {one: value for one, value in given.pick(*known.takes).items() if value is not None}
-    if not known.is_film and len(plans) > 1:
+    plans = given.plans
+    output = given.output
+    name = _format(given)
+    settings = _settings(given, name)
+    is_film = FORMATS[name].is_film
+    if not is_film and len(plans) > 1:
         raise ValueError(f"{name} is of one plan, and {len(plans)} are given; give one")
-    written, notes, files = [output], list[str](), list[File]()
+    written = [output]
+    notes = list[str]()
+    files = list[File]()
     if len(plans) == 1 and plans[0].is_dir():
         if name != "c":
             raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
         written = export_moves(plans[0], output)
-    elif known.is_film:
+    elif is_film:
         notes = [_write_film(plans, output, settings)]
     else:
         (plan,) = load_plans(plans).values()
         notes = _notes(plan, name, settings)
         if output == STDOUT:
             content = content_of(plan, name, **settings)
-            files, written = [(STDOUT, lambda path: write_whole(path, content))], []
+            files = [(STDOUT, lambda path: write_whole(path, content))]
+            written = []
         else:
             written = export_plan(plan, output, **settings)
     finish(files, *notes, *(f"wrote {path}" for path in written))
@@ -116,6 +117,16 @@ def _format(given: Given) -> str:
             f"as move{FORMATS[name].endings[0]}"
         )
     return name
+
+
+def _settings(given: Given, name: str) -> dict[str, Any]:
+    """What was typed of the format's settings; those of other formats are refused."""
+    for setting in dict.fromkeys(name for form in FORMATS.values() for name in form.takes):
+        takers = [taker for taker, form in FORMATS.items() if setting in form.takes]
+        if name not in takers:
+            given.refuse([setting], f"is for {', '.join(takers)}, not for {name}")
+    typed = given.pick(*FORMATS[name].takes)
+    return {setting: value for setting, value in typed.items() if value is not None}
 
 
 def _notes(plan: Plan, name: str, settings: dict[str, Any]) -> list[str]:

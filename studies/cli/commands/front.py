@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
@@ -35,8 +34,6 @@ _METHODS = {"epsilon": partial(epsilon_front, at=LEVELS), "weighted": weighted_f
 _SEARCHES = {
     name: f"{name} is a metaheuristic; give quietarm search --method {name}" for name in PRESETS
 }
-_CHECKED = 7
-"""Points that the other solver finds again."""
 
 
 @command(
@@ -71,34 +68,41 @@ def front(given: Given) -> None:
     if given.polish is not None:
         return _polish(given)
     wanted = "points"
-    asked: dict[str, Any] = given.pick("bound", "starts", "seed") | {"solver": given.read_solver()}
     if given.weights:
         if given.method != "weighted":
             raise ValueError(f"--weights is for weighted, not for {given.method}; leave it out")
         given.refuse(["points"], "is for weights that are chosen by the method")
         wanted = "weights"
-    task, total = given.read_task(), len(given.weights) or given.points
+    task = given.read_task()
     profile = given.read_profile(task)
+    solver = given.read_solver()
+    total = len(given.weights) or given.points
     with counting(total, wanted) as report:
-        found = _METHODS[given.method](
-            task, profile=profile, report=report, **given.pick(wanted), **asked
+        solution = _METHODS[given.method](
+            task,
+            profile=profile,
+            report=report,
+            solver=solver,
+            **given.pick(wanted, "bound", "starts", "seed"),
         )
     # the ends come with weights, and epsilon has residuals of its own
-    asked_for = max(total + 2 * bool(given.weights), len(found.points) + len(found.failures))
-    if not found.points:
-        reasons = "; ".join(line.strip() for line in failure_lines(found, asked_for)[1:])
+    with_ends = total + 2 * bool(given.weights)
+    points = max(with_ends, len(solution.points) + len(solution.failures))
+    if not solution.points:
+        reasons = "; ".join(line.strip() for line in failure_lines(solution, points)[1:])
         raise SolverFailedError(f"no point was found: {reasons}")
     checked = None
     if given.check:
-        with counting(_CHECKED, "checked points") as report:
-            checked = cross_check(found, checked_points=_CHECKED, report=report)
-    files = answer_files(given.output, lambda: figures.front_figure([found]), found)
-    return finish(files, gradient_lines(found, asked_for, checked))
+        checked_points = 7
+        with counting(checked_points, "checked points") as report:
+            checked = cross_check(solution, checked_points=checked_points, report=report)
+    files = answer_files(given.output, lambda: figures.front_figure([solution]), solution)
+    return finish(files, gradient_lines(solution, points, checked))
 
 
 def _polish(given: Given) -> None:
     given.refuse_others(
-        {"polish", "output", *(one.name or "" for one in SOLVER)},
+        {"polish", "output", *(param.name or "" for param in SOLVER)},
         "is not for --polish, which keeps the task, profile and bound of its front",
     )
     with busy("checking"):

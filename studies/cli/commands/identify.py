@@ -23,9 +23,6 @@ from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from quietarm.studies.reading.recording import read_recording
 from quietarm.studies.report.machines import machine_notes, machine_rows, prediction_rows
 
-_RINGS = ("tip", "acceleration", "torque")
-"""Columns of which at least one shows how the machine rings."""
-
 
 @command(
     click.Argument(["files"], type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT"),
@@ -64,11 +61,13 @@ def identify(given: Given) -> None:
       quietarm identify --check arm.json new.csv --tip tip_mm
       quietarm plan arm.json --error measured --target 60deg --duration 0.9
     """  # noqa: D301  # \b is click's: do not rewrap
+    # columns of which at least one shows how the machine rings
+    rings = ("tip", "acceleration", "torque")
     columns = {
         quantity: [names] if isinstance(names, str) else list(names or ())
-        for quantity, names in given.pick("time", "angle", *_RINGS).items()
+        for quantity, names in given.pick("time", "angle", *rings).items()
     }
-    if not any(columns[one] for one in _RINGS):
+    if not any(columns[quantity] for quantity in rings):
         raise click.UsageError("give the column of what rings: --tip, --acceleration or --torque")
     kind = given.check or _plant_at_the_end(str(given.files[-1]))
     paths = given.files if given.check else given.files[:-1]
@@ -76,10 +75,10 @@ def identify(given: Given) -> None:
         raise click.UsageError("give a RECORDING before PLANT")
     if given.rate and given.time:
         raise click.UsageError("--rate is for files without a column of the time; leave --time out")
-    known = given.read_plant(kind)
+    plant = given.read_plant(kind)
     scales = once(chain.from_iterable(given.scales), "--scale ")
     short = len({path.name for path in paths}) == len(paths)
-    read = [
+    recordings = [
         read_recording(
             path, columns, given.units or {}, path.name if short else str(path), scales, given.rate
         )
@@ -89,11 +88,16 @@ def identify(given: Given) -> None:
         if given.output or given.parts or given.free:
             raise click.UsageError("--check fits nothing: leave --output, --part and --free out")
         note = "The state is taken from two periods, and the five after them are predicted."
-        return finish([], prediction_rows(known, identification.predict(known, read)), note)
+        predictions = identification.predict(plant, recordings)
+        return finish([], prediction_rows(plant, predictions), note)
     with busy("fitting"):
-        found = identification.identify(read, known, given.free, given.parts)
-    files = answer_files(given.output, lambda: figures.identification_figure(found, read), found)
-    return finish(files, machine_rows(found), *machine_notes(found, not columns["angle"]))
+        machine = identification.identify(recordings, plant, given.free, given.parts)
+    files = answer_files(
+        given.output,
+        lambda: figures.identification_figure(machine, recordings),
+        machine,
+    )
+    return finish(files, machine_rows(machine), *machine_notes(machine, not columns["angle"]))
 
 
 def _plant_at_the_end(name: str) -> Kind:

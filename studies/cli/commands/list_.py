@@ -39,7 +39,8 @@ def list_(given: Given) -> None:
       quietarm list ur5_bar.yaml --start=0,-80deg,97deg,-107deg,-90deg,0 \\
           --target=80deg,-57deg,69deg,-75deg,-69deg,34deg
     """  # noqa: D301  # \b is click's: do not rewrap
-    names, shown = given.names or KINDS, list[str | list[tuple[str, str]]]()
+    names = given.names or KINDS
+    shown = list[str | list[tuple[str, str]]]()
     plants = known_plants() if given.plant_file is None else given.plant_file
     for name in names:
         if name.endswith(OF_ROBOTS):
@@ -48,7 +49,7 @@ def list_(given: Given) -> None:
             shown += [f"{robot.description.name}:", robot_rows(robot, path)]
             continue
         title, rows = catalogue_rows(name, plants)
-        shown += [f"{title}:", [(f"  {one}", words) for one, words in rows]]
+        shown += [f"{title}:", [(f"  {entry}", words) for entry, words in rows]]
     problems = PROBLEMS if "problems" in names else [name for name in names if name in PROBLEMS]
     if given.output and not problems:
         raise ValueError("--output is for the reference fronts of problems; name one")

@@ -2,10 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import Any
 
-from quietarm.ocp import Plan, SolverFailedError, energy_floor, fastest_move, plan_move
+from quietarm.ocp import (
+    Floor,
+    JointProfile,
+    Plan,
+    PointToPoint,
+    Solver,
+    SolverFailedError,
+    energy_floor,
+    fastest_move,
+    plan_move,
+)
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
 from quietarm.studies.cli.files import (
@@ -16,7 +30,7 @@ from quietarm.studies.cli.files import (
     finish,
     output_option,
 )
-from quietarm.studies.cli.given import Given, single_values
+from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
     RESIDUAL_LIMIT,
@@ -32,7 +46,6 @@ from quietarm.studies.cli.options import (
     option,
     profile_options,
 )
-from quietarm.studies.cli.plants import read_parameters
 from quietarm.studies.cli.types import INPUT
 from quietarm.studies.reading.profiles import chooses_terms, families
 from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
@@ -40,10 +53,11 @@ from quietarm.studies.sweep.grid import OF_MOVES
 
 FREE = {"free": False, "free-smooth": True}
 """Profiles without a parametrisation, and whether the acceleration is continuous."""
-_FASTEST, _BEGIN = "fastest", 1.0
-"""In the place of a duration; and the one [s] from which the shortest is looked for."""
-_OF_COEFFICIENTS = ("terms", "bound", "residual_limit", "sensitivities")
-_OF_SOLVES = ("starts", "seed", *(one.name or "" for one in SOLVER))
+_FASTEST = "fastest"
+"""In the place of a duration."""
+_OF_AXES = {"parameters", *OF_MOVES}
+"""Options that may be axes of a sweep."""
+_OF_SOLVES = ("starts", "seed", *(param.name or "" for param in SOLVER))
 
 
 @command(
@@ -78,70 +92,115 @@ def plan(given: Given) -> None:
       quietarm plan single-link --target 30deg --duration 0.8 --profile free
       quietarm plan --from moves.zarr --target 37deg --duration 930ms --output plan.json
     """  # noqa: D301  # \b is click's: do not rewrap
+    _refuse_meaningless(given)
     if given.dataset is not None:
-        return _look_up(given)
+        from quietarm.studies.sweep.library import MoveLibrary, plan_from  # it needs xarray
+
+        with busy("interpolating between the cells"):
+            library = MoveLibrary(given.dataset)
+            place = given.read_place(library.grid.task.plant)
+            solution, between, trouble = plan_from(library, **place)
+        answer = Answer(solution, [between.words], trouble=trouble)
+    else:
+        fastest = given.duration == _FASTEST
+        first_duration = {"duration": 1.0} if fastest else {}  # the search begins from it
+        task = given.read_task(**first_duration)
+        free = given.profile in FREE
+        chosen = free or chooses_terms(given.profile, given.terms)
+        profile = None if chosen else given.read_profile(task)
+        residual_limit = given.read_residual_limit(task.plant)
+        solves: dict[str, Any] = {"solver": given.read_solver(), "seed": given.seed}
+        within: dict[str, Any] = {"residual_limit": residual_limit, "bound": given.bound}
+        if free:
+            smooth = FREE[given.profile]
+            answer = _find_free_motion(task, smooth=smooth, starts=given.starts, **solves)
+        elif fastest:
+            answer = _find_fastest(task, profile, **within, **solves)
+        else:
+            answer = _find_least_energy(task, profile, starts=given.starts, **within, **solves)
+    finish_motion(answer, given.output, sensitivities=given.sensitivities)
+
+
+def _refuse_meaningless(given: Given) -> None:
+    """Refuse options that have no meaning for what is asked."""
+    of_coefficients = ("terms", "bound", "residual_limit")
+    if given.dataset is not None:
+        given.refuse({param.name for param in TASK} - _OF_AXES, "is in the dataset of --from")
+        given.refuse_others({*_OF_AXES, "dataset", "output"}, "is not for --from")
+        return
     fastest = given.duration == _FASTEST
     if given.profile not in families():
-        free = given.profile in FREE
         why = f"is not for {given.profile}, only for profiles with coefficients"
-        given.refuse(_OF_COEFFICIENTS if free else (*_OF_COEFFICIENTS[:-1], *_OF_SOLVES), why)
+        free = given.profile in FREE
+        given.refuse(of_coefficients, why)
+        given.refuse(["sensitivities"] if free else _OF_SOLVES, why)
         if fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
-        if free:
-            return _plan_freely(given)
-    task, notes = given.read_task(**{"duration": _BEGIN} if fastest else {}), list[str]()
-    motions = None if chooses_terms(given.profile, given.terms) else given.read_profile(task)
-    asked: dict[str, Any] = given.pick("bound", "seed") | {
-        "residual_limit": given.read_residual_limit(task.plant),
-        "solver": given.read_solver(),
-    }
+        if free and any(ending_of(path) == ".csv" for path in given.output):
+            raise ValueError("a free motion is written as .json or as a picture, not as .csv")
     if fastest:
         given.refuse(["starts"], "is not for --duration fastest")
-        with busy("looking for the shortest duration"):
-            shortest = fastest_move(task, motions, **asked)
-        found = shortest.plan
-        notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
-    else:
-        with busy("solving"):
-            found = plan_move(task, motions, starts=given.starts, **asked)
-    return finish_plan(given, found, *notes)
 
 
-def finish_plan(given: Given, found: Plan, *notes: str, trouble: Exception | None = None) -> None:
-    """Save a plan; show its figures, and how they change with the parameters of the plant."""
-    title = "\nwhat a parameter that is 1 % larger adds to residual and energy:"
-    more = [title, sensitivity_rows(found)] if given.sensitivities else []
-    files = answer_files(given.output, lambda: figures.motion_figure(found), found)
-    finish(files, plan_rows(found), *more, *notes, trouble=trouble)
+@dataclass(frozen=True)
+class Answer:
+    """One motion that was found, and what is said of it.
+
+    Attributes
+    ----------
+    motion : Plan or Floor
+        What is saved, shown and drawn.
+    notes : sequence of str
+        Lines below its figures.
+    beside : Plan, optional
+        A plan of the same move, beside a floor.
+    trouble : Exception, optional
+        Raised once the files are written.
+    """
+
+    motion: Plan | Floor
+    notes: Sequence[str] = ()
+    beside: Plan | None = None
+    trouble: Exception | None = None
 
 
-def _plan_freely(given: Given) -> None:
+def _find_free_motion(task: PointToPoint, *, solver: Solver, **settings: Any) -> Answer:
     """The best motion without a parametrisation, beside the plan of a polynomial."""
-    task, beside = given.read_task(), None
-    if any(ending_of(path) == ".csv" for path in given.output):
-        raise ValueError("a free motion is written as .json or as a picture, not as .csv")
+    beside = None
     with busy("refining the grid"):
-        solver = given.read_solver()
-        smooth = FREE[given.profile]
-        found = energy_floor(task, smooth=smooth, solver=solver, **given.pick("starts", "seed"))
+        floor = energy_floor(task, solver=solver, **settings)
         with suppress(SolverFailedError):
             beside = plan_move(task, solver=solver)
-    files = answer_files(given.output, lambda: figures.floor_figure(found, beside), found)
-    finish(files, floor_rows(found, beside))
+    return Answer(floor, beside=beside)
 
 
-def _look_up(given: Given) -> None:
-    """A move between the cells of a sweep; one that breaks a limit is written, with status 1."""
-    from quietarm.studies.sweep.library import plan_from
-    from quietarm.studies.sweep.store import Store
+def _find_fastest(task: PointToPoint, profile: JointProfile | None, **settings: Any) -> Answer:
+    """The shortest move, and why a shorter one fails."""
+    with busy("looking for the shortest duration"):
+        shortest = fastest_move(task, profile, **settings)
+    notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
+    return Answer(shortest.plan, notes)
 
-    taken = {"parameters", *OF_MOVES}
-    given.refuse({one.name for one in TASK} - taken, "is in the dataset of --from")
-    given.refuse_others({*taken, "dataset", "output"}, "is not for --from")
-    with busy("interpolating between the cells"):
-        plant = Store(given.dataset).definition.grid.task.plant
-        typed = [name for name in OF_MOVES if given.typed(name)]
-        at = {name: given.read_of_plant(name, plant) for name in typed}
-        at |= read_parameters(plant, given.parameters)
-        found, between, trouble = plan_from(given.dataset, **single_values(at))
-    finish_plan(given, found, between.words, trouble=trouble)
+
+def _find_least_energy(task: PointToPoint, profile: JointProfile | None, **settings: Any) -> Answer:
+    """The move of least energy in its duration."""
+    with busy("solving"):
+        return Answer(plan_move(task, profile, **settings))
+
+
+def finish_motion(answer: Answer, output: Sequence[Path], *, sensitivities: bool = False) -> None:
+    """Save a motion; show its figures, and how they change with the parameters of the plant."""
+    motion = answer.motion
+    shown = list[str | Sequence[tuple[str, str]]]()
+    if isinstance(motion, Floor):
+        shown.append(floor_rows(motion, answer.beside))
+        draw = partial(figures.floor_figure, motion, answer.beside)
+    else:
+        shown.append(plan_rows(motion))
+        draw = partial(figures.motion_figure, motion)
+        if sensitivities:
+            shown.append("\nwhat a parameter that is 1 % larger adds to residual and energy:")
+            shown.append(sensitivity_rows(motion))
+    shown += answer.notes
+    files = answer_files(output, draw, motion)
+    finish(files, *shown, trouble=answer.trouble)

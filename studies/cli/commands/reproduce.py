@@ -8,9 +8,6 @@ from quietarm.studies.cli.options import command, option, progress_console
 from quietarm.studies.cli.quantities import parse_workers
 from quietarm.studies.cli.types import Parsed
 
-_MOST_SEEDS = 1000
-"""Of each search; nine are those of the README."""
-
 
 @command(
     option("--full", is_flag=True, help="Judge every claim as well, with several seeds."),
@@ -37,8 +34,10 @@ def reproduce(given: Given) -> None:
     from quietarm.studies.reproduce.recompute import Effort, number_of_pieces, recompute_paper
     from quietarm.studies.reproduce.report import reproduction_report
 
-    usual = 9 if given.full else 1
-    seeds = usual if given.seeds is None else whole("seeds", given.seeds, 1, _MOST_SEEDS)
+    of_readme = 9
+    seeds = of_readme if given.full else 1
+    if given.seeds is not None:
+        seeds = whole("seeds", given.seeds, 1, 1000)
     workers = given.workers or joblib.cpu_count()
     effort = Effort(full=given.full, seeds=seeds)
     folder = next((path / "fronts" for path in given.output if ending_of(path) == FOLDER), None)

@@ -15,6 +15,7 @@ from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
+from quietarm.studies.cli.effort import refuse_endless
 from quietarm.studies.cli.files import PICTURE, answer_files, ending_of, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
@@ -83,28 +84,32 @@ def search(given: Given) -> None:
 
     task = given.read_task()
     profile = given.read_profile(task)
-    asked = given.pick("bound", "population", "generations") | {
-        "profile": profile, "settings": read_settings(given.settings),
+    options = given.pick("bound", "population", "generations") | {
+        "profile": profile,
+        "settings": read_settings(given.settings),
         "start": None if given.start_front is None else load_front(given.start_front),
-    }  # fmt: skip
+    }
     if given.bound is None and profile.default_bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )
-    workers, first = given.workers, whole("seed", given.seed, 0)
+    workers = given.workers
+    first = whole("seed", given.seed, 0)
     seeds = range(first, first + whole("runs", given.runs, 1, 10_000))
     preset = PRESETS[given.method]
-    size, rounds = given.population or preset.population, given.generations or preset.generations
-    given.refuse_endless(
-        len(seeds) * preset.evaluations(size, rounds), "candidates", SECONDS_OF_CANDIDATE
-    )
-    fronts, trouble = list[Front](), None
+    population = given.population or preset.population
+    generations = given.generations or preset.generations
+    candidates = len(seeds) * preset.evaluations(population, generations)
+    refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
+    fronts = list[Front]()
+    trouble = None
     with search_display(progress_console()) as display:
         if not several and workers == 1:
-            asked["report"] = display
+            options["report"] = display
         try:
-            for front in side_by_side(partial(_search, task, given.method, asked), seeds, workers):
+            run = partial(_search, task, given.method, options)
+            for front in side_by_side(run, seeds, workers):
                 fronts.append(front)
                 if several:
                     _save_at_once(given.output, front)
@@ -120,10 +125,10 @@ def search(given: Given) -> None:
     finish(_files(given.output, fronts, several), search_lines(fronts), trouble=trouble)
 
 
-def _search(task: PointToPoint, method: str, asked: dict[str, Any], seed: int) -> Front:
+def _search(task: PointToPoint, method: str, options: dict[str, Any], seed: int) -> Front:
     from quietarm.metaheuristics import search
 
-    return search(task, algorithm=method, seed=seed, **asked)
+    return search(task, algorithm=method, seed=seed, **options)
 
 
 def _save_at_once(output: Sequence[Path], front: Front) -> None:
@@ -131,8 +136,10 @@ def _save_at_once(output: Sequence[Path], front: Front) -> None:
 
     What cannot be written is tried again at the end, and said there.
     """
-    own = [path for path in output if ending_of(path) != PICTURE]
-    for path, write in _files(own, [front], several=True) if front.points else []:
+    if not front.points:
+        return
+    without_pictures = [path for path in output if ending_of(path) != PICTURE]
+    for path, write in _files(without_pictures, [front], several=True):
         with suppress(ValueError, OSError):
             write(path)
 
@@ -140,9 +147,10 @@ def _save_at_once(output: Sequence[Path], front: Front) -> None:
 def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> list[File]:
     """Every front as JSON and CSV, of several seeds with the seed in the name; one picture."""
     pictures = [path for path in output if ending_of(path) == PICTURE]
-    others = [path for path in output if path not in pictures]
-    draw, found = partial(figures.front_figure, fronts), list[File]()
+    tables = [path for path in output if path not in pictures]
+    draw = partial(figures.front_figure, fronts)
+    files = list[File]()
     for front in fronts:
         seed = f"-seed{front.record.seed}" if several else ""
-        found += answer_files([path.with_stem(path.stem + seed) for path in others], draw, front)
-    return [*found, *answer_files(pictures, draw)]
+        files += answer_files([path.with_stem(path.stem + seed) for path in tables], draw, front)
+    return [*files, *answer_files(pictures, draw)]

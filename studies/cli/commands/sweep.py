@@ -35,8 +35,6 @@ from quietarm.studies.cli.types import SHARE
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_MANY = 1_000_000
-
 
 @command(
     *TASK, WAYPOINTS, *profile_options(), BOUND, RESIDUAL_LIMIT, *SOLVER,
@@ -76,17 +74,18 @@ def sweep(given: Given) -> None:
     datasets = [path for path in given.output if ending_of(path) == DATASET]
     if len(datasets) != 1:
         raise click.UsageError("give one dataset by --output, a folder as moves.zarr")
-    if grid.cells > _MANY and not given.yes:
+    if grid.cells > 1_000_000 and not given.yes:
         raise ValueError(
             f"the grid has {grid.cells} cells, some {grid.hours:.0f} hours on a core; give wider "
             "steps, or --yes"
         )
-    motions = given.read_profile(grid.task)
+    profile = given.read_profile(grid.task)
     residual_limit = given.read_residual_limit(grid.task.plant)
     settings = PlanSettings.of(residual_limit, given.bound, given.read_solver())
-    definition = Definition(grid, motions, settings, given.front or 0, given.margin)
+    definition = Definition(grid, profile, settings, given.front or 0, given.margin)
     store = Store.of(datasets[0], definition)
-    missing, trouble = len(store.missing(given.part)), None
+    missing = len(store.missing(given.part))
+    trouble = None
     if not missing:
         store.check()
     try:
