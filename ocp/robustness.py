@@ -86,7 +86,7 @@ class Worst:
 
 def worst_of(candidate: Candidate) -> Worst | None:
     """The worst case of a motion along a profile; None where its task is certain."""
-    return peaks_between(candidate)[0] if candidate.task.ranges else None
+    return next(iter(peaks_between(candidate)), None)
 
 
 def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
@@ -99,9 +99,14 @@ def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
     return _peaks(residuals, candidate, ranges, _ALONG_BY_CVODES[len(ranges)])[0]
 
 
-def peaks_between(candidate: Candidate, most: int = 1) -> list[Worst]:
-    """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first."""
+def peaks_between(candidate: Candidate, most: int = 4) -> list[Worst]:
+    """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first.
+
+    A task that is certain has none.
+    """
     ranges = candidate.task.ranges
+    if not ranges:
+        return []
 
     def residuals(errors: Array) -> Array:
         return _along_errors(candidate, ranges, errors).residual

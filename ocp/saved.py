@@ -6,8 +6,8 @@ import dataclasses
 import hashlib
 import json
 from codecs import BOM_UTF8
-from collections.abc import Collection, Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from enum import Enum
 from html import escape
 from pathlib import Path
@@ -24,7 +24,6 @@ from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.term_profile import import_profiles
 from quietarm.ocp.record import Record
-from quietarm.ocp.simulation.objective import Motion
 
 
 def to_html(rows: Iterable[Iterable[str]], head: Iterable[str] = ()) -> str:
@@ -212,23 +211,25 @@ def stated_part(value: Any, document: Any) -> Any:
     return value
 
 
-def content_of(
-    path: str | Path, document: Any, name: str, version: int, earlier: Collection[int] = ()
-) -> dict[str, Any]:
-    """What a document holds beside its format and version, which are checked."""
+def read_content(
+    path: str | Path, kind: str, version: int, earlier: Collection[int] = ()
+) -> tuple[dict[str, Any], int]:
+    """What a file holds beside format and checksum, and its version; both are checked."""
+    document = read_document(path, kind)
     content = dict(document) if isinstance(document, dict) else {}
     content.pop(CHECKSUM, None)
-    its_name, its_version = content.pop("format", None), content.pop("version", None)
-    if its_name != f"quietarm-{name}":
+    stated_format = content.pop("format", None)
+    stated_version = content.pop("version", None)
+    if stated_format != f"quietarm-{kind}":
         raise FileFormatError(
-            f"{path} is not a {name}: its format is {its_name!r}; give a {name} file"
+            f"{path} is not a {kind}: its format is {stated_format!r}; give a {kind} file"
         )
-    if its_version not in (version, *earlier):
+    if stated_version not in (version, *earlier):
         raise FileFormatError(
-            f"{path} has version {its_version!r} of the {name} format and this quietarm reads "
-            f"{version}; find the {name} again, or install the quietarm that wrote it"
+            f"{path} has version {stated_version!r} of the {kind} format and this quietarm reads "
+            f"{version}; find the {kind} again, or install the quietarm that wrote it"
         )
-    return content
+    return content, stated_version
 
 
 def _no_json_number(path: str | Path) -> str:
@@ -287,6 +288,19 @@ def _indented(document: Any, margin: str = "\n") -> str:
     return json.dumps(document, allow_nan=False)
 
 
+@contextmanager
+def refusals(path: str | Path, kind: str) -> Iterator[None]:
+    """What is wrong with the entries of a file, as a FileFormatError that names it."""
+    try:
+        yield
+    except (
+        ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError,
+    ) as error:  # fmt: skip
+        # what is wrong and what to do about it are parted by a semicolon
+        remedy = "" if ";" in str(error) else f"; write the {kind} again"
+        raise FileFormatError(f"{path} is not a valid {kind}: {error}{remedy}") from None
+
+
 class Saved:
     """An answer that has a file of its attributes: JSON, versioned, never executed."""
 
@@ -302,7 +316,11 @@ class Saved:
         write_whole(path, _indented(self._document()) + "\n")
 
     def _document(self) -> dict[str, Any]:
-        return {"format": f"quietarm-{self.kind}", "version": self.version, **plain(self)}
+        return {"format": f"quietarm-{self.kind}", "version": self.version, **self._content()}
+
+    def _content(self) -> dict[str, Any]:
+        """What its file holds beside format and version."""
+        return plain(self)
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -313,17 +331,15 @@ class Saved:
         FileFormatError
             When the file holds something else, is not whole, or of another version.
         """
-        content = content_of(
-            path, read_document(path, cls.kind), cls.kind, cls.version, cls.earlier
-        )
-        try:
-            return typed(content, cls)
-        except (
-            ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError,
-        ) as error:  # fmt: skip
-            # what is wrong and what to do about it are parted by a semicolon
-            remedy = "" if ";" in str(error) else f"; write the {cls.kind} again"
-            raise FileFormatError(f"{path} is not a valid {cls.kind}: {error}{remedy}") from None
+        content, version = read_content(path, cls.kind, cls.version, cls.earlier)
+        with refusals(path, cls.kind):
+            return typed(cls._entries_of(content, version), cls)
+
+    @classmethod
+    def _entries_of(cls, content: Mapping[str, Any], version: int) -> Mapping[str, Any]:
+        """The entries of an answer among the content of its file, as they are today."""
+        del version
+        return content
 
 
 class Answer(Saved):
@@ -337,21 +353,5 @@ class Answer(Saved):
 
     def restated(self, **changes: Any) -> Self:
         """The same answer with other entries of its record."""
-        own: Any = self
-        return dataclasses.replace(own, record=dataclasses.replace(self.record, **changes))
-
-
-class MotionAnswer(Answer):
-    """An answer that is one motion, another entry of its dataclass."""
-
-    motion: Motion
-
-    @property
-    def energy(self) -> float:
-        """F2, the driving energy [J], by the independent integrator."""
-        return self.motion.energy
-
-    @property
-    def residual(self) -> float:
-        """F1, the largest absolute tip displacement after arrival [m], by the same."""
-        return self.motion.residual
+        answer: Any = self
+        return dataclasses.replace(answer, record=dataclasses.replace(self.record, **changes))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from operator import attrgetter
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, Positive, positive, takes, whole
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
+from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.best_of_starts import SAME, Sought, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.certify import excess_error, tighten
 from quietarm.ocp.planning.plan_move import plan_move
@@ -26,9 +27,7 @@ from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.record import Record, Verification, number_of_starts
-from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
@@ -69,27 +68,27 @@ class Floor(MotionAnswer):
     ----------
     free : FreeMotion
         How the joint moves.
-    motion : Motion
-        Residual, energy and diagnostics, by the independent integrator.
     levels : tuple of Level
         The grids, coarse to fine. The motion is that of the last, or of a coarser one if that has a
         lower energy.
     starts : tuple of float
         Energy [J] at which each solved start ended, all on the second grid.
+    solver_energy : float
+        Energy [J] that the solver gave the motion, by which `verification` compares.
     tolerance : float
         Share of the energy by which the last two grids were to differ at most.
     """
 
     kind: ClassVar[str] = "floor"
-    version: ClassVar[int] = 3
+    version: ClassVar[int] = 4
+    earlier: ClassVar[tuple[int, ...]] = (3,)
 
     task: PointToPoint
     free: FreeMotion
-    motion: Motion
     levels: tuple[Level, ...]
     starts: tuple[float, ...]
     status: SolveStatus
-    verification: Verification
+    solver_energy: float
     tolerance: Positive
     record: Record
 
@@ -99,6 +98,15 @@ class Floor(MotionAnswer):
             raise ValueError(f"its times end at {end:g} s, not at the duration {duration:g} s")
         if len(self.levels) < 2 or not self.starts:
             raise ValueError("it has fewer than two levels, or no start")
+
+    @classmethod
+    def _decided_before(cls, verification: Verification) -> dict[str, Any]:
+        return {"solver_energy": verification.fixed_step_energy}
+
+    @cached_property
+    def verification(self) -> Verification:
+        """Distance of the solver's figures, on its intervals, from those by CVODES."""
+        return Verification.between(self.free.steps, self.solver_energy, 0.0, self.motion)
 
     @property
     def smooth(self) -> bool:
@@ -207,17 +215,17 @@ def energy_floor(
     _refine(program, levels, tolerance)
     best, motion = _certify_least(program, levels)
     method = f"ipopt, free {'jerk' if smooth else 'acceleration'}"
-    return Floor(
+    floor = Floor(
         task=task,
         free=best.free,
-        motion=motion,
         levels=tuple(Level(found.free.steps, found.energy) for found in levels),
         starts=tuple(found.energy for found in improved),
         status=best.status,
-        verification=Verification.between(best.free.steps, best.energy, 0.0, motion),
+        solver_energy=best.energy,
         tolerance=tolerance,
         record=_record(method, starts, seed, solver, time.perf_counter() - began),
     )
+    return floor.with_candidate(motion)
 
 
 def _record(method: str, starts: int, seed: int, solver: Solver, seconds: float) -> Record:
@@ -310,7 +318,7 @@ def _on_finer_grid(program: FloorProgram, found: FreeSolution) -> FreeSolution:
 
 def _certify_least(
     program: FloorProgram, levels: list[FreeSolution]
-) -> tuple[FreeSolution, Motion]:
+) -> tuple[FreeSolution, Candidate]:
     """The last grid's motion, or that of a coarser grid where it is verified to need less."""
     least = _certify(program, levels[-1])
     for found in levels[:-1]:
@@ -320,7 +328,7 @@ def _certify_least(
     return least
 
 
-def _certify(program: FloorProgram, found: FreeSolution) -> tuple[FreeSolution, Motion]:
+def _certify(program: FloorProgram, found: FreeSolution) -> tuple[FreeSolution, Candidate]:
     """Compare with CVODES; tighten limits that are exceeded between the solver's nodes."""
     task, limits = program.task.certain, program.task.limits
     motion, tightened = Candidate.of_free_motion(task, found.free), limits
@@ -335,4 +343,4 @@ def _certify(program: FloorProgram, found: FreeSolution) -> tuple[FreeSolution, 
     remedy = "the grid is too coarse for this motion; give a smaller energy tolerance"
     if error := excess_error(motion, limits, remedy):
         raise error
-    return found, motion.motion
+    return found, motion

@@ -9,25 +9,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import NotNegative, positive, takes
+from quietarm.ocp.checks import CountFromOne, NotNegative, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.limits import Limit
+from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import REST, Record, Setting, Verification
-from quietarm.ocp.robustness import Sensitivity, Worst, sensitivities, worst_of
-from quietarm.ocp.saved import MotionAnswer, to_html
+from quietarm.ocp.robustness import Sensitivity, Worst, peaks_between, sensitivities
+from quietarm.ocp.saved import to_html
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.problem import STILL
 from quietarm.ocp.task import PointToPoint
@@ -41,7 +41,10 @@ _LOOKS = 2001
 
 @dataclass(frozen=True)
 class Plan(MotionAnswer):
-    """One motion of one task: its coefficients and what it costs.
+    """One motion of one task: its coefficients and how they were found.
+
+    What it costs and leaves is computed by CVODES when it is first asked for: `energy`, `residual`,
+    all of its `motion`, the `worst` case, and the `verification` by fixed steps.
 
     Attributes
     ----------
@@ -51,19 +54,14 @@ class Plan(MotionAnswer):
         How the joint moves.
     coefficients : tuple of float
         The profile's coefficients, a_1 to a_N of eq (6).
-    motion : Motion
-        Residual, energy and diagnostics, by the independent integrator.
     status : SolveStatus
         How the solve ended.
-    verification : Verification
-        Distance between the two integrators.
     record : Record
         Method, settings, versions, time.
+    steps : int
+        Fixed steps that the solver took, by which `verification` compares.
     residual_limit : float or None
         Largest residual that was asked for [m]; None where none was.
-    worst : Worst or None
-        For an uncertain task the worst case: the errors within its ranges with the largest
-        residual, also between the scenarios; else None.
     shadow_prices : mapping of str to float
         Decrease of the least energy per unit of a widened limit [J by the limit's unit]: sums of
         multipliers, by the limit's name. Of the residual also if rest on arrival was required;
@@ -72,23 +70,58 @@ class Plan(MotionAnswer):
 
     example: ClassVar[str] = "a plan, as Plan.load('plan.json')"
     kind: ClassVar[str] = "plan"
-    version: ClassVar[int] = 4
+    version: ClassVar[int] = 5
+    earlier: ClassVar[tuple[int, ...]] = (4,)
 
     task: PointToPoint
     profile: JointProfile
     coefficients: tuple[float, ...]
-    motion: Motion
     status: SolveStatus
-    verification: Verification
     record: Record
+    steps: CountFromOne
     residual_limit: NotNegative | None = None
-    worst: Worst | None = None
     shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
         object.__setattr__(self, "shadow_prices", prices)
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
+
+    @classmethod
+    def _decided_before(cls, verification: Verification) -> dict[str, Any]:
+        return {"steps": verification.steps}
+
+    @classmethod
+    def of_candidate(cls, candidate: Candidate, **entries: Any) -> Plan:
+        """The plan of a motion along a profile, which is not evaluated again; other entries."""
+        if candidate.profile is None:
+            raise ValueError("a free motion has no profile; give a motion along one")
+        plan = cls(
+            task=candidate.task,
+            profile=candidate.profile,
+            coefficients=candidate.coefficients,
+            **entries,
+        )
+        return plan.with_candidate(candidate)
+
+    @cached_property
+    def candidate(self) -> Candidate:
+        """The motion, evaluated by CVODES."""
+        return Candidate.of_profile(self.task, self.profile, self.coefficients)
+
+    @cached_property
+    def peaks(self) -> tuple[Worst, ...]:
+        """Peaks of the residual within the ranges of an uncertain task; the worst first."""
+        return tuple(peaks_between(self.candidate))
+
+    @property
+    def worst(self) -> Worst | None:
+        """The worst case of an uncertain task; None if the task is certain.
+
+        These are the errors within its ranges with the largest residual, also between the
+        scenarios.
+        """
+        return self.peaks[0] if self.peaks else None
 
     @property
     def excess(self) -> float | None:
@@ -100,15 +133,18 @@ class Plan(MotionAnswer):
             return None
         return self.worst.residual / self.residual_limit - 1
 
+    @cached_property
+    def verification(self) -> Verification:
+        """Distance of its figures by fixed steps from those by CVODES."""
+        evaluator = self.candidate.by_steps(self.steps, quantities=())
+        evaluation = evaluator([self.coefficients])
+        energy = float(evaluation.energy[0, 0])
+        residual = float(evaluation.residual.max())
+        return Verification.between(self.steps, energy, residual, self.motion)
+
     def on(self, task: PointToPoint) -> Plan:
         """The same motion for an uncertain task with the same nominal plant."""
-        candidate = Candidate.of_profile(task, self.profile, self.coefficients)
-        return replace(self, task=task, motion=candidate.motion, worst=worst_of(candidate))
-
-    @cached_property
-    def candidate(self) -> Candidate:
-        """The motion, evaluated by CVODES."""
-        return Candidate.of_profile(self.task, self.profile, self.coefficients)
+        return replace(self, task=task)
 
     @property
     def path(self) -> JointPath:
@@ -232,21 +268,18 @@ def evaluate_coefficients(
     ValueError, SolverFailedError
         When coefficients or duration do not fit the profile; when CVODES fails.
     """
-    began, settings = time.perf_counter(), {} if settings is None else settings
+    began = time.perf_counter()
     if profile is None:
         profile = CycloidPolynomial.of_size(np.size(coefficients))
     candidate = Candidate.of_profile(task, profile, coefficients)
-    motion = candidate.motion
-    return Plan(
-        task=task,
-        profile=profile,
-        coefficients=candidate.coefficients,
-        motion=motion,
+    plan = Plan.of_candidate(
+        candidate,
         status=SolveStatus.NOT_OPTIMISED,
-        verification=_verify(candidate, motion),
-        record=Record(method, settings, seconds=time.perf_counter() - began),
-        worst=worst_of(candidate),
+        record=Record(method, {} if settings is None else settings),
+        steps=default_steps(task),
     )
+    _ = plan.motion, plan.worst  # a motion that fails does so here
+    return plan.restated(seconds=time.perf_counter() - began)
 
 
 def only_motion(
@@ -268,15 +301,7 @@ def only_motion(
             f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
             "widen what is broken, or give a longer duration or another profile"
         )
-    return replace(plan, residual_limit=residual_limit)
-
-
-def _verify(candidate: Candidate, motion: Motion) -> Verification:
-    """Distance of its figures by CVODES from those by fixed steps."""
-    steps = default_steps(candidate.task)
-    evaluation = candidate.by_steps(steps, quantities=())([candidate.coefficients])
-    energy = float(evaluation.energy[0, 0])
-    return Verification.between(steps, energy, float(evaluation.residual.max()), motion)
+    return plan.with_entries(residual_limit=residual_limit)
 
 
 def ticks_of_move(duration: float, sample_rate: float) -> int:

@@ -22,16 +22,16 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import REST, Verification
-from quietarm.ocp.robustness import Worst, peaks_between
+from quietarm.ocp.record import REST
+from quietarm.ocp.robustness import Worst
 from quietarm.ocp.solvers.problem import Problem, Transcription
 from quietarm.ocp.task import PointToPoint
 
 EXCESS = 0.05
 """Share of the limit by which the residual between scenarios may exceed it before more are added;
 and the room above the least worst case, where no lower limit can be reached."""
-_ROUNDS, _ADDED, _KEPT = 6, 4, 4
-"""Most rounds of added scenarios; most that one adds; most motions to go on from."""
+_ROUNDS, _KEPT = 6, 4
+"""Most rounds that add a plan's `peaks` as scenarios; most motions to go on from."""
 _SAME = 1e-6
 """Errors that differ by less than this share of their range are one scenario."""
 _TIGHTENINGS = 4
@@ -98,7 +98,7 @@ def _adapt_limit(
     if nominal is not None and plan.worst.residual > reached:
         plan = nominal
     assert plan.worst is not None
-    return replace(plan, residual_limit=plan.worst.residual)
+    return plan.with_entries(residual_limit=plan.worst.residual)
 
 
 def _least_residual(
@@ -130,7 +130,6 @@ def _hold(
     tightened = limit
     rounds = tightenings = 0
     while peaks:
-        plan = replace(plan, worst=peaks[0])
         excess = peaks[0].residual / limit - 1
         more = _new_scenarios(task, [peak for peak in peaks if peak.residual > limit])
         can_add = bool(more) and rounds < _ROUNDS
@@ -150,7 +149,7 @@ def _hold(
             tightenings += 1
             tightened /= (1 + excess) * (1 + OVERRUN)
             next_limit = tightened
-            next_setup = replace(setup, steps=plan.verification.steps)
+            next_setup = replace(setup, steps=plan.steps)
         else:
             break
         try:
@@ -161,7 +160,7 @@ def _hold(
             if not tightenings:
                 raise
             tightenings = _TIGHTENINGS  # a tighter limit leads nowhere: more scenarios may
-    return replace(plan, residual_limit=limit)
+    return plan.with_entries(residual_limit=limit)
 
 
 def _solve_and_look_between(
@@ -175,9 +174,7 @@ def _solve_and_look_between(
 ) -> tuple[Plan, list[Array], list[Worst]]:
     """As `plan_from_starts`, and the peaks of the residual between the scenarios, if it has any."""
     plan, others = plan_from_starts(task, profile, setup, limit, starts, quick=quick)
-    if task.uncertainty is None:
-        return plan, others, []
-    return plan, others, peaks_between(plan.candidate, _ADDED)
+    return plan, others, list(plan.peaks)
 
 
 def plan_from_starts(
@@ -201,17 +198,11 @@ def plan_from_starts(
     certified = certify_one(problem, best, setup.solver)
     assert isinstance(certified.checked, Candidate)  # one alone is judged by CVODES
     solution = certified.solution
-    motion = certified.checked.motion
-    plan = Plan(
-        task=task,
-        profile=profile,
-        coefficients=profile.checked(solution.coefficients),
-        motion=motion,
+    plan = Plan.of_candidate(
+        certified.checked,
         status=solution.status,
-        verification=Verification.between(
-            certified.steps, solution.energy, solution.residual, motion
-        ),
         record=setup.record(setup.solver.name, solution.iterations, time.perf_counter() - began),
+        steps=certified.steps,
         residual_limit=residual_limit,
         shadow_prices=solution.shadow_prices,
     )
