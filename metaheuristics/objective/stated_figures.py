@@ -119,13 +119,18 @@ def check_plan(plan: Plan, path: Path) -> None:
         raise SolverFailedError(f"{path}: {error}") from None
     units = _units_of(plan)
     for name, states in stated.figures.items():
-        gives = figures.get(name, np.inf)
-        if states != gives and not agrees(states, gives, _least_difference(name, plan.motion)):
-            unit = units.get(name, "")
-            raise ValueError(
-                f"{path} states {name.replace('_', ' ')} {states:.4g} {unit}, but its coefficients "
-                f"give {gives:.4g} {unit}; find the plan again"
-            )
+        gives = figures.get(name)
+        if gives is not None and np.isfinite(gives):
+            if agrees(states, gives, _least_difference(name, plan.motion)):
+                continue
+        elif states == gives:
+            continue
+        unit = units.get(name, "")
+        words = "none" if gives is None else f"{gives:.4g} {unit}"
+        raise ValueError(
+            f"{path} states {name.replace('_', ' ')} {states:.4g} {unit}, but its coefficients "
+            f"give {words}; find the plan again"
+        )
 
 
 def _units_of(plan: Plan) -> dict[str, str]:
