@@ -32,11 +32,8 @@ from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.problem import STILL
 from quietarm.ocp.task import PointToPoint
 
-_LEAST_TICKS, _MOST_SAMPLES = 1e-4, 500_000
-_SAMPLES = 1500
-"""Of the trajectory of a plan."""
-_LOOKS = 2001
-"""Times of the move at which the joint may be found to turn back."""
+_MOST_ROWS = 500_000
+"""Of a table to drive a joint with."""
 
 
 @dataclass(frozen=True)
@@ -159,15 +156,17 @@ class Plan(MotionAnswer):
     @property
     def turns_back(self) -> float:
         """How far the joint moves backwards [rad], on either side of the target."""
-        times = np.linspace(0.0, self.task.duration, _LOOKS)
-        gone = np.sign(self.task.span) * self.path(times)
-        return float((np.maximum.accumulate(gone) - gone).max())
+        times = np.linspace(0.0, self.task.duration, 2001)
+        forward = np.sign(self.task.span) * self.path(times)
+        return float((np.maximum.accumulate(forward) - forward).max())
 
     @cached_property
     def trajectory(self) -> Trajectory:
         """The move and the residual window after it, by CVODES; `sampled` gives any times."""
-        arrival, window = self.task.duration, self.task.residual_window
-        return self.sampled(np.union1d(np.linspace(0.0, arrival + window, _SAMPLES), [arrival]))
+        arrival = self.task.duration
+        end = arrival + self.task.residual_window
+        times = np.linspace(0.0, end, 1500)
+        return self.sampled(np.union1d(times, [arrival]))
 
     def sampled(self, times: ArrayLike) -> Trajectory:
         """The motion at given times by CVODES; see `Candidate.sample`."""
@@ -175,9 +174,11 @@ class Plan(MotionAnswer):
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        task, motion = self.task, self.motion
-        left = f"{motion.residual:.3g} {task.plant.tip_unit}"
-        residual = left if motion.residual > REST else "none"
+        task = self.task
+        motion = self.motion
+        residual = "none"
+        if motion.residual > REST:
+            residual = f"{motion.residual:.3g} {task.plant.tip_unit}"
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
         rows = {
             "plant": task.plant.name,
@@ -198,7 +199,8 @@ class Plan(MotionAnswer):
 
     def _robust_rows(self) -> dict[str, str]:
         """What a notebook shows of parameter errors: their ranges, and the worst case."""
-        rows, unit = dict[str, str](), self.task.plant.tip_unit
+        rows = dict[str, str]()
+        unit = self.task.plant.tip_unit
         if ranges := self.task.ranges:
             words = (f"{name} +-{100 * size:.3g} %" for name, size in ranges.items())
             rows["parameter errors"] = ", ".join(words)
@@ -222,11 +224,12 @@ class Plan(MotionAnswer):
         tips = sampled.tips.shape[1]
         numbers = [""] if tips == 1 else [f"_{i + 1}" for i in range(tips)]
         tip_names = [f"tip{number}_{self.task.plant.tip_unit}" for number in numbers]
-        way, force = "angle_rad", "torque_Nm"
-        if self.task.plant.joint != ROTARY:
-            way, force = "position_m", "force_N"
-        unit = way.rpartition("_")[2]
-        of_joint = [way, f"speed_{unit}_s", f"acceleration_{unit}_s2"]
+        if self.task.plant.joint == ROTARY:
+            of_joint = ["angle_rad", "speed_rad_s", "acceleration_rad_s2"]
+            force = "torque_Nm"
+        else:
+            of_joint = ["position_m", "speed_m_s", "acceleration_m_s2"]
+            force = "force_N"
         names = self.task.plant.joint_names
         joints = [""] if len(names) == 1 else [f"{name}_" for name in names]
         header = ["time_s", *(f"{joint}{column}" for joint in joints for column in of_joint)]
@@ -291,11 +294,11 @@ def only_motion(
     if residual_limit is not None:
         residual = Limit.of_residual(max(residual_limit, STILL), task.plant.tip_unit)
         limits = {residual.name: residual} | limits
-    broken = [
-        f"its {limits[name].label} reaches "
-        f"{limits[name].describe(limits[name].peak_of(plan.motion))}, above {limits[name].bounds}"
-        for name in plan.motion.exceeded(limits.values(), OVERRUN)
-    ]
+    broken = list[str]()
+    for name in plan.motion.exceeded(limits.values(), OVERRUN):
+        limit = limits[name]
+        peak = limit.describe(limit.peak_of(plan.motion))
+        broken.append(f"its {limit.label} reaches {peak}, above {limit.bounds}")
     if broken:
         raise InfeasibleTaskError(
             f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
@@ -307,13 +310,13 @@ def only_motion(
 def ticks_of_move(duration: float, sample_rate: float) -> int:
     """Ticks from the start to the first at or after arrival."""
     ticks = duration * positive("sample rate", sample_rate, "Hz")
-    if ticks < _LEAST_TICKS:
+    if ticks < 1e-4:
         raise ValueError(
             f"sample rate is {sample_rate:g} Hz, a tick long after the arrival; give a higher rate"
         )
-    if ticks > _MOST_SAMPLES:
+    if ticks > _MOST_ROWS:
         raise ValueError(
             f"sample rate {sample_rate:g} Hz asks for {ticks:.0f} rows, of at most "
-            f"{_MOST_SAMPLES}; give at most {_MOST_SAMPLES / duration:.6g} Hz"
+            f"{_MOST_ROWS}; give at most {_MOST_ROWS / duration:.6g} Hz"
         )
     return max(1, math.ceil(ticks - 1e-9))

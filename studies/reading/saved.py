@@ -61,7 +61,8 @@ def load_runs(paths: Sequence[Path]) -> tuple[dict[Path, Front], list[str]]:
     for file in files:
         if files.count(file) > 1:
             raise ValueError(f"the run {file} is given twice; give it once")
-    runs, left_out = dict[Path, Front](), list[str]()
+    runs = dict[Path, Front]()
+    left_out = list[str]()
     for file in files:
         try:
             runs[file] = Front.load(file)
