@@ -88,7 +88,7 @@ def measure(case: Case) -> Timing:
         )
     except QuietarmError:
         return Timing(first - again, again, solution.iterations, np.nan, "failed", np.nan)
-    used = str(answer.verification.steps)
+    used = str(answer.steps)
     return Timing(first - again, again, solution.iterations, plan, used, answer.energy)
 
 

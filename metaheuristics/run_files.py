@@ -64,7 +64,7 @@ def _checksum(front: Front, job: Job, document: Any) -> str:
     settings = front.record.settings.items()
     stated_settings = {name: value for name, value in settings if name != CHECKSUM}
     as_read = typed(plain(front.restated(settings=stated_settings)), Front)
-    stated = stated_part(plain(as_read, every=True), document)
+    stated = stated_part(plain(as_read, whole=True), document)
     scale = objectives(job.problem.reference().front).tolist()
     text = json.dumps([job.name, scale, stated], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:32]

@@ -26,11 +26,10 @@ Setting = str | bool | int | float | None
 
 MOST_BOUND = 1e6
 """With larger coefficients the figures of a motion are rounding noise, and soon overflow."""
-AGREEMENT, REST = 1e-3, 1e-6
-"""Largest difference between integrators for a verified figure: a share, or [m] of a residual."""
-MOST_STARTS, MOST_POINTS = 10_000, 10_000
-_LONGEST_NAME = 300
-"""Letters; a file has at most 255 in its name, and may be what a method is called by."""
+AGREEMENT = 1e-3
+"""Largest share by which two integrators differ in a verified figure."""
+REST = 1e-6
+"""The same of a residual [m]: below it the tip counts as at rest."""
 
 
 def versions() -> dict[str, str]:
@@ -84,9 +83,10 @@ class Record:
     def __post_init__(self) -> None:
         if not self.method.strip():
             raise ValueError(f"method is {self.method!r}; give the name of the method")
-        if len(self.method) > _LONGEST_NAME:
+        longest = 300  # letters: a method may be called by a file, whose name has at most 255
+        if len(self.method) > longest:
             raise ValueError(
-                f"method has a name of {len(self.method)} letters; give at most {_LONGEST_NAME}"
+                f"method has a name of {len(self.method)} letters; give at most {longest}"
             )
         for name, value in self.settings.items():
             if isinstance(value, float):
@@ -104,12 +104,12 @@ def digits(number: float) -> str:
 
 def number_of_starts(value: object) -> int:
     """A number of starts as an int."""
-    return whole("starts", value, 1, MOST_STARTS, "each is a solve of a twentieth of a second")
+    return whole("starts", value, 1, 10_000, "each is a solve of a twentieth of a second")
 
 
 def number_of_points(value: object) -> int:
     """How many points a front is to have as an int."""
-    return whole("points", value, 2, MOST_POINTS, "50 show a front, and each takes some solves")
+    return whole("points", value, 2, 10_000, "50 show a front, and each takes some solves")
 
 
 def coefficient_bound(value: object) -> float:
@@ -119,7 +119,7 @@ def coefficient_bound(value: object) -> float:
 
 @dataclass(frozen=True)
 class Verification:
-    """Differences between the solver's fixed steps and the independent integrator, CVODES.
+    """Differences between fixed steps and the independent integrator, CVODES.
 
     Attributes
     ----------

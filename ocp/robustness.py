@@ -25,22 +25,18 @@ from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import DAMPING, FREQUENCY, check_ranges
 
 OF_MODES = (FREQUENCY, DAMPING)
-MOST_SAMPLES = 1_000_000
 _SIDE = 100
 """Errors of a sweep on either side of none."""
-_BLOCK = 1000
-"""Plants a call."""
 _STEP = 1e-4
 """Relative error to either side: of what follows 1e-8 is curvature, and 1e-6 the integrator's."""
 _ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
 """Errors along each side of the grid, by the number of ranges."""
 _ALONG_BY_CVODES = {1: 41, 2: 9, 3: 5, 4: 3}
 """The same where each takes some milliseconds."""
-_ZOOMS, _BESIDE = 3, (-1.0, -0.5, 0.0, 0.5, 1.0)
-"""How often the grid around a peak is made finer, and its points in steps of the grid before."""
 
 Array = NDArray[np.float64]
-Report = Callable[[int, int], object]
+Progress = Callable[[int, int], object]
+"""Told how many evaluations are done, and how many there are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,23 +53,33 @@ class Figures:
 
 
 def _along_errors(
-    candidate: Candidate, ranges: Mapping[str, float], errors: Array, report: Report | None = None
+    candidate: Candidate,
+    ranges: Mapping[str, float],
+    errors: Array,
+    report: Progress | None = None,
 ) -> Figures:
     """Figures on plants with errors of shape (plants, ranges), within the ranges."""
     faster = 1 + max(ranges.values())  # any of them may be a frequency
     nominal_steps = default_steps(candidate.task.certain, least=1)
     steps = max(ROLLOUT_STEPS, int(np.ceil(faster * nominal_steps)))
     evaluator = candidate.by_steps(steps, quantities=[QUANTITIES["torque"]], error_names=ranges)
-    parts: list[Figures] = []
-    for first in range(0, len(errors), _BLOCK):
-        block = errors[first : first + _BLOCK]
+    plants_a_call = 1000
+    residuals = list[Array]()
+    energies = list[Array]()
+    peak_torques = list[Array]()
+    for first in range(0, len(errors), plants_a_call):
+        block = errors[first : first + plants_a_call]
         evaluation = evaluator([candidate.coefficients], block)
-        figures = evaluation.residual, evaluation.energy, evaluation.largest("torque")
-        parts.append(Figures(*(figure[0] for figure in figures)))
+        residuals.append(evaluation.residual[0])
+        energies.append(evaluation.energy[0])
+        peak_torques.append(evaluation.largest("torque")[0])
         if report is not None:
             report(first + len(block), len(errors))
-    names = "residual", "energy", "peak_torque"
-    return Figures(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+    return Figures(
+        residual=np.concatenate(residuals),
+        energy=np.concatenate(energies),
+        peak_torque=np.concatenate(peak_torques),
+    )
 
 
 @dataclass(frozen=True)
@@ -86,22 +92,27 @@ class Worst:
 
 def worst_of(candidate: Candidate) -> Worst | None:
     """The worst case of a motion along a profile; None where its task is certain."""
-    return peaks_between(candidate)[0] if candidate.task.ranges else None
+    return next(iter(peaks_between(candidate)), None)
 
 
 def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
     """The same within ranges of errors for a motion that has no profile, by CVODES alone."""
 
     def residuals(errors: Array) -> Array:
-        found = (dict(zip(ranges, one)) for one in errors.tolist())
-        return np.array([candidate.perturbed(one).residual for one in found])
+        named_errors = [dict(zip(ranges, row)) for row in errors.tolist()]
+        return np.array([candidate.perturbed(row).residual for row in named_errors])
 
     return _peaks(residuals, candidate, ranges, _ALONG_BY_CVODES[len(ranges)])[0]
 
 
-def peaks_between(candidate: Candidate, most: int = 1) -> list[Worst]:
-    """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first."""
+def peaks_between(candidate: Candidate, most: int = 4) -> list[Worst]:
+    """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first.
+
+    A task that is certain has none.
+    """
     ranges = candidate.task.ranges
+    if not ranges:
+        return []
 
     def residuals(errors: Array) -> Array:
         return _along_errors(candidate, ranges, errors).residual
@@ -117,12 +128,14 @@ def _peaks(
     most: int = 1,
 ) -> list[Worst]:
     """Peaks on a grid, refined around each."""
-    largest, count = np.array(list(ranges.values())), len(ranges)
+    largest = np.array(list(ranges.values()))
+    count = len(ranges)
+    beside = _grid([-1.0, -0.5, 0.0, 0.5, 1.0], count)  # in steps of the grid before
 
     def zoom(peak: Array) -> Worst:
-        for finer in range(_ZOOMS):
+        for finer in range(3):
             step = 2 / (along - 1) / 2**finer
-            around = np.clip(peak + step * _grid(_BESIDE, count), -1, 1)
+            around = np.clip(peak + step * beside, -1, 1)
             peak = around[np.argmax(residuals(around * largest))]
         errors = dict(zip(ranges, (peak * largest).tolist()))
         return Worst(errors, candidate.perturbed(errors).residual)
@@ -130,8 +143,9 @@ def _peaks(
     shares = _grid(np.linspace(-1, 1, along), count)
     values = residuals(shares * largest)
     tops = np.flatnonzero(_is_peak(values.reshape([along] * count)))
-    tops = tops[np.argsort(-values[tops])][:most]
-    return sorted((zoom(shares[i]) for i in tops), key=lambda one: -one.residual)
+    highest = tops[np.argsort(-values[tops])][:most]
+    peaks = [zoom(shares[i]) for i in highest]
+    return sorted(peaks, key=lambda peak: -peak.residual)
 
 
 def _grid(along: ArrayLike, ranges: int) -> Array:
@@ -179,7 +193,7 @@ def sensitivities(candidate: Candidate) -> tuple[Sensitivity, ...]:
 
     known = (name for name, value in task.plant.measured.items() if value)
     names = dict.fromkeys([*OF_MODES, *known])
-    return tuple(sorted(map(of, names), key=lambda one: -one.residual))
+    return tuple(sorted(map(of, names), key=lambda sensitivity: -sensitivity.residual))
 
 
 def sensitivities_of_moves(
@@ -284,7 +298,7 @@ def evaluate_robustness(
     *,
     samples: int = 10_000,
     seed: int = 0,
-    report: Report | None = None,
+    report: Progress | None = None,
 ) -> Robustness:
     """Evaluate a motion on perturbed plants.
 
@@ -313,25 +327,25 @@ def evaluate_robustness(
     """
     task = candidate.task
     ranges = check_ranges(task.plant, ranges)
-    samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
+    samples = whole("samples", samples, 1, 1_000_000, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)
     largest = np.array(list(ranges.values()))
     shares = np.arange(-_SIDE, _SIDE + 1) / _SIDE
-    alone = [np.outer(shares, own) for own in np.diag(largest)]
+    alone = [np.outer(shares, error) for error in np.diag(largest)]
     random = np.random.default_rng(seed).uniform(-largest, largest, (samples, len(largest)))
-    every = np.vstack([*alone, random]).astype(float)
-    figures = _along_errors(candidate, ranges, every, report)
+    errors = np.vstack([*alone, random]).astype(float)
+    figures = _along_errors(candidate, ranges, errors, report)
     count = len(shares)
-    swept = [figures.take(slice(i * count, (i + 1) * count)) for i in range(len(ranges))]
+    of_sweeps = [figures.take(slice(i * count, (i + 1) * count)) for i in range(len(ranges))]
+    sweeps = [
+        (name, size * shares, of_sweep) for (name, size), of_sweep in zip(ranges.items(), of_sweeps)
+    ]
     cycloid = _plain(task).residual
     return Robustness(
         ranges=ranges,
         cycloid=cycloid,
-        assumed=swept[0].take(slice(_SIDE, _SIDE + 1)),
-        sweeps=tuple(
-            _sweep(name, size * shares, part, TOLERATED * cycloid)
-            for (name, size), part in zip(ranges.items(), swept)
-        ),
+        assumed=of_sweeps[0].take(slice(_SIDE, _SIDE + 1)),
+        sweeps=tuple(_sweep(*sweep, TOLERATED * cycloid) for sweep in sweeps),
         errors=random,
         samples=figures.take(slice(count * len(ranges), None)),
         seed=seed,
@@ -339,9 +353,12 @@ def evaluate_robustness(
 
 
 def _sweep(name: str, errors: Array, figures: Figures, tolerated: float) -> Sweep:
-    excess, within = figures.residual - tolerated, None
+    """The sweep, with the errors around 0 between which the residual is tolerated."""
+    excess = figures.residual - tolerated
+    within = None
     if excess[_SIDE] <= 0:
-        low, high = (_crossing(errors[_SIDE::side], excess[_SIDE::side]) for side in (-1, 1))
+        low = _crossing(errors[_SIDE::-1], excess[_SIDE::-1])
+        high = _crossing(errors[_SIDE:], excess[_SIDE:])
         within = low, high
     return Sweep(name, errors, figures, within)
 

@@ -6,8 +6,8 @@ import dataclasses
 import hashlib
 import json
 from codecs import BOM_UTF8
-from collections.abc import Collection, Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from enum import Enum
 from html import escape
 from pathlib import Path
@@ -24,7 +24,6 @@ from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.term_profile import import_profiles
 from quietarm.ocp.record import Record
-from quietarm.ocp.simulation.objective import Motion
 
 
 def to_html(rows: Iterable[Iterable[str]], head: Iterable[str] = ()) -> str:
@@ -42,45 +41,41 @@ PLANT_FILE = "plant_file"
 """Entry of a plant: the file it was loaded from."""
 CHECKSUM = "checksum"
 """Entry of an answer's file: a digest of all the others."""
-_NO_NUMBERS = ("NaN", "Infinity", "-Infinity")
-"""What Python's json writes of numbers that are none; JSON has no such words."""
 _LEAVES = frozenset({float, int, str, bool, type(None)})
 """Of JSON, and as they are."""
-_SHOWN = 12
-"""Digits of a digest that a message shows."""
 
 
-def plain(value: Any, every: bool = False) -> Any:
+def plain(value: Any, whole: bool = False) -> Any:
     """A value in JSON's types, SI units and radians.
 
-    Fields that are `IF_STATED` are left out where they have nothing, unless `every` one is wanted.
+    Fields that are `IF_STATED` are left out where they have nothing, unless it is to be `whole`.
     """
     if type(value) in _LEAVES:
         return value
     match value:
         case Plant() | JointProfile() | Energy():
-            return _named(value) | _entries(value, every)
+            return _named(value) | _entries(value, whole)
         case Enum():
             return value.value
         case Mapping():
-            return {name: plain(entry, every) for name, entry in value.items()}
+            return {name: plain(entry, whole) for name, entry in value.items()}
         case np.ndarray() | np.generic():
             return value.tolist()
         case float():
             return float(value)  # also of a class of its own, as a default window
         case list() | tuple():
             # most entries are numbers, of which a file may have ten thousands
-            return [entry if type(entry) in _LEAVES else plain(entry, every) for entry in value]
+            return [entry if type(entry) in _LEAVES else plain(entry, whole) for entry in value]
         case _ if dataclasses.is_dataclass(value):
-            return _entries(value, every)
+            return _entries(value, whole)
     return value
 
 
-def _entries(value: Any, every: bool) -> dict[str, Any]:
+def _entries(value: Any, whole: bool) -> dict[str, Any]:
     return {
-        entry.name: plain(getattr(value, entry.name), every)
+        entry.name: plain(getattr(value, entry.name), whole)
         for entry in dataclasses.fields(value)
-        if entry.init and (every or _has_something(value, entry))
+        if entry.init and (whole or _has_something(value, entry))
     }
 
 
@@ -110,13 +105,13 @@ def _known_of(family: type[Any]) -> Mapping[str, type[Any]]:
 def _named(value: Any) -> dict[str, Any]:
     """The name by which a value's class is found again, and the file that a plant is of."""
     (family,) = (family for family in _FAMILIES if isinstance(value, family))
-    own = type(value)
-    if _known_of(family).get(value.name) is not own:
+    kind = type(value)
+    if _known_of(family).get(value.name) is not kind:
         raise ValueError(
-            f"{own.__name__} has no name of its own, and {value.name!r} would load as another "
+            f"{kind.__name__} has no name of its own, and {value.name!r} would load as another "
             "class; set `name` in the class"
         )
-    file = file_of_plant(own) if isinstance(value, Plant) else None
+    file = file_of_plant(kind) if isinstance(value, Plant) else None
     origin = {PLANT_FILE: {"path": file.path, "sha256": file.digest}} if file else {}
     return {"name": value.name} | origin
 
@@ -127,10 +122,10 @@ def typed(document: Any, kind: type[T]) -> T:
         value = msgspec.convert(document, kind, dec_hook=_known_here)
     except msgspec.ValidationError as error:
         raise ValueError(str(error)) from None
-    whole = plain(value, every=True)
-    odd = _unknown(document, whole)
+    complete = plain(value, whole=True)
+    odd = _unknown(document, complete)
     if isinstance(document, dict):
-        odd |= whole.keys() - _may_be_missing(value) - document.keys()
+        odd |= complete.keys() - _may_be_missing(value) - document.keys()
     if odd:
         raise ValueError(f"entries that are missing, or not known here: {', '.join(sorted(odd))}")
     return value
@@ -155,20 +150,23 @@ def _known_here(kind: Any, entry: Any) -> Any:
         raise ValueError(f"{kind.__name__} is {entry!r}; give a table with its name")
     if entry["name"] == Mix.name:
         return typed(entry, Mix)
-    what, classes, table = _FAMILIES[kind], _known_of(kind), dict(entry)
-    name, file = table.pop("name"), table.pop(PLANT_FILE, None)
+    family = _FAMILIES[kind]
+    classes = _known_of(kind)
+    table = dict(entry)
+    name = table.pop("name")
+    file = table.pop(PLANT_FILE, None)
     if file is not None:
         _check_file(name, file["path"], file["sha256"])
     if name not in classes:
         by_file = ", or name it by --plant-file" if kind is Plant else ""
         raise ValueError(
-            f"its {what} {name!r} is not known here (known: {', '.join(sorted(classes))}); import "
-            f"the file that defines it first{by_file}"
+            f"its {family} {name!r} is not known here (known: {', '.join(sorted(classes))}); "
+            f"import the file that defines it first{by_file}"
         )
     try:
         return classes[name](**_with_content(classes[name], table))
     except TypeError as error:  # an entry too many or too few
-        raise ValueError(f"its {what} {name!r}: {error}") from None
+        raise ValueError(f"its {family} {name!r}: {error}") from None
 
 
 def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
@@ -186,13 +184,20 @@ def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
 def _check_file(name: str, path: str, sha256: str) -> None:
     """Refuse a plant that is here of another file, or none: only what the user named is run."""
     plant = known_plants().get(name)
-    mine = None if plant is None else file_of_plant(plant)
-    if mine is None or mine.digest != sha256:
-        here = "nowhere" if mine is None else f"of {mine.digest[:_SHOWN]!r} in {mine.path!r}"
+    loaded = None if plant is None else file_of_plant(plant)
+    if loaded is None or loaded.digest != sha256:
+        here = "nowhere"
+        if loaded is not None:
+            here = f"of {_shown(loaded.digest)!r} in {loaded.path!r}"
         raise ValueError(
-            f"its plant {name!r} is of file {path!r} with SHA-256 {sha256[:_SHOWN]!r}, and here "
+            f"its plant {name!r} is of file {path!r} with SHA-256 {_shown(sha256)!r}, and here "
             f"{here}; give the file as it was, by --plant-file or load_plant_file, or compute anew"
         )
+
+
+def _shown(digest: str) -> str:
+    """As much of a digest as a message shows."""
+    return digest[:12]
 
 
 def read_document(path: str | Path, kind: str) -> Any:
@@ -218,37 +223,44 @@ def stated_part(value: Any, document: Any) -> Any:
     """
     match value, document:
         case dict(), dict():
-            return {k: stated_part(v, document[k]) for k, v in value.items() if k in document}
+            return {
+                name: stated_part(entry, document[name])
+                for name, entry in value.items()
+                if name in document
+            }
         case list(), list() if value and type(value[0]) not in _LEAVES:
             return [stated_part(*pair) for pair in zip(value, document)]
     return value
 
 
-def content_of(
-    path: str | Path, document: Any, name: str, version: int, earlier: Collection[int] = ()
-) -> dict[str, Any]:
-    """What a document holds beside its format and version, which are checked."""
+def read_content(
+    path: str | Path, kind: str, version: int, earlier: Collection[int] = ()
+) -> tuple[dict[str, Any], int]:
+    """What a file holds beside format and checksum, and its version; both are checked."""
+    document = read_document(path, kind)
     content = dict(document) if isinstance(document, dict) else {}
     content.pop(CHECKSUM, None)
-    its_name, its_version = content.pop("format", None), content.pop("version", None)
-    if its_name != f"quietarm-{name}":
+    stated_format = content.pop("format", None)
+    stated_version = content.pop("version", None)
+    if stated_format != f"quietarm-{kind}":
         raise FileFormatError(
-            f"{path} is not a {name}: its format is {its_name!r}; give a {name} file"
+            f"{path} is not a {kind}: its format is {stated_format!r}; give a {kind} file"
         )
-    if its_version not in (version, *earlier):
+    if stated_version not in (version, *earlier):
         raise FileFormatError(
-            f"{path} has version {its_version!r} of the {name} format and this quietarm reads "
-            f"{version}; find the {name} again, or install the quietarm that wrote it"
+            f"{path} has version {stated_version!r} of the {kind} format and this quietarm reads "
+            f"{version}; find the {kind} again, or install the quietarm that wrote it"
         )
-    return content
+    return content, stated_version
 
 
 def _no_json_number(path: str | Path) -> str:
     """The first entry of a file that is NaN or infinite, as Python writes them; empty if none."""
+    no_numbers = ("NaN", "Infinity", "-Infinity")
     odd: list[str] = []
 
     def take(pairs: list[tuple[str, Any]]) -> None:
-        odd.extend(f"{name} is {entry}" for name, entry in pairs if entry in _NO_NUMBERS)
+        odd.extend(f"{name} is {entry}" for name, entry in pairs if entry in no_numbers)
 
     with suppress(ValueError, RecursionError):
         text = read_bytes(path).removeprefix(BOM_UTF8).decode()
@@ -269,8 +281,8 @@ def keeps_checksum(path: str | Path, name: str) -> bool | None:
 
 def _checksum_of(document: Mapping[str, Any]) -> str:
     """A digest of all entries but the checksum, however numbers and spaces are written."""
-    others = {name: entry for name, entry in document.items() if name != CHECKSUM}
-    text = json.dumps(_with_whole_numbers(others), sort_keys=True)
+    entries = {name: entry for name, entry in document.items() if name != CHECKSUM}
+    text = json.dumps(_with_whole_numbers(entries), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
@@ -291,12 +303,27 @@ def _indented(document: Any, margin: str = "\n") -> str:
     inner = f"{margin}  "
     match document:
         case dict() if document:
-            entries = (f"{json.dumps(k)}: {_indented(v, inner)}" for k, v in document.items())
+            entries = (
+                f"{json.dumps(name)}: {_indented(entry, inner)}" for name, entry in document.items()
+            )
             return f"{{{inner}{f',{inner}'.join(entries)}{margin}}}"
         case list() if document and not all(type(entry) in _LEAVES for entry in document):
             entries = (_indented(entry, inner) for entry in document)
             return f"[{inner}{f',{inner}'.join(entries)}{margin}]"
     return json.dumps(document, allow_nan=False)
+
+
+@contextmanager
+def refusals(path: str | Path, kind: str) -> Iterator[None]:
+    """What is wrong with the entries of a file, as a FileFormatError that names it."""
+    try:
+        yield
+    except (
+        ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError,
+    ) as error:  # fmt: skip
+        # what is wrong and what to do about it are parted by a semicolon
+        remedy = "" if ";" in str(error) else f"; write the {kind} again"
+        raise FileFormatError(f"{path} is not a valid {kind}: {error}{remedy}") from None
 
 
 class Saved:
@@ -314,7 +341,11 @@ class Saved:
         write_whole(path, _indented(self._document()) + "\n")
 
     def _document(self) -> dict[str, Any]:
-        return {"format": f"quietarm-{self.kind}", "version": self.version, **plain(self)}
+        return {"format": f"quietarm-{self.kind}", "version": self.version, **self._content()}
+
+    def _content(self) -> dict[str, Any]:
+        """What its file holds beside format and version."""
+        return plain(self)
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -325,17 +356,15 @@ class Saved:
         FileFormatError
             When the file holds something else, is not whole, or of another version.
         """
-        content = content_of(
-            path, read_document(path, cls.kind), cls.kind, cls.version, cls.earlier
-        )
-        try:
-            return typed(content, cls)
-        except (
-            ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError,
-        ) as error:  # fmt: skip
-            # what is wrong and what to do about it are parted by a semicolon
-            remedy = "" if ";" in str(error) else f"; write the {cls.kind} again"
-            raise FileFormatError(f"{path} is not a valid {cls.kind}: {error}{remedy}") from None
+        content, version = read_content(path, cls.kind, cls.version, cls.earlier)
+        with refusals(path, cls.kind):
+            return typed(cls._entries_of(content, version), cls)
+
+    @classmethod
+    def _entries_of(cls, content: Mapping[str, Any], version: int) -> Mapping[str, Any]:
+        """The entries of an answer among the content of its file, as they are today."""
+        del version
+        return content
 
 
 class Answer(Saved):
@@ -349,21 +378,5 @@ class Answer(Saved):
 
     def restated(self, **changes: Any) -> Self:
         """The same answer with other entries of its record."""
-        own: Any = self
-        return dataclasses.replace(own, record=dataclasses.replace(self.record, **changes))
-
-
-class MotionAnswer(Answer):
-    """An answer that is one motion, another entry of its dataclass."""
-
-    motion: Motion
-
-    @property
-    def energy(self) -> float:
-        """F2, the driving energy [J], by the independent integrator."""
-        return self.motion.energy
-
-    @property
-    def residual(self) -> float:
-        """F1, the largest absolute tip displacement after arrival [m], by the same."""
-        return self.motion.residual
+        answer: Any = self
+        return dataclasses.replace(answer, record=dataclasses.replace(self.record, **changes))

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.metaheuristics.objective.population import objectives_of
-from quietarm.ocp import Front, Plan
+from quietarm.models.joint_motion import joint_unit
+from quietarm.ocp import Front, Motion, Plan
 from quietarm.ocp.checks import table_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.limits import quantities_of
+from quietarm.ocp.motion_answer import figures_of
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
-from quietarm.ocp.robustness import worst_of
+from quietarm.ocp.robustness import Worst
 from quietarm.ocp.simulation.evaluator import Evaluator
 
 _SAMPLE = 100
@@ -114,47 +117,71 @@ def _refuse_other_figures(which: str, stated: tuple[float, float], figures: Arra
             )
 
 
-def check_plan(plan: Plan, name: str) -> None:
-    """Evaluate the motion of a plan again, and refuse the plan where the figures differ.
+def check_plan(plan: Plan, path: Path) -> None:
+    """Hold what the file of a plan states against its motion; what it does not is skipped.
 
-    A peak that the file does not state, as of a quantity that is newer, is skipped.
+    ValueError where a figure is another; SolverFailedError where the motion has none.
     """
+    stated = Plan.stated_by(path)
     try:
-        motion = plan.candidate.motion
-        _check_worst(plan, name)
+        figures = figures_of(plan.motion)
+        if stated.worst is not None:
+            _check_worst(plan, stated.worst, path)
     except SolverFailedError as error:
-        raise SolverFailedError(f"{name}: {error}") from None
-    known = quantities_of(plan.task.plant.joint, plan.task.plant.tip_unit)
-    peaks = ((name, quantity.unit, 0.0) for name, quantity in known.items())
-    for figure, unit, least in (*FIGURES, *peaks):
-        stated = plan.motion.peak(figure)
-        gives = motion.peak(figure)
-        if figure in known and not (plan.motion.states(figure) and np.isfinite(stated)):
+        raise SolverFailedError(f"{path}: {error}") from None
+    units = _units_of(plan)
+    for name, states in stated.figures.items():
+        gives = figures.get(name)
+        if gives is not None and np.isfinite(gives):
+            if agrees(states, gives, _least_difference(name, plan.motion)):
+                continue
+        elif states == gives:
             continue
-        if stated != gives and not (np.isfinite(gives) and agrees(stated, gives, least)):
-            figure = f"peak {figure}" if figure in known else figure
-            raise ValueError(
-                f"{name} states {figure} {stated:.4g} {unit}, but its coefficients give "
-                f"{gives:.4g} {unit}; find the plan again"
-            )
-
-
-def _check_worst(plan: Plan, name: str) -> None:
-    """Find the worst case of a plan for an uncertain plant again, and compare."""
-    if plan.worst is None:
-        return
-    worst = worst_of(plan.candidate)
-    stated = plan.worst.residual
-    if worst is None or list(worst.errors) != list(plan.worst.errors):
-        what = ", ".join(plan.worst.errors) or "none"
+        unit = units.get(name, "")
+        words = "none" if gives is None else f"{gives:.4g} {unit}"
         raise ValueError(
-            f"{name} states a worst case with errors of {what}, which its plant does not have; "
+            f"{path} states {name.replace('_', ' ')} {states:.4g} {unit}, but its coefficients "
+            f"give {words}; find the plan again"
+        )
+
+
+def _units_of(plan: Plan) -> dict[str, str]:
+    """The units of the figures of a plan by name."""
+    plant = plan.task.plant
+    units = {"residual": plant.tip_unit, "energy": "J", "net_work": "J"}
+    units["overshoot"] = joint_unit("rad", plant.joint)
+    for name, quantity in quantities_of(plant.joint, plant.tip_unit).items():
+        for figure in (quantity.peak, f"least_{name}", f"largest_{name}"):
+            units[figure] = quantity.unit
+    return units
+
+
+def _least_difference(name: str, motion: Motion) -> float:
+    """The difference within which a figure of a motion always agrees [its unit]."""
+    if name in ("residual", "overshoot"):
+        return REST
+    if name == "net_work":  # the difference of work done and taken back
+        return AGREEMENT * motion.energy
+    quantity = name.partition("_")[2]
+    if quantity in motion.ranges:  # one side of a range may be near 0
+        return AGREEMENT * max(map(abs, motion.ranges[quantity]))
+    return 0.0
+
+
+def _check_worst(plan: Plan, stated: Worst, path: Path) -> None:
+    """Hold the worst case that a file of before states against what is found now."""
+    worst = plan.worst
+    if worst is None or list(worst.errors) != list(stated.errors):
+        names = ", ".join(stated.errors) or "none"
+        raise ValueError(
+            f"{path} states a worst case with errors of {names}, which its plant does not have; "
             "find the plan again"
         )
-    there = plan.candidate.perturbed(plan.worst.errors)
-    for gives, words in (worst.residual, ""), (there.residual, " with these errors"):
-        if not agrees(stated, gives, REST):
+    there = plan.candidate.perturbed(stated.errors).residual
+    for gives, words in (worst.residual, ""), (there, " with these errors"):
+        if not agrees(stated.residual, gives, REST):
+            unit = plan.task.plant.tip_unit
             raise ValueError(
-                f"{name} states a worst-case residual of {stated:.4g} m, but its coefficients "
-                f"give {gives:.4g} m{words}; find the plan again"
+                f"{path} states a worst-case residual of {stated.residual:.4g} {unit}, but its "
+                f"coefficients give {gives:.4g} {unit}{words}; find the plan again"
             )

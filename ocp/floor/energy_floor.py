@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from quietarm.ocp.checks import CountFromOne, Positive, positive, takes, whole
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.limits import Limit
+from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.best_of_starts import SAME, Sought, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.certify import excess_error, tighten
 from quietarm.ocp.planning.plan_move import plan_move
@@ -26,9 +27,7 @@ from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.record import Record, Verification, number_of_starts
-from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.mesh import default_steps
-from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
@@ -60,19 +59,20 @@ class Floor(MotionAnswer):
     ----------
     free : FreeMotion
         How the joint moves.
-    motion : Motion
-        Residual, energy and diagnostics, by the independent integrator.
     levels : tuple of Level
         The grids, coarse to fine. The motion is that of the last, or of a coarser one if that has a
         lower energy.
     starts : tuple of float
         Energy [J] at which each solved start ended, all on the second grid.
+    solver_energy : float
+        Energy [J] that the solver gave the motion, by which `verification` compares.
     tolerance : float
         Share of the energy by which the last two grids were to differ at most.
     """
 
     kind: ClassVar[str] = "floor"
-    version: ClassVar[int] = 3
+    version: ClassVar[int] = 4
+    earlier: ClassVar[tuple[int, ...]] = (3,)
     first_order: ClassVar[float] = 0.5
     """Ratio of successive falls of the energy where the error is proportional to the intervals'
     length; it is 1/4 where to its square."""
@@ -81,11 +81,10 @@ class Floor(MotionAnswer):
 
     task: PointToPoint
     free: FreeMotion
-    motion: Motion
     levels: tuple[Level, ...]
     starts: tuple[float, ...]
     status: SolveStatus
-    verification: Verification
+    solver_energy: float
     tolerance: Positive
     record: Record
 
@@ -96,6 +95,15 @@ class Floor(MotionAnswer):
             raise ValueError(f"its times end at {end:g} s, not at the duration {duration:g} s")
         if len(self.levels) < 2 or not self.starts:
             raise ValueError("it has fewer than two levels, or no start")
+
+    @classmethod
+    def _decided_before(cls, verification: Verification) -> dict[str, Any]:
+        return {"solver_energy": verification.fixed_step_energy}
+
+    @cached_property
+    def verification(self) -> Verification:
+        """Distance of the solver's figures, on its intervals, from those by CVODES."""
+        return Verification.between(self.free.steps, self.solver_energy, 0.0, self.motion)
 
     @property
     def smooth(self) -> bool:
@@ -206,24 +214,19 @@ def energy_floor(
     improved = _refine_each(program, solved)
     levels = [_cheapest(solved), _cheapest(improved)]
     _refine(program, levels, tolerance)
-    solution, motion = _certify_least(program, levels)
+    solution, candidate = _certify_least(program, levels)
     method = f"ipopt, free {'jerk' if smooth else 'acceleration'}"
-    return Floor(
+    floor = Floor(
         task=task,
         free=solution.free,
-        motion=motion,
         levels=tuple(Level(level.free.steps, level.energy) for level in levels),
         starts=tuple(solution.energy for solution in improved),
         status=solution.status,
-        verification=Verification.between(
-            solution.free.steps,
-            solution.energy,
-            0.0,
-            motion,
-        ),
+        solver_energy=solution.energy,
         tolerance=tolerance,
         record=_record(method, starts, seed, solver, time.perf_counter() - began),
     )
+    return floor.with_candidate(candidate)
 
 
 def _record(method: str, starts: int, seed: int, solver: Solver, seconds: float) -> Record:
@@ -346,7 +349,7 @@ def _on_finer_grid(
 
 def _certify_least(
     program: FloorProgram, levels: list[FreeSolution]
-) -> tuple[FreeSolution, Motion]:
+) -> tuple[FreeSolution, Candidate]:
     """The last grid's motion, or that of a coarser grid where it is verified to need less."""
     least = _certify(program, levels[-1])
     for level in levels[:-1]:
@@ -359,7 +362,7 @@ def _certify_least(
 
 def _certify(
     program: FloorProgram, solution: FreeSolution, rounds: int = 4, tolerated: float = 1e-6
-) -> tuple[FreeSolution, Motion]:
+) -> tuple[FreeSolution, Candidate]:
     """Compare with CVODES; tighten limits that are exceeded between the solver's nodes.
 
     There are so many `rounds` of it; a peak may pass its limit by the share that is tolerated.
@@ -380,4 +383,4 @@ def _certify(
     error = excess_error(candidate, limits, remedy)
     if error is not None:
         raise error
-    return solution, candidate.motion
+    return solution, candidate

@@ -9,39 +9,39 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import NotNegative, positive, takes
+from quietarm.ocp.checks import CountFromOne, NotNegative, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.limits import Limit
+from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import REST, Record, Setting, Verification
-from quietarm.ocp.robustness import Sensitivity, Worst, sensitivities, worst_of
-from quietarm.ocp.saved import MotionAnswer, to_html
+from quietarm.ocp.robustness import Sensitivity, Worst, peaks_between, sensitivities
+from quietarm.ocp.saved import to_html
 from quietarm.ocp.simulation.mesh import default_steps
-from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.problem import STILL
 from quietarm.ocp.task import PointToPoint
 
-_LEAST_TICKS, _MOST_SAMPLES = 1e-4, 500_000
-_SAMPLES = 1500
-"""Of the trajectory of a plan."""
-_LOOKS = 2001
-"""Times of the move at which the joint may be found to turn back."""
+_MOST_ROWS = 500_000
+"""Of a table to drive a joint with."""
 
 
 @dataclass(frozen=True)
 class Plan(MotionAnswer):
-    """One motion of one task: its coefficients and what it costs.
+    """One motion of one task: its coefficients and how they were found.
+
+    What it costs and leaves is computed by CVODES when it is first asked for: `energy`, `residual`,
+    all of its `motion`, the `worst` case, and the `verification` by fixed steps.
 
     Attributes
     ----------
@@ -51,19 +51,14 @@ class Plan(MotionAnswer):
         How the joint moves.
     coefficients : tuple of float
         The profile's coefficients, a_1 to a_N of eq (6).
-    motion : Motion
-        Residual, energy and diagnostics, by the independent integrator.
     status : SolveStatus
         How the solve ended.
-    verification : Verification
-        Distance between the two integrators.
     record : Record
         Method, settings, versions, time.
+    steps : int
+        Fixed steps that the solver took, by which `verification` compares.
     residual_limit : float or None
         Largest residual that was asked for [m]; None where none was.
-    worst : Worst or None
-        For an uncertain task the worst case: the errors within its ranges with the largest
-        residual, also between the scenarios; else None.
     shadow_prices : mapping of str to float
         Decrease of the least energy per unit of a widened limit [J by the limit's unit]: sums of
         multipliers, by the limit's name. Of the residual also if rest on arrival was required;
@@ -72,23 +67,58 @@ class Plan(MotionAnswer):
 
     example: ClassVar[str] = "a plan, as Plan.load('plan.json')"
     kind: ClassVar[str] = "plan"
-    version: ClassVar[int] = 4
+    version: ClassVar[int] = 5
+    earlier: ClassVar[tuple[int, ...]] = (4,)
 
     task: PointToPoint
     profile: JointProfile
     coefficients: tuple[float, ...]
-    motion: Motion
     status: SolveStatus
-    verification: Verification
     record: Record
+    steps: CountFromOne
     residual_limit: NotNegative | None = None
-    worst: Worst | None = None
     shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
         object.__setattr__(self, "shadow_prices", prices)
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
+
+    @classmethod
+    def _decided_before(cls, verification: Verification) -> dict[str, Any]:
+        return {"steps": verification.steps}
+
+    @classmethod
+    def of_candidate(cls, candidate: Candidate, **entries: Any) -> Plan:
+        """The plan of a motion along a profile, which is not evaluated again; other entries."""
+        if candidate.profile is None:
+            raise ValueError("a free motion has no profile; give a motion along one")
+        plan = cls(
+            task=candidate.task,
+            profile=candidate.profile,
+            coefficients=candidate.coefficients,
+            **entries,
+        )
+        return plan.with_candidate(candidate)
+
+    @cached_property
+    def candidate(self) -> Candidate:
+        """The motion, evaluated by CVODES."""
+        return Candidate.of_profile(self.task, self.profile, self.coefficients)
+
+    @cached_property
+    def peaks(self) -> tuple[Worst, ...]:
+        """Peaks of the residual within the ranges of an uncertain task; the worst first."""
+        return tuple(peaks_between(self.candidate))
+
+    @property
+    def worst(self) -> Worst | None:
+        """The worst case of an uncertain task; None if the task is certain.
+
+        These are the errors within its ranges with the largest residual, also between the
+        scenarios.
+        """
+        return self.peaks[0] if self.peaks else None
 
     @property
     def excess(self) -> float | None:
@@ -100,15 +130,18 @@ class Plan(MotionAnswer):
             return None
         return self.worst.residual / self.residual_limit - 1
 
+    @cached_property
+    def verification(self) -> Verification:
+        """Distance of its figures by fixed steps from those by CVODES."""
+        evaluator = self.candidate.by_steps(self.steps, quantities=())
+        evaluation = evaluator([self.coefficients])
+        energy = float(evaluation.energy[0, 0])
+        residual = float(evaluation.residual.max())
+        return Verification.between(self.steps, energy, residual, self.motion)
+
     def on(self, task: PointToPoint) -> Plan:
         """The same motion for an uncertain task with the same nominal plant."""
-        candidate = Candidate.of_profile(task, self.profile, self.coefficients)
-        return replace(self, task=task, motion=candidate.motion, worst=worst_of(candidate))
-
-    @cached_property
-    def candidate(self) -> Candidate:
-        """The motion, evaluated by CVODES."""
-        return Candidate.of_profile(self.task, self.profile, self.coefficients)
+        return replace(self, task=task)
 
     @property
     def path(self) -> JointPath:
@@ -123,15 +156,17 @@ class Plan(MotionAnswer):
     @property
     def turns_back(self) -> float:
         """How far the joint moves backwards [rad], on either side of the target."""
-        times = np.linspace(0.0, self.task.duration, _LOOKS)
-        gone = np.sign(self.task.span) * self.path(times)
-        return float((np.maximum.accumulate(gone) - gone).max())
+        times = np.linspace(0.0, self.task.duration, 2001)
+        forward = np.sign(self.task.span) * self.path(times)
+        return float((np.maximum.accumulate(forward) - forward).max())
 
     @cached_property
     def trajectory(self) -> Trajectory:
         """The move and the residual window after it, by CVODES; `sampled` gives any times."""
-        arrival, window = self.task.duration, self.task.residual_window
-        return self.sampled(np.union1d(np.linspace(0.0, arrival + window, _SAMPLES), [arrival]))
+        arrival = self.task.duration
+        end = arrival + self.task.residual_window
+        times = np.linspace(0.0, end, 1500)
+        return self.sampled(np.union1d(times, [arrival]))
 
     def sampled(self, times: ArrayLike) -> Trajectory:
         """The motion at given times by CVODES; see `Candidate.sample`."""
@@ -139,9 +174,11 @@ class Plan(MotionAnswer):
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        task, motion = self.task, self.motion
-        left = f"{motion.residual:.3g} {task.plant.tip_unit}"
-        residual = left if motion.residual > REST else "none"
+        task = self.task
+        motion = self.motion
+        residual = "none"
+        if motion.residual > REST:
+            residual = f"{motion.residual:.3g} {task.plant.tip_unit}"
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
         rows = {
             "plant": task.plant.name,
@@ -162,7 +199,8 @@ class Plan(MotionAnswer):
 
     def _robust_rows(self) -> dict[str, str]:
         """What a notebook shows of parameter errors: their ranges, and the worst case."""
-        rows, unit = dict[str, str](), self.task.plant.tip_unit
+        rows = dict[str, str]()
+        unit = self.task.plant.tip_unit
         if ranges := self.task.ranges:
             words = (f"{name} +-{100 * size:.3g} %" for name, size in ranges.items())
             rows["parameter errors"] = ", ".join(words)
@@ -186,11 +224,12 @@ class Plan(MotionAnswer):
         tips = sampled.tips.shape[1]
         numbers = [""] if tips == 1 else [f"_{i + 1}" for i in range(tips)]
         tip_names = [f"tip{number}_{self.task.plant.tip_unit}" for number in numbers]
-        way, force = "angle_rad", "torque_Nm"
-        if self.task.plant.joint != ROTARY:
-            way, force = "position_m", "force_N"
-        unit = way.rpartition("_")[2]
-        of_joint = [way, f"speed_{unit}_s", f"acceleration_{unit}_s2"]
+        if self.task.plant.joint == ROTARY:
+            of_joint = ["angle_rad", "speed_rad_s", "acceleration_rad_s2"]
+            force = "torque_Nm"
+        else:
+            of_joint = ["position_m", "speed_m_s", "acceleration_m_s2"]
+            force = "force_N"
         names = self.task.plant.joint_names
         joints = [""] if len(names) == 1 else [f"{name}_" for name in names]
         header = ["time_s", *(f"{joint}{column}" for joint in joints for column in of_joint)]
@@ -232,21 +271,18 @@ def evaluate_coefficients(
     ValueError, SolverFailedError
         When coefficients or duration do not fit the profile; when CVODES fails.
     """
-    began, settings = time.perf_counter(), {} if settings is None else settings
+    began = time.perf_counter()
     if profile is None:
         profile = CycloidPolynomial.of_size(np.size(coefficients))
     candidate = Candidate.of_profile(task, profile, coefficients)
-    motion = candidate.motion
-    return Plan(
-        task=task,
-        profile=profile,
-        coefficients=candidate.coefficients,
-        motion=motion,
+    plan = Plan.of_candidate(
+        candidate,
         status=SolveStatus.NOT_OPTIMISED,
-        verification=_verify(candidate, motion),
-        record=Record(method, settings, seconds=time.perf_counter() - began),
-        worst=worst_of(candidate),
+        record=Record(method, {} if settings is None else settings),
+        steps=default_steps(task),
     )
+    _ = plan.motion, plan.worst  # a motion that fails does so here
+    return plan.restated(seconds=time.perf_counter() - began)
 
 
 def only_motion(
@@ -258,37 +294,29 @@ def only_motion(
     if residual_limit is not None:
         residual = Limit.of_residual(max(residual_limit, STILL), task.plant.tip_unit)
         limits = {residual.name: residual} | limits
-    broken = [
-        f"its {limits[name].label} reaches "
-        f"{limits[name].describe(limits[name].peak_of(plan.motion))}, above {limits[name].bounds}"
-        for name in plan.motion.exceeded(limits.values(), OVERRUN)
-    ]
+    broken = list[str]()
+    for name in plan.motion.exceeded(limits.values(), OVERRUN):
+        limit = limits[name]
+        peak = limit.describe(limit.peak_of(plan.motion))
+        broken.append(f"its {limit.label} reaches {peak}, above {limit.bounds}")
     if broken:
         raise InfeasibleTaskError(
             f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
             "widen what is broken, or give a longer duration or another profile"
         )
-    return replace(plan, residual_limit=residual_limit)
-
-
-def _verify(candidate: Candidate, motion: Motion) -> Verification:
-    """Distance of its figures by CVODES from those by fixed steps."""
-    steps = default_steps(candidate.task)
-    evaluation = candidate.by_steps(steps, quantities=())([candidate.coefficients])
-    energy = float(evaluation.energy[0, 0])
-    return Verification.between(steps, energy, float(evaluation.residual.max()), motion)
+    return plan.with_entries(residual_limit=residual_limit)
 
 
 def ticks_of_move(duration: float, sample_rate: float) -> int:
     """Ticks from the start to the first at or after arrival."""
     ticks = duration * positive("sample rate", sample_rate, "Hz")
-    if ticks < _LEAST_TICKS:
+    if ticks < 1e-4:
         raise ValueError(
             f"sample rate is {sample_rate:g} Hz, a tick long after the arrival; give a higher rate"
         )
-    if ticks > _MOST_SAMPLES:
+    if ticks > _MOST_ROWS:
         raise ValueError(
             f"sample rate {sample_rate:g} Hz asks for {ticks:.0f} rows, of at most "
-            f"{_MOST_SAMPLES}; give at most {_MOST_SAMPLES / duration:.6g} Hz"
+            f"{_MOST_ROWS}; give at most {_MOST_ROWS / duration:.6g} Hz"
         )
     return max(1, math.ceil(ticks - 1e-9))

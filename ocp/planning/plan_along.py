@@ -21,15 +21,15 @@ from quietarm.ocp.planning.best_of_starts import best_of_starts, solve_from_star
 from quietarm.ocp.planning.certify import OVERRUN, certify_one
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.request import PlanRequest
-from quietarm.ocp.record import REST, Verification
-from quietarm.ocp.robustness import Worst, peaks_between
+from quietarm.ocp.record import REST
+from quietarm.ocp.robustness import Worst
 from quietarm.ocp.task import PointToPoint
 
 EXCESS = 0.05
 """Share of the limit by which the residual between scenarios may exceed it before more are added;
 and the room above the least worst case, where no lower limit can be reached."""
 _ROUNDS = 6
-"""Most rounds of added scenarios."""
+"""Most rounds that add a plan's `peaks` as scenarios."""
 _TIGHTENINGS = 4
 """Most times that the limit is tightened by the remaining excess."""
 
@@ -88,7 +88,7 @@ def _adapt_limit(request: PlanRequest) -> Plan:
     if nominal is not None and plan.worst.residual > nominal_worst:
         plan = nominal
     assert plan.worst is not None
-    return replace(plan, residual_limit=plan.worst.residual)
+    return plan.with_entries(residual_limit=plan.worst.residual)
 
 
 def _nominal_plan(request: PlanRequest) -> Plan | None:
@@ -130,9 +130,8 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
     rounds = 0
     tightenings = 0
     while attempt.peaks:
-        worst = attempt.peaks[0]
-        plan = replace(attempt.plan, worst=worst)
-        excess = worst.residual / limit - 1
+        plan = attempt.plan
+        excess = attempt.peaks[0].residual / limit - 1
         above = [peak for peak in attempt.peaks if peak.residual > limit]
         scenarios = _new_scenarios(request.task, above)
         can_add = bool(scenarios) and rounds < _ROUNDS
@@ -151,7 +150,7 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
         elif can_tighten:
             tightenings += 1
             tightened /= (1 + excess) * (1 + OVERRUN)
-            setup = replace(request.setup, steps=plan.verification.steps)
+            setup = replace(request.setup, steps=plan.steps)
             following = replace(request, setup=setup, quick=True).within(tightened)
         else:
             break
@@ -162,17 +161,13 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
             if not tightenings:
                 raise
             tightenings = _TIGHTENINGS  # a tighter limit leads nowhere: more scenarios may
-    return replace(plan, residual_limit=limit)
+    return plan.with_entries(residual_limit=limit)
 
 
-def _solve_and_look_between(
-    request: PlanRequest, starts: list[Array], most_peaks: int = 4
-) -> _Attempt:
+def _solve_and_look_between(request: PlanRequest, starts: list[Array]) -> _Attempt:
     """As `plan_from_starts`, and the peaks of the residual between the scenarios, if it has any."""
     plan, solved = plan_from_starts(request, starts)
-    if request.task.uncertainty is None:
-        return _Attempt(plan, solved, [])
-    return _Attempt(plan, solved, peaks_between(plan.candidate, most_peaks))
+    return _Attempt(plan, solved, list(plan.peaks))
 
 
 def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
@@ -188,20 +183,11 @@ def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Pla
     certified = certify_one(problem, best, setup.solver)
     assert isinstance(certified.checked, Candidate)  # a single motion is judged by CVODES
     solution = certified.solution
-    motion = certified.checked.motion
-    plan = Plan(
-        task=request.task,
-        profile=request.profile,
-        coefficients=certified.checked.coefficients,
-        motion=motion,
+    plan = Plan.of_candidate(
+        certified.checked,
         status=solution.status,
-        verification=Verification.between(
-            certified.steps,
-            solution.energy,
-            solution.residual,
-            motion,
-        ),
         record=setup.record(setup.solver.name, solution.iterations, time.perf_counter() - began),
+        steps=certified.steps,
         residual_limit=request.residual_limit.size,
         shadow_prices=solution.shadow_prices,
     )

@@ -87,7 +87,7 @@ def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
     names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
     plans = {name: Plan.load(path) for name, path in zip(names, paths)}
     for plan, path in zip(plans.values(), paths):
-        check_plan(plan, str(path))
+        check_plan(plan, path)
         _refuse_changed(path, Plan)
     return plans
 

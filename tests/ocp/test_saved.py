@@ -50,7 +50,7 @@ def test_limits_by_direction_and_speed_come_back_and_older_files_load(plan, save
     limited.save(tmp_path / "limited.json")
     assert qa.Plan.load(tmp_path / "limited.json") == limited
     document = json.loads(saved.read_text())
-    del document["task"]["torque_speed"], document["motion"]["ranges"]
+    del document["task"]["torque_speed"], document["stated"]
     saved.write_text(json.dumps(document))
     assert qa.Plan.load(saved) == plan
 
@@ -72,7 +72,7 @@ def test_what_is_not_whole_json_is_refused(saved, spoil):
     [
         ("format", "quietarm-front", "quietarm-front"),
         ("version", qa.Plan.version + 1, str(qa.Plan.version + 1)),
-        ("motion/energy", "much", "motion.energy"),
+        ("stated/energy", "much", "stated.energy"),
         ("task/duration", -1.0, "duration is -1 s"),
         ("task/plant/name", "crane", "crane"),
         ("profile/terms", 99, "terms is 99"),

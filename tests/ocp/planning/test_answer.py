@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import quietarm as qa
+import quietarm.ocp.candidate
 from quietarm.ocp import Verification
 
 # Table 1, N = 2.
@@ -47,6 +48,24 @@ def test_a_saved_plan_loads_equal(any_plan, tmp_path):
         loaded.motion
         == qa.Candidate.of_profile(loaded.task, loaded.profile, loaded.coefficients).motion
     )
+
+
+@pytest.mark.parametrize("errors", [{}, {"frequency": 0.04}], ids=["certain", "uncertain"])
+def test_what_planning_has_simulated_is_not_simulated_again(tasks, monkeypatch, errors):
+    uncertainty = qa.Uncertainty(errors) if errors else None
+    task = replace(tasks["single link"], uncertainty=uncertainty)
+    planned = qa.plan_move(task, qa.CycloidPolynomial(4), starts=1)
+    evaluated = qa.evaluate_coefficients(task, planned.coefficients)
+
+    def refuse(*arguments):
+        raise AssertionError("CVODES is asked again")
+
+    monkeypatch.setattr(quietarm.ocp.candidate, "integrate", refuse)
+    for plan in (planned, evaluated, planned.restated(seconds=1.0)):
+        assert (plan.motion.energy, plan.motion.residual) == (plan.energy, plan.residual)
+        assert (plan.worst is None) == (not errors)
+    assert planned.motion == evaluated.motion
+    assert planned.worst == evaluated.worst
 
 
 def _table(plan, path, *rate):

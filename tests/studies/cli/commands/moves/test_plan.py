@@ -33,7 +33,7 @@ def test_a_plan_says_what_it_found_and_what_it_wrote(folder):
 def test_json_goes_to_standard_output_and_words_to_standard_error(call, plan):
     code, out, err = call(f"plan {MOVE} --terms 2 --quiet --output -")
     assert code == 0
-    assert json.loads(out)["motion"]["energy"] == pytest.approx(plan.energy, rel=1e-9)
+    assert json.loads(out)["stated"]["energy"] == pytest.approx(plan.energy, rel=1e-9)
     assert "energy (F2)" in err
 
 
@@ -68,7 +68,7 @@ def test_an_energy_that_is_not_the_papers_is_named(done):
     ):  # fmt: skip
         out = done(f"{words} {line} --output {name}.json")
         assert "0 to 30 deg in 0.8 s, energy positive+copper:0.12" in " ".join(out.split())
-        energies[name] = json.loads(Path(f"{name}.json").read_text())["motion"]["energy"]
+        energies[name] = json.loads(Path(f"{name}.json").read_text())["stated"]["energy"]
     assert energies["free"] < energies["plan"] < energies["cycloid"]
     assert Plan.load("plan.json").task.energy == PositivePower() + CopperLoss(0.12)
 
