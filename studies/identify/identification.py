@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import tau
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +13,14 @@ from quietarm.models import Plant
 from quietarm.ocp.checks import takes
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
-from quietarm.studies.identify.combine import combine
+from quietarm.studies.identify.combine import Combined, combine
 from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
 from quietarm.studies.identify.machine import (
     Identified,
     Part,
     in_torque_alone,
     is_damping,
+    is_frequency,
     is_modal,
 )
 from quietarm.studies.identify.mending import without_glitches
@@ -100,11 +102,12 @@ def identify(
     fitted, worthless = _worth_pooling(plant, fitted)
     left_out |= worthless
     doubts += doubt_units(recordings, [one.frequency for one in fitters], plant.joint)
-    estimates, wide = combine(sought, fitted)
-    unknown |= wide
+    combined = combine(sought, fitted)
+    unknown |= combined.wide
+    doubts += _drifts(plant, combined, fitted)
     return Identified(
-        replace(plant, **{one.parameter: one.value for one in estimates}),
-        tuple(estimates), {name: unknown[name] for name in names if name in unknown},
+        replace(plant, **{one.parameter: one.value for one in combined.estimates}),
+        tuple(combined.estimates), {name: unknown[name] for name in names if name in unknown},
         tuple(fitted), left_out, tuple(doubts), versions(),
     )  # fmt: skip
 
@@ -176,6 +179,29 @@ def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dic
     if not worth:
         raise ValueError("; ".join(f"{name}: {reasons}" for name, reasons in left_out.items()))
     return worth, left_out
+
+
+def _drifts(plant: Plant, combined: Combined, parts: Sequence[Part]) -> list[str]:
+    """Which of the identified parameters drift from one recording to the next, in words."""
+    recordings = {part.recording for part in parts}
+    what = "recordings" if len(recordings) > 1 else "ring-downs"
+    return [
+        say(
+            "trend.drift",
+            name=name,
+            what=what,
+            first=_with_unit(plant, name, trend.first),
+            last=_with_unit(plant, name, trend.last),
+        )
+        for name, trend in combined.trends.items()
+        if name not in combined.wide
+    ]
+
+
+def _with_unit(plant: Plant, name: str, value: float) -> str:
+    if is_frequency(plant, name):
+        return f"{value / tau:.5g} Hz"
+    return f"{value:.3g}"
 
 
 def _not_identifiable(each: Sequence[PartFitter]) -> dict[str, str]:

@@ -37,7 +37,8 @@ class Estimate:
         The mean over the parts, weighted by their accuracy [SI units].
     low, high : float
         Ends of the interval that covers the mean in 95 of 100 cases; where the parameter changes
-        with the amplitude, all that it is along the swings.
+        with the amplitude, all that it is along the swings, and where it drifts from one recording
+        to the next, all of the drift.
     next_low, next_high : float or None
         Ends of the interval that covers the next swing's in 95 of 100 cases, from the scatter
         of the parts beyond their own uncertainty; likewise. None with one part.
@@ -149,7 +150,7 @@ class Identified(Saved):
     left_out : dict of str to str
         Recordings that were not fitted, and why.
     warnings : tuple of str
-        Doubts about the recordings, such as their units.
+        Doubts about the recordings, such as their units or a drift from one to the next.
     versions : dict of str to str
         Of what identified it.
     """
