@@ -246,6 +246,23 @@ def test_a_joint_that_rests_for_a_moment_only_is_left_alone_there():
     assert found.parts[0].begin == pytest.approx(0.96, abs=0.2)
 
 
+def test_a_ring_down_begins_after_the_move():
+    # a cycloid of 0.5 rad from 0.5 to 1.1 s, seen by an encoder of 4096 counts
+    t = np.arange(0, 5, 0.002)
+    share = np.clip((t - 0.5) / 0.6, 0, 1)
+    angle = 0.5 * (share - np.sin(math.tau * share) / math.tau)
+    pushes = 0.5 * math.tau / 0.6**2 * np.sin(math.tau * share)
+    omega = math.tau * 3.2
+    mode = StateSpace([[0, 1], [-(omega**2), -0.02 * omega]], [[0], [-1]], [[1, 0]], [[0]])
+    tip = lsim(mode, pushes, t)[1]
+    count = math.tau / 4096
+    flicker = 0.2 * np.random.default_rng(1).standard_normal(len(t))
+    encoder = count * np.round(angle / count + flicker)
+    found = beam(qa.Recording(t, encoder, noisy(tip, 0.02)))
+    assert found.parts[0].begin > 1.1
+    assert holds(found, 3.2)
+
+
 def test_the_push_of_the_joint_shows_while_it_moves(moved):
     angle, tip = moved.joint[:, 0], noisy(moved.tips[:, 0], 0.01)
     assumed = qa.SingleLinkManipulator(phi=2.0)
