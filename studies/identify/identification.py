@@ -28,15 +28,11 @@ from quietarm.studies.identify.part_fitter import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.recording_parts import fit_parts
 from quietarm.studies.identify.ring_downs import moves
-from quietarm.studies.identify.swing_model import Model
+from quietarm.studies.identify.swing_model import SwingModel
 from quietarm.studies.identify.whole_recording import fit_whole, sensitivities
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
-_DEPENDENT = 1e-3
-"""Parameters cannot be told apart where others explain all but this share of what one does."""
-_BAD = 0.4
-"""Share of the swing's size beside the noise that a fit may leave, to count."""
 
 
 @takes(plant=Plant)
@@ -84,60 +80,80 @@ def identify(
         for recording, frequency in zip(recordings, frequencies)
     ]
     at_rest = "torque" not in kinds and all(is_modal(plant, name) for name in names)
-    fitted, left_out, moving = list[Part](), dict[str, str](), list[PartFitter]()
+    fitted = list[Part]()
+    left_out = dict[str, str]()
+    moving = list[PartFitter]()
     for fitter in fitters:
-        found, why = fit_parts(fitter, parts) if at_rest else ([], say("recording.silent"))
-        fitted += found
-        if not found and fitter.frequency and (moves(fitter.recording) or not at_rest):
+        ring_downs = list[Part]()
+        why = say("recording.silent")
+        if at_rest:
+            ring_downs, why = fit_parts(fitter, parts)
+        fitted += ring_downs
+        if not ring_downs and fitter.frequency and (moves(fitter.recording) or not at_rest):
             moving.append(fitter)
-        elif not found:
+        elif not ring_downs:
             left_out[fitter.recording.name] = why
     if not fitted and not moving:
         if not any(frequencies):
             raise ValueError(say("refused.silent", name=recordings[0].name))
-        raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
+        raise ValueError(_by_recording(left_out))
     unknown = {} if fitted else _not_identifiable(moving)
     sought = [name for name in names if name not in unknown]
     fitted += [fit_whole(fitter.of(sought)) for fitter in moving]
     fitted, worthless = _worth_pooling(plant, fitted)
-    left_out |= worthless
-    doubts += doubt_units(recordings, [one.frequency for one in fitters], plant.joint)
     combined = combine(sought, fitted)
     unknown |= combined.wide
+    doubts += doubt_units(recordings, [fitter.frequency for fitter in fitters], plant.joint)
     doubts += _drifts(plant, combined, fitted)
+    values = {estimate.parameter: estimate.value for estimate in combined.estimates}
     return Identified(
-        replace(plant, **{one.parameter: one.value for one in combined.estimates}),
-        tuple(combined.estimates), {name: unknown[name] for name in names if name in unknown},
-        tuple(fitted), left_out, tuple(doubts), versions(),
-    )  # fmt: skip
+        plant=replace(plant, **values),
+        estimates=tuple(combined.estimates),
+        not_identifiable={name: unknown[name] for name in names if name in unknown},
+        parts=tuple(fitted),
+        left_out=left_out | worthless,
+        warnings=tuple(doubts),
+        versions=versions(),
+    )
 
 
-def curve_of(found: Identified, part: Part, recordings: Sequence[Recording]) -> tuple[Model, Array]:
+def curve_of(
+    machine: Identified, part: Part, recordings: Sequence[Recording]
+) -> tuple[SwingModel, Array]:
     """What was fitted in a part, and the signals that it was met by (rows, signals)."""
-    named = [one for one in recordings if one.name == part.recording]
+    named = [recording for recording in recordings if recording.name == part.recording]
     (recording, *_), _ = without_glitches(named)
-    fitter = PartFitter(found.plant, list(part.values), recording, 1.0)
+    fitter = PartFitter(machine.plant, list(part.values), recording, 1.0)
     fitter.frequency = fitter.frequency_of(part.vector)
     model = fitter.model(part)
     return model, model.fitted(part.vector)
+
+
+def _by_recording(reasons: dict[str, str]) -> str:
+    """Why each recording is left out, in a line."""
+    return "; ".join(f"{name}: {why}" for name, why in reasons.items())
 
 
 def _check(recordings: Sequence[Recording], plant: Plant) -> list[str]:
     """The kinds of the recordings' signals, that are the same in all of them."""
     if not recordings:
         raise ValueError(say("refused.none"))
-    first, tips = recordings[0], {"plant": plant.name, "tips": plant.tips}
+    first = recordings[0]
     kinds = [*first.signals]
-    for one in recordings:
-        if [*one.signals] != kinds:
-            own, others = " and ".join(one.signals), " and ".join(kinds)
-            raise ValueError(
-                say("refused.kinds", name=one.name, own=own, first=first.name, others=others)
-            )
-        for kind, values in one.signals.items():
+    for recording in recordings:
+        name = recording.name
+        if [*recording.signals] != kinds:
+            facts = {
+                "own": " and ".join(recording.signals),
+                "others": " and ".join(kinds),
+                "first": first.name,
+            }
+            raise ValueError(say("refused.kinds", name=name, **facts))
+        for kind, values in recording.signals.items():
             count = values.shape[1]
             if kind != "torque" and count != plant.tips:
-                raise ValueError(say("refused.tips", name=one.name, count=count, kind=kind, **tips))
+                tips = {"plant": plant.name, "tips": plant.tips}
+                raise ValueError(say("refused.tips", name=name, count=count, kind=kind, **tips))
     return kinds
 
 
@@ -147,8 +163,9 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
         return [*dict.fromkeys(free)]
     names = [name for name in plant.measured if is_modal(plant, name)]
     if "torque" in kinds:
-        others = [name for name in plant.measured if name not in names]
-        names += [name for name in others if in_torque_alone(plant, name)]
+        names += [
+            name for name in plant.measured if name not in names and in_torque_alone(plant, name)
+        ]
     if not names:
         raise ValueError(say("refused.sought", plant=plant.name))
     return names
@@ -159,7 +176,9 @@ def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dic
 
     Each is judged by itself, however many there are. ValueError where none is left.
     """
-    worth, why = list[Part](), dict[str, list[str]]()
+    most_unexplained = 0.4  # share of the swing's size beside the noise
+    worth = list[Part]()
+    why = dict[str, list[str]]()
     for part in parts:
         facts = {"begin": part.begin, "end": part.end}
         driven = [
@@ -167,7 +186,7 @@ def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dic
             for name, value in part.values.items()
             if is_damping(plant, name) and value + part.deviations[name] < 0
         ]
-        if part.unexplained > _BAD:
+        if part.unexplained > most_unexplained:
             reason = say("recording.misfit", misfit=part.misfit, **facts)
         elif driven:
             reason = say("recording.negative", damping=min(driven), **facts)
@@ -177,7 +196,7 @@ def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dic
         why.setdefault(part.recording, []).append(reason)
     left_out = {name: "; ".join(reasons) for name, reasons in why.items()}
     if not worth:
-        raise ValueError("; ".join(f"{name}: {reasons}" for name, reasons in left_out.items()))
+        raise ValueError(_by_recording(left_out))
     return worth, left_out
 
 
@@ -204,23 +223,29 @@ def _with_unit(plant: Plant, name: str, value: float) -> str:
     return f"{value:.3g}"
 
 
-def _not_identifiable(each: Sequence[PartFitter]) -> dict[str, str]:
+def _not_identifiable(fitters: Sequence[PartFitter]) -> dict[str, str]:
     """The parameters that recordings of moving joints do not identify, and why."""
-    for one in each:
-        if not moves(one.recording):
-            raise ValueError(say("refused.rests", name=one.recording.name))
-    J, names = np.concatenate([sensitivities(one) for one in each]), each[0].names
-    sizes = np.linalg.norm(J, axis=0)
-    kept, cannot = list[int](), dict[str, str]()
+    least_apart = 1e-3  # share of what a parameter does that the others may not explain
+    for fitter in fitters:
+        if not moves(fitter.recording):
+            raise ValueError(say("refused.rests", name=fitter.recording.name))
+    names = fitters[0].names
+    slopes = np.concatenate([sensitivities(fitter) for fitter in fitters])
+    sizes = np.linalg.norm(slopes, axis=0)
+    told_apart = list[int]()
+    reasons = dict[str, str]()
     for k, name in enumerate(names):
-        share, *_ = np.linalg.lstsq(J[:, kept], J[:, k], rcond=None)
         if sizes[k] <= 1e-9 * sizes.max():
-            cannot[name] = say("parameter.idle")
-        elif kept and np.linalg.norm(J[:, k] - J[:, kept] @ share) < _DEPENDENT * sizes[k]:
-            other = names[kept[int(np.abs(share).argmax())]]
-            cannot[name] = say("parameter.same", other=other)
+            reasons[name] = say("parameter.idle")
+            continue
+        before = slopes[:, told_apart]
+        share, *_ = np.linalg.lstsq(before, slopes[:, k], rcond=None)
+        apart = np.linalg.norm(slopes[:, k] - before @ share)
+        if told_apart and apart < least_apart * sizes[k]:
+            nearest = names[told_apart[int(np.abs(share).argmax())]]
+            reasons[name] = say("parameter.same", other=nearest)
         else:
-            kept.append(k)
-    if not kept:
-        raise ValueError(say("refused.nothing", names=", ".join(cannot)))
-    return cannot
+            told_apart.append(k)
+    if not told_apart:
+        raise ValueError(say("refused.nothing", names=", ".join(reasons)))
+    return reasons

@@ -16,13 +16,6 @@ from quietarm.ocp.uncertainty import with_values
 from quietarm.studies.identify.words import say
 
 Array = NDArray[np.float64]
-_DAMPING = "zeta"
-"""How the name of a damping ratio begins."""
-_MOST_DAMPING, _LEAST_DAMPING = 0.9, 0.3
-_GROWTH = 100.0
-"""Logarithm of how much a swing may grow in a fit."""
-_LEAST_ERROR = 1e-6
-"""Of a parameter known without error, as of a simulation: a range of none is no range."""
 
 
 @dataclass(frozen=True)
@@ -176,18 +169,25 @@ class Identified(Saved):
             When a parameter is not identifiable, the plant does not move as what was recorded, or
             one part alone does not tell how much the machine varies.
         """
-        own, doubtful = say("errors.own"), [part for part in self.parts if part.warning]
+        remedy = say("errors.own")
+        doubtful = [part for part in self.parts if part.warning]
         if 2 * len(doubtful) >= len(self.parts):
-            raise ValueError(f"{doubtful[0].recording}: {doubtful[0].warning}; or {own}")
+            raise ValueError(f"{doubtful[0].recording}: {doubtful[0].warning}; or {remedy}")
         if self.not_identifiable:
             name, why = next(iter(self.not_identifiable.items()))
-            known = " and ".join(one.parameter for one in self.estimates) or "omega"
-            raise ValueError(say("errors.unknown", parameter=name, why=why, known=known, own=own))
-        moving = [one for one in self.estimates if not in_torque_alone(self.plant, one.parameter)]
+            facts = {"parameter": name, "why": why, "own": remedy}
+            known = " and ".join(estimate.parameter for estimate in self.estimates) or "omega"
+            raise ValueError(say("errors.unknown", known=known, **facts))
+        moving = [
+            estimate
+            for estimate in self.estimates
+            if not in_torque_alone(self.plant, estimate.parameter)
+        ]
         if len(self.parts) == 1:
-            percent = 100 * max((one.error for one in moving), default=0.0)
-            raise ValueError(say("errors.one", percent=percent, own=own))
-        return {one.parameter: max(one.error, _LEAST_ERROR) for one in moving}
+            percent = 100 * max((estimate.error for estimate in moving), default=0.0)
+            raise ValueError(say("errors.one", percent=percent, own=remedy))
+        least = 1e-6  # of a simulation without noise: a range of none is no range
+        return {estimate.parameter: max(estimate.error, least) for estimate in moving}
 
     def check_unchanged(self, names: Iterable[str]) -> None:
         """Refuse to change parameters on which the measured intervals rest.
@@ -210,8 +210,10 @@ class Identified(Saved):
 
 def in_torque_alone(plant: Plant, name: str) -> bool:
     """Whether a parameter shows in the torque, and neither in the modes nor at the tips."""
-    symbol, joint = ca.SX.sym(name), JointMotion(*(ca.SX.sym("joint") for _ in range(3)))
-    W, dW = ([ca.SX.sym("W") for _ in range(plant.modes)] for _ in range(2))
+    symbol = ca.SX.sym(name)
+    joint = JointMotion(*(ca.SX.sym("joint") for _ in range(3)))
+    W = [ca.SX.sym("W") for _ in range(plant.modes)]
+    dW = [ca.SX.sym("dW") for _ in range(plant.modes)]
     changed = with_values(plant, {name: symbol})
     ddW = changed.modal_accelerations(joint, W, dW)
     moves = ca.SX(ca.vertcat(*ddW, *changed.tips_at(joint, W)))
@@ -231,7 +233,7 @@ def is_modal(plant: Plant, name: str) -> bool:
 
 def is_damping(plant: Plant, name: str) -> bool:
     """Whether a parameter is the damping ratio of a mode, by its name."""
-    return name.startswith(_DAMPING) and not is_frequency(plant, name)
+    return name.startswith("zeta") and not is_frequency(plant, name)
 
 
 def values_of(plant: Plant, names: Sequence[str]) -> Array:
@@ -246,13 +248,18 @@ def bounds_of(
 
     No swing of so many seconds grows beyond what numbers can hold.
     """
-    lower, upper = np.full(len(names), -np.inf), np.full(len(names), np.inf)
+    most_growth = 100.0  # as a logarithm
+    least_damping = 0.3  # below 0
+    most_damping = 0.9
+    lower = np.full(len(names), -np.inf)
+    upper = np.full(len(names), np.inf)
     for k, name in enumerate(names):
         if is_frequency(plant, name):
-            lower[k], upper[k] = 0.3 * start[k], 3 * start[k]
+            lower[k] = 0.3 * start[k]
+            upper[k] = 3 * start[k]
     fastest = float(upper[np.isfinite(upper)].max(initial=0.0)) or 1.0
     for k, name in enumerate(names):
         if is_damping(plant, name):
-            lower[k] = -min(_LEAST_DAMPING, _GROWTH / (fastest * seconds))
-            upper[k] = _MOST_DAMPING
+            lower[k] = -min(least_damping, most_growth / (fastest * seconds))
+            upper[k] = most_damping
     return lower, upper

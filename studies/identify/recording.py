@@ -65,7 +65,8 @@ class Recording:
         arrays = {name: np.asarray(values, float) for name, values in self._arrays.items()}
         if not arrays.keys() - {"time", "angle"}:
             self._refuse("signals")
-        rows, whole = len(arrays["time"]), True
+        rows = len(arrays["time"])
+        whole = np.ones(rows, bool)
         for name, values in arrays.items():
             if len(values) != rows:
                 self._refuse("lengths", rows=rows, others=len(values), what=name)

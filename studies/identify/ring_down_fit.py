@@ -76,8 +76,8 @@ def _without_saturated(fitter: PartFitter, fitted: Fitted) -> Fitted:
     part, best = fitted
     piece = fitter.piece(part)
     flat = saturated(piece.values)
-    others = np.count_nonzero(~flat)
-    if not flat.any() or others <= max(LEAST_ROWS, 0.1 * len(flat)):
+    not_flat = np.count_nonzero(~flat)
+    if not flat.any() or not_flat <= max(LEAST_ROWS, 0.1 * len(flat)):
         return fitted
     cut = replace(part, saturated=int(flat.sum()), values={})
     cut, without = fitter.fit(cut, best.p)

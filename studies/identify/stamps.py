@@ -24,19 +24,21 @@ def mended(arrays: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, dic
     Rounded stamps are those of an even rate; of rows with the same stamp the first stays.
     """
     time = arrays["time"]
-    steps, found = np.diff(time), dict(arrays)
+    steps = np.diff(time)
+    unchanged = dict(arrays)
     if len(time) < _LEAST or not (steps >= 0).all() or not (steps > 0).any():
-        return found, {}
+        return unchanged, {}
     again = np.append(False, steps == 0)
     if again.any() and _stand_twice(arrays, again):
         return _without(arrays, again)
     even = _even(time, steps)
     if even is not None:
-        found["time"], tick = even
-        step = float(np.median(np.diff(found["time"])))
-        return found, {"rounded": {"tick": f"{1e3 * tick:.3g}", "step": f"{1e3 * step:.6g}"}}
+        times, tick = even
+        step = float(np.median(np.diff(times)))
+        facts = {"tick": f"{1e3 * tick:.3g}", "step": f"{1e3 * step:.6g}"}
+        return unchanged | {"time": times}, {"rounded": facts}
     if not again.any() or np.count_nonzero(again) > _SOME * len(time):
-        return found, {}
+        return unchanged, {}
     return _without(arrays, again)
 
 
@@ -61,9 +63,11 @@ def _without(
 def _even(time: Array, steps: Array) -> tuple[Array, float] | None:
     """The times of an even rate and what they were rounded to; None where they were not."""
     tick = _tick(steps[steps > 0])
-    tick = float(np.ptp(time)) / round(float(np.ptp(time)) / tick)
+    seconds = float(np.ptp(time))
+    tick = seconds / round(seconds / tick)
     ties = np.count_nonzero(steps == 0)
-    whole = np.abs(time / tick - np.round(time / tick)).max() < 1e-3
+    ticks = time / tick
+    whole = np.abs(ticks - np.round(ticks)).max() < 1e-3
     if not whole or not (ties == 0 or ties > _SOME * len(time)):
         return None
     longest = _GAP * max(float(np.median(steps)), tick)
