@@ -50,7 +50,9 @@ def _ends(values: Array, deviations: Array, least: float) -> tuple[float, float]
     high = float(max(value + sure * deviation for value, deviation in candidates))
     if high - low <= least:
         return None
-    curved = 0.05 * (high - low)  # what neither line nor parabola has
+    # what neither line nor parabola has: of four simulated pendulums from 0.4 to 1.35 rad the first
+    # frequency was beyond them by 5 % at most
+    curved = 0.05 * (high - low)
     return low - curved, high + curved
 
 

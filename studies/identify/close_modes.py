@@ -17,7 +17,7 @@ from quietarm.studies.identify.columns import Columns, parts
 from quietarm.studies.identify.envelope import phasor
 from quietarm.studies.identify.fitting import Fit, fit
 from quietarm.studies.identify.recording import Recording, noise_of
-from quietarm.studies.identify.swing_model import Model
+from quietarm.studies.identify.swing_model import SwingModel
 
 Array = NDArray[np.float64]
 
@@ -89,7 +89,7 @@ def find_close_modes(recording: Recording, piece: Recording, frequency: float) -
     start = _by_matrix_pencil(recording, frequency)
     if start is None:
         return None
-    model = Model(piece, TwoDecays(piece.time))
+    model = SwingModel(piece, TwoDecays(piece.time))
     most_damping = 0.3
     lower = np.array([0.5 * start[0], -0.02, 0.5 * start[2], -0.02])
     upper = np.array([2.0 * start[0], most_damping, 2.0 * start[2], most_damping])
@@ -135,6 +135,8 @@ def _judged(both: Fit, recording: Recording, piece: Recording) -> CloseModes | N
     seconds = float(np.ptp(piece.time))
     apart = abs(frequencies[0] - frequencies[1])
     met = both.misfit <= 1.5 * noise + 0.003
+    # in less than a quarter of a beat their sum has the course of one decay, up to a parabola; of
+    # 60 simulated swings of one mode none passed the other tests
     a_quarter = apart * seconds > pi / 2 and apart > 6 * deviations[::2].max()
     two = amplitudes.min() > 0.05 * amplitudes.max()
     decays = (dampings + 2 * deviations[1::2] > 0).all()

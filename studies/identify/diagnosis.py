@@ -38,7 +38,7 @@ def doubt_of(
     ----------
     time : array, shape (rows,)
         [s].
-    left, swinging : array, shape (rows, signals)
+    residual, swinging : array, shape (rows, signals)
         What is left, and the fitted swing.
     frequency : float
         Of the swing [Hz].
@@ -46,7 +46,8 @@ def doubt_of(
         The recording's own, as a share of the swing.
     """
     at, size = spectrum_of(time, residual)
-    power, whole = size**2 / 2, float((swinging**2).mean(axis=0).max()) + 1e-300
+    power = size**2 / 2
+    whole = float((swinging**2).mean(axis=0).max()) + 1e-300
     stands_out = power > _STANDS_OUT * _beside(power)
     lines = np.convolve(stands_out[1:], np.ones(5), "same") > 0
     excess = np.append(0.0, power[1:] * lines)

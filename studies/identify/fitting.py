@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.studies.identify.least_squares import bounded_step, least_squares, variances_of
-from quietarm.studies.identify.swing_model import Model
+from quietarm.studies.identify.swing_model import SwingModel
 
 Array = NDArray[np.float64]
 Bounds = tuple[Array, Array]
@@ -22,7 +22,7 @@ class Fit:
     ----------
     p, deviations : array
         The parameters; theirs by the residuals' power near the swing's frequency.
-    model : Model
+    model : SwingModel
         What was fitted.
     swinging, residual : array, shape (rows, signals)
         What swings of the nearest signals, without the trend; and what is left.
@@ -35,7 +35,7 @@ class Fit:
 
     p: Array
     deviations: Array
-    model: Model
+    model: SwingModel
     swinging: Array
     residual: Array
     delay: float
@@ -49,7 +49,7 @@ class Fit:
         return float(shares.max())
 
 
-def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float) -> Fit:
+def fit(model: SwingModel, start: Array, lower: Array, upper: Array, frequency: float) -> Fit:
     """Least squares of parameters and amplitudes of a swing at a frequency [Hz].
 
     First all residuals count by their square, then by Huber's weights.
@@ -78,7 +78,7 @@ def fit(model: Model, start: Array, lower: Array, upper: Array, frequency: float
     return Fit(p, of_p, model, swinging.T, residual.T, delay, inflation)
 
 
-def _by_huber(model: Model, start: Array, bounds: Bounds) -> tuple[Array, Array]:
+def _by_huber(model: SwingModel, start: Array, bounds: Bounds) -> tuple[Array, Array]:
     """Parameters and amplitudes, and the deviation of each signal's residuals (signals, 1)."""
     beyond = 2.5  # deviations, from which on residuals count by their size alone (Huber's)
     settled = 0.02  # a change of the weights that changes nothing more
@@ -115,7 +115,7 @@ def _inflation(slopes: Array, variances: Array, count: int, signals: int) -> Arr
     return np.sqrt(variances[:count] / variances_of(known)[:count])
 
 
-def _search(model: Model, p: Array, weights: Array, bounds: Bounds, most_steps: int) -> Array:
+def _search(model: SwingModel, p: Array, weights: Array, bounds: Bounds, most_steps: int) -> Array:
     """Parameters and amplitudes of the least weighted squares, by Levenberg and Marquardt's steps.
 
     Amplitudes are the best of the parameters at every step (variable projection), so that steps are
@@ -148,13 +148,13 @@ def _search(model: Model, p: Array, weights: Array, bounds: Bounds, most_steps: 
     return x
 
 
-def _projected(model: Model, p: Array, weights: Array) -> tuple[Array, float]:
+def _projected(model: SwingModel, p: Array, weights: Array) -> tuple[Array, float]:
     """The parameters with the amplitudes that leave the least, and the squares that are left."""
     x = model.start(p, weights)
     return x, float((weights * model.residual(x) ** 2).sum())
 
 
-def _slopes(model: Model, x: Array, weights: Array) -> tuple[Array, Array]:
+def _slopes(model: SwingModel, x: Array, weights: Array) -> tuple[Array, Array]:
     """Gradient and Gauss and Newton's curvature by the parameters, amplitudes following them."""
     slopes = model.jacobian(x)
     residual = model.residual(x)

@@ -15,19 +15,10 @@ from quietarm.studies.identify.ring_downs import rests
 from quietarm.studies.identify.spectra import highest_peaks, spectrogram
 
 Array = NDArray[np.float64]
-_SLOWEST, _FASTEST = 0.02, 500.0
-"""Frequencies [Hz] that no arm has: a wrong unit of the time is more likely."""
-_COARSE, _DOUBTFUL = 0.2, 0.1
-"""A step [s] and a frequency [Hz] that may come from a time in milliseconds."""
-_TURNS = 2 * tau
-"""A joint that turns further may be in degrees."""
-_STRETCHES = (1, 4, 16, 64)
-_STANDS_OUT = 1.5
-"""How far a peak of a spectrum is above what is beside it, as a logarithm."""
-_CANDIDATES, _APART = 4, 0.05
-_SAME, _LOUD = 0.3, 0.05
-"""Recordings of one machine swing within this share of each other; and a candidate there is taken
-where it has this share of the loudest."""
+FASTEST = 500.0
+"""No arm swings at more hertz: a wrong unit of the time is more likely."""
+Candidates = dict[float, float]
+"""How loud a recording swings, by frequency [Hz]."""
 
 
 def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
@@ -35,59 +26,77 @@ def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
 
     0 where nothing swings; ValueError where one swings as no arm does.
     """
-    tables = [np.array([*_candidates_of(one).items()]).reshape(-1, 2).T for one in recordings]
-    if not any(loud.any() for _, loud in tables):
+    slowest = 0.02  # Hz; no arm swings as slowly
+    least_share = 0.05  # of the loudest, that a candidate near the common frequency has
+    tables = [_candidates_of(recording) for recording in recordings]
+    if not any(any(table.values()) for table in tables):
         return [0.0] * len(recordings)
-    shares = [(f, loud / (loud.sum() or 1.0)) for f, loud in tables]
+    common = _common_frequency(tables)
+    frequencies = list[float]()
+    for recording, table in zip(recordings, tables):
+        loudest = max(table.values(), default=0.0)
+        among = _near(table, common)
+        if max(among.values(), default=0.0) <= least_share * loudest:
+            among = table
+        frequency = max(among, key=lambda candidate: among[candidate]) if loudest else 0.0
+        if frequency and not slowest <= frequency <= FASTEST:
+            raise ValueError(
+                f"{recording.name} swings at {frequency:.3g} Hz, as no arm does; is its time in "
+                "another unit? say so by --units, as time:ms"
+            )
+        frequencies.append(frequency)
+    return frequencies
 
-    def near(f: Array, frequency: float) -> NDArray[np.bool_]:
-        return np.abs(f / frequency - 1) < _SAME
+
+def _near(table: Candidates, frequency: float) -> Candidates:
+    """The candidates that may be of the same machine: within 30 %."""
+    same = 0.3
+    return {f: loudness for f, loudness in table.items() if abs(f / frequency - 1) < same}
+
+
+def _common_frequency(tables: Sequence[Candidates]) -> float:
+    """The candidate at which all recordings together are loudest, each counting the same."""
 
     def loudness(frequency: float) -> float:
-        return sum(float(share[near(f, frequency)].max(initial=0.0)) for f, share in shares)
+        total = 0.0
+        for table in tables:
+            of_all = sum(table.values()) or 1.0
+            total += max(_near(table, frequency).values(), default=0.0) / of_all
+        return total
 
-    common = max(np.concatenate([f for f, _ in tables]), key=loudness)
-    found = list[float]()
-    for one, (f, share) in zip(recordings, shares):
-        among = share * near(f, common)
-        if among.max(initial=0.0) <= _LOUD * share.max(initial=0.0):
-            among = share
-        best = float(f[among.argmax()]) if share.any() else 0.0
-        if best and not _SLOWEST <= best <= _FASTEST:
-            raise ValueError(
-                f"{one.name} swings at {best:.3g} Hz, as no arm does; is its time in another unit? "
-                "say so by --units, as time:ms"
-            )
-        found.append(best)
-    return found
+    return max((frequency for table in tables for frequency in table), key=loudness)
 
 
 def doubt_units(
     recordings: Sequence[Recording], frequencies: Sequence[float], joint: str
 ) -> list[str]:
     """What units may be wrong, of a kind of joint."""
-    doubts = list[str]()
+    coarse_step = 0.2  # s; and a frequency [Hz], that may come from a time in milliseconds
+    slow = 0.1
+    most_turns = 2 * tau  # a joint that turns further may be in degrees
+    sentences = list[str]()
     for recording, frequency in zip(recordings, frequencies):
-        turns = 0.0 if recording.angle is None else float(np.ptp(recording.angle))
-        if recording.step >= _COARSE or 0 < frequency < _DOUBTFUL:
-            doubts.append(
+        angle = recording.angle
+        turns = 0.0 if angle is None else float(np.ptp(angle))
+        if recording.step >= coarse_step or 0 < frequency < slow:
+            sentences.append(
                 f"{recording.name}: {frequency:.3g} Hz by samples {recording.step:.3g} s apart; "
                 "is its time in milliseconds? say so by --units time:ms"
             )
-        if frequency > _FASTEST / 2:
-            doubts.append(
+        if frequency > FASTEST / 2:
+            sentences.append(
                 f"{recording.name}: {frequency:.4g} Hz is fast for an arm; is its time in seconds? "
                 "say so by --units time:s"
             )
-        if joint == ROTARY and turns > _TURNS:
-            doubts.append(
+        if joint == ROTARY and turns > most_turns:
+            sentences.append(
                 f"{recording.name}: its joint turns by {turns:.3g} rad, more than two turns; is it "
                 "in degrees? say so by --units angle:deg, or rename a column whose name says rad"
             )
-    return doubts
+    return sentences
 
 
-def _candidates_of(recording: Recording) -> dict[float, float]:
+def _candidates_of(recording: Recording) -> Candidates:
     """Candidates of the longest rest of the joint, if it is a fifth of the recording.
 
     Where nothing swings there, those of all of it.
@@ -95,32 +104,38 @@ def _candidates_of(recording: Recording) -> dict[float, float]:
     stretches = rests(recording, 10 / float(np.ptp(recording.time)))
     longest = max(stretches, key=lambda rows: rows.stop - rows.start, default=slice(0, 0))
     if longest.stop - longest.start >= max(len(recording.time) / 5, LEAST_ROWS):
-        found = _candidates(recording.part(longest))
-        if any(found.values()):
-            return found
+        candidates = _candidates(recording.part(longest))
+        if any(candidates.values()):
+            return candidates
     return _candidates(recording)
 
 
-def _candidates(recording: Recording) -> dict[float, float]:
+def _candidates(recording: Recording) -> Candidates:
     """Frequencies [Hz] at which a recording swings and how loud, by spectra of stretches of it.
 
     Peaks of displacement and of speed: the one is steep beside a slow motion, the other is not.
     """
+    stands_out = 1.5  # how far a peak is above what is beside it, as a logarithm
+    most_peaks = 4
+    least_apart = 0.05
     time, values = evenly(recording, 1 / (32 * recording.step))
-    rate, total = 1 / float(time[1] - time[0]), len(time)
-    found = dict[float, float]()
-    for length in (total // share for share in _STRETCHES if total // share >= 32):
+    rate = 1 / float(time[1] - time[0])
+    candidates = Candidates()
+    lengths = [len(time) // share for share in (1, 4, 16, 64)]
+    for length in lengths:
+        if length < 32:
+            continue
         at = np.fft.rfftfreq(4 * length, 1 / rate)
         loudest = spectrogram(values, length).max(axis=1)
         known = slice(int(np.searchsorted(at, 1.5 * rate / length)), None)
         levels = np.log(loudest[known] + 1e-300)
         for order in (0, 2):
             steep = levels + order * np.log(at[known])
-            for k in highest_peaks(steep, _CANDIDATES, _STANDS_OUT):
-                one = float(at[known][k])
-                if all(abs(one / other - 1) > _APART for other in found):
-                    found[one] = _prominence(recording, one)
-    return found
+            for k in highest_peaks(steep, most_peaks, stands_out):
+                peak = float(at[known][k])
+                if all(abs(peak / before - 1) > least_apart for before in candidates):
+                    candidates[peak] = _prominence(recording, peak)
+    return candidates
 
 
 def _prominence(recording: Recording, frequency: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import tau
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +13,14 @@ from quietarm.models import Plant
 from quietarm.ocp.checks import takes
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
-from quietarm.studies.identify.combine import combine
+from quietarm.studies.identify.combine import Combined, combine
 from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
 from quietarm.studies.identify.machine import (
     Identified,
     Part,
     in_torque_alone,
     is_damping,
+    is_frequency,
     is_modal,
 )
 from quietarm.studies.identify.mending import without_glitches
@@ -26,14 +28,10 @@ from quietarm.studies.identify.part_fitter import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.recording_parts import NO_SWING, fit_parts
 from quietarm.studies.identify.ring_downs import moves
-from quietarm.studies.identify.swing_model import Model
+from quietarm.studies.identify.swing_model import SwingModel
 from quietarm.studies.identify.whole_recording import fit_whole, sensitivities
 
 Array = NDArray[np.float64]
-_DEPENDENT = 1e-3
-"""Parameters cannot be told apart where others explain all but this share of what one does."""
-_BAD = 0.4
-"""Share of the swing's size beside the noise that a fit may leave, to count."""
 
 
 @takes(plant=Plant)
@@ -81,13 +79,18 @@ def identify(
         for recording, frequency in zip(recordings, frequencies)
     ]
     at_rest = "torque" not in kinds and all(is_modal(plant, name) for name in names)
-    fitted, left_out, moving = list[Part](), dict[str, str](), list[PartFitter]()
+    fitted = list[Part]()
+    left_out = dict[str, str]()
+    moving = list[PartFitter]()
     for fitter in fitters:
-        found, why = fit_parts(fitter, parts) if at_rest else ([], NO_SWING)
-        fitted += found
-        if not found and fitter.frequency and (moves(fitter.recording) or not at_rest):
+        ring_downs = list[Part]()
+        why = NO_SWING
+        if at_rest:
+            ring_downs, why = fit_parts(fitter, parts)
+        fitted += ring_downs
+        if not ring_downs and fitter.frequency and (moves(fitter.recording) or not at_rest):
             moving.append(fitter)
-        elif not found:
+        elif not ring_downs:
             left_out[fitter.recording.name] = why
     if not fitted and not moving:
         if not any(frequencies):
@@ -95,30 +98,42 @@ def identify(
                 f"{recordings[0].name}: {NO_SWING}; push harder, or record longer and with more "
                 "samples"
             )
-        raise ValueError("; ".join(f"{name}: {why}" for name, why in left_out.items()))
+        raise ValueError(_by_recording(left_out))
     unknown = {} if fitted else _not_identifiable(moving)
     sought = [name for name in names if name not in unknown]
     fitted += [fit_whole(fitter.of(sought)) for fitter in moving]
     fitted, worthless = _worth_pooling(plant, fitted)
-    left_out |= worthless
-    doubts += doubt_units(recordings, [one.frequency for one in fitters], plant.joint)
-    estimates, wide = combine(sought, fitted)
-    unknown |= wide
+    combined = combine(sought, fitted)
+    unknown |= combined.wide
+    doubts += doubt_units(recordings, [fitter.frequency for fitter in fitters], plant.joint)
+    doubts += _drifts(plant, combined, fitted)
+    values = {estimate.parameter: estimate.value for estimate in combined.estimates}
     return Identified(
-        replace(plant, **{one.parameter: one.value for one in estimates}),
-        tuple(estimates), {name: unknown[name] for name in names if name in unknown},
-        tuple(fitted), left_out, tuple(doubts), versions(),
-    )  # fmt: skip
+        plant=replace(plant, **values),
+        estimates=tuple(combined.estimates),
+        not_identifiable={name: unknown[name] for name in names if name in unknown},
+        parts=tuple(fitted),
+        left_out=left_out | worthless,
+        warnings=tuple(doubts),
+        versions=versions(),
+    )
 
 
-def curve_of(found: Identified, part: Part, recordings: Sequence[Recording]) -> tuple[Model, Array]:
+def curve_of(
+    machine: Identified, part: Part, recordings: Sequence[Recording]
+) -> tuple[SwingModel, Array]:
     """What was fitted in a part, and the signals that it was met by (rows, signals)."""
-    named = [one for one in recordings if one.name == part.recording]
+    named = [recording for recording in recordings if recording.name == part.recording]
     (recording, *_), _ = without_glitches(named)
-    fitter = PartFitter(found.plant, list(part.values), recording, 1.0)
+    fitter = PartFitter(machine.plant, list(part.values), recording, 1.0)
     fitter.frequency = fitter.frequency_of(part.vector)
     model = fitter.model(part)
     return model, model.fitted(part.vector)
+
+
+def _by_recording(reasons: dict[str, str]) -> str:
+    """Why each recording is left out, in a line."""
+    return "; ".join(f"{name}: {why}" for name, why in reasons.items())
 
 
 def _check(recordings: Sequence[Recording], plant: Plant) -> list[str]:
@@ -149,8 +164,9 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
         return [*dict.fromkeys(free)]
     names = [name for name in plant.measured if is_modal(plant, name)]
     if "torque" in kinds:
-        others = [name for name in plant.measured if name not in names]
-        names += [name for name in others if in_torque_alone(plant, name)]
+        names += [
+            name for name in plant.measured if name not in names and in_torque_alone(plant, name)
+        ]
     if not names:
         raise ValueError(
             f"{plant.name} has no parameter in rad/s and none that begins with zeta; name what is "
@@ -164,22 +180,24 @@ def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dic
 
     Each is judged by itself, however many there are. ValueError where none is left.
     """
-    worth, why = list[Part](), dict[str, list[str]]()
+    most_unexplained = 0.4  # share of the swing's size beside the noise
+    worth = list[Part]()
+    why = dict[str, list[str]]()
     for part in parts:
-        span = f"{part.begin:.6g} to {part.end:.6g} s"
+        stretch = f"{part.begin:.6g} to {part.end:.6g} s"
         driven = [
             value
             for name, value in part.values.items()
             if is_damping(plant, name) and value + part.deviations[name] < 0
         ]
-        if part.unexplained > _BAD:
+        if part.unexplained > most_unexplained:
             reason = (
-                f"{span}: a misfit of {part.misfit:.0%} of the swing; look at its signal, and "
+                f"{stretch}: a misfit of {part.misfit:.0%} of the swing; look at its signal, and "
                 "select the free decay by --part"
             )
         elif driven:
             reason = (
-                f"{span}: a damping of {min(driven):.2g}: something drives it, so that it is no "
+                f"{stretch}: a damping of {min(driven):.2g}: something drives it, so that it is no "
                 "free decay; switch it off, or select another part by --part"
             )
         else:
@@ -188,30 +206,58 @@ def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dic
         why.setdefault(part.recording, []).append(reason)
     left_out = {name: "; ".join(reasons) for name, reasons in why.items()}
     if not worth:
-        raise ValueError("; ".join(f"{name}: {reasons}" for name, reasons in left_out.items()))
+        raise ValueError(_by_recording(left_out))
     return worth, left_out
 
 
-def _not_identifiable(each: Sequence[PartFitter]) -> dict[str, str]:
+def _drifts(plant: Plant, combined: Combined, parts: Sequence[Part]) -> list[str]:
+    """Which of the identified parameters drift from one recording to the next, in words."""
+    recordings = {part.recording for part in parts}
+    what = "recordings" if len(recordings) > 1 else "ring-downs"
+    return [
+        f"{name} drifts over the {what}, from {_with_unit(plant, name, trend.first)} to "
+        f"{_with_unit(plant, name, trend.last)}: the intervals hold the drift, that of the next "
+        "swing one step more, and no later ones; find what drifts, as what warms up or comes "
+        "loose, and record again, or state errors of your own, as --error frequency=5%"
+        for name, trend in combined.trends.items()
+        if name not in combined.wide
+    ]
+
+
+def _with_unit(plant: Plant, name: str, value: float) -> str:
+    if is_frequency(plant, name):
+        return f"{value / tau:.5g} Hz"
+    return f"{value:.3g}"
+
+
+def _not_identifiable(fitters: Sequence[PartFitter]) -> dict[str, str]:
     """The parameters that recordings of moving joints do not identify, and why."""
-    for one in each:
-        if not moves(one.recording):
+    least_apart = 1e-3  # share of what a parameter does that the others may not explain
+    for fitter in fitters:
+        if not moves(fitter.recording):
             raise ValueError(
-                f"{one.recording.name}: the joint does not move, and these parameters only matter "
-                "while it does; record its angle during a move"
+                f"{fitter.recording.name}: the joint does not move, and these parameters only "
+                "matter while it does; record its angle during a move"
             )
-    J, names = np.concatenate([sensitivities(one) for one in each]), each[0].names
-    sizes = np.linalg.norm(J, axis=0)
-    kept, cannot = list[int](), dict[str, str]()
+    names = fitters[0].names
+    slopes = np.concatenate([sensitivities(fitter) for fitter in fitters])
+    sizes = np.linalg.norm(slopes, axis=0)
+    told_apart = list[int]()
+    reasons = dict[str, str]()
     for k, name in enumerate(names):
-        share, *_ = np.linalg.lstsq(J[:, kept], J[:, k], rcond=None)
         if sizes[k] <= 1e-9 * sizes.max():
-            cannot[name] = "nothing that was recorded depends on it"
-        elif kept and np.linalg.norm(J[:, k] - J[:, kept] @ share) < _DEPENDENT * sizes[k]:
-            same = names[kept[int(np.abs(share).argmax())]]
-            cannot[name] = f"it does what {same} does"
+            reasons[name] = "nothing that was recorded depends on it"
+            continue
+        before = slopes[:, told_apart]
+        share, *_ = np.linalg.lstsq(before, slopes[:, k], rcond=None)
+        apart = np.linalg.norm(slopes[:, k] - before @ share)
+        if told_apart and apart < least_apart * sizes[k]:
+            nearest = names[told_apart[int(np.abs(share).argmax())]]
+            reasons[name] = f"it does what {nearest} does"
         else:
-            kept.append(k)
-    if not kept:
-        raise ValueError(f"the recordings tell nothing of {', '.join(cannot)}; name others by free")
-    return cannot
+            told_apart.append(k)
+    if not told_apart:
+        raise ValueError(
+            f"the recordings tell nothing of {', '.join(reasons)}; name others by free"
+        )
+    return reasons

@@ -15,13 +15,6 @@ from quietarm.ocp.saved import Saved
 from quietarm.ocp.uncertainty import with_values
 
 Array = NDArray[np.float64]
-_DAMPING = "zeta"
-"""How the name of a damping ratio begins."""
-_MOST_DAMPING, _LEAST_DAMPING = 0.9, 0.3
-_GROWTH = 100.0
-"""Logarithm of how much a swing may grow in a fit."""
-_LEAST_ERROR = 1e-6
-"""Of a parameter known without error, as of a simulation: a range of none is no range."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +29,8 @@ class Estimate:
         The mean over the parts, weighted by their accuracy [SI units].
     low, high : float
         Ends of the interval that covers the mean in 95 of 100 cases; where the parameter changes
-        with the amplitude, all that it is along the swings.
+        with the amplitude, all that it is along the swings, and where it drifts from one recording
+        to the next, all of the drift.
     next_low, next_high : float or None
         Ends of the interval that covers the next swing's in 95 of 100 cases, from the scatter
         of the parts beyond their own uncertainty; likewise. None with one part.
@@ -148,7 +142,7 @@ class Identified(Saved):
     left_out : dict of str to str
         Recordings that were not fitted, and why.
     warnings : tuple of str
-        Doubts about the recordings, such as their units.
+        Doubts about the recordings, such as their units or a drift from one to the next.
     versions : dict of str to str
         Of what identified it.
     """
@@ -174,25 +168,30 @@ class Identified(Saved):
             When a parameter is not identifiable, the plant does not move as what was recorded, or
             one part alone does not tell how much the machine varies.
         """
-        stated = "state errors of your own, as --error frequency=5%"
+        remedy = "state errors of your own, as --error frequency=5%"
         doubtful = [part for part in self.parts if part.warning]
         if 2 * len(doubtful) >= len(self.parts):
-            raise ValueError(f"{doubtful[0].recording}: {doubtful[0].warning}; or {stated}")
+            raise ValueError(f"{doubtful[0].recording}: {doubtful[0].warning}; or {remedy}")
         if self.not_identifiable:
             name, why = next(iter(self.not_identifiable.items()))
-            known = " and ".join(one.parameter for one in self.estimates) or "omega"
+            known = " and ".join(estimate.parameter for estimate in self.estimates) or "omega"
             raise ValueError(
-                f"{name} is not identifiable by the recordings ({why}); {stated}, or identify "
+                f"{name} is not identifiable by the recordings ({why}); {remedy}, or identify "
                 f"again with {known} alone, by --free"
             )
-        moving = [one for one in self.estimates if not in_torque_alone(self.plant, one.parameter)]
+        moving = [
+            estimate
+            for estimate in self.estimates
+            if not in_torque_alone(self.plant, estimate.parameter)
+        ]
         if len(self.parts) == 1:
-            percent = 100 * max((one.error for one in moving), default=0.0)
+            percent = 100 * max((estimate.error for estimate in moving), default=0.0)
             raise ValueError(
                 "one ring-down does not tell how much the machine varies, beyond "
-                f"{percent:.2g} % by its fit; record several, or {stated}"
+                f"{percent:.2g} % by its fit; record several, or {remedy}"
             )
-        return {one.parameter: max(one.error, _LEAST_ERROR) for one in moving}
+        least = 1e-6  # of a simulation without noise: a range of none is no range
+        return {estimate.parameter: max(estimate.error, least) for estimate in moving}
 
     def check_unchanged(self, names: Iterable[str]) -> None:
         """Refuse to change parameters on which the measured intervals rest.
@@ -218,8 +217,10 @@ class Identified(Saved):
 
 def in_torque_alone(plant: Plant, name: str) -> bool:
     """Whether a parameter shows in the torque, and neither in the modes nor at the tips."""
-    symbol, joint = ca.SX.sym(name), JointMotion(*(ca.SX.sym("joint") for _ in range(3)))
-    W, dW = ([ca.SX.sym("W") for _ in range(plant.modes)] for _ in range(2))
+    symbol = ca.SX.sym(name)
+    joint = JointMotion(*(ca.SX.sym("joint") for _ in range(3)))
+    W = [ca.SX.sym("W") for _ in range(plant.modes)]
+    dW = [ca.SX.sym("dW") for _ in range(plant.modes)]
     changed = with_values(plant, {name: symbol})
     ddW = changed.modal_accelerations(joint, W, dW)
     moves = ca.SX(ca.vertcat(*ddW, *changed.tips_at(joint, W)))
@@ -239,7 +240,7 @@ def is_modal(plant: Plant, name: str) -> bool:
 
 def is_damping(plant: Plant, name: str) -> bool:
     """Whether a parameter is the damping ratio of a mode, by its name."""
-    return name.startswith(_DAMPING) and not is_frequency(plant, name)
+    return name.startswith("zeta") and not is_frequency(plant, name)
 
 
 def values_of(plant: Plant, names: Sequence[str]) -> Array:
@@ -254,13 +255,18 @@ def bounds_of(
 
     No swing of so many seconds grows beyond what numbers can hold.
     """
-    lower, upper = np.full(len(names), -np.inf), np.full(len(names), np.inf)
+    most_growth = 100.0  # as a logarithm
+    least_damping = 0.3  # below 0
+    most_damping = 0.9
+    lower = np.full(len(names), -np.inf)
+    upper = np.full(len(names), np.inf)
     for k, name in enumerate(names):
         if is_frequency(plant, name):
-            lower[k], upper[k] = 0.3 * start[k], 3 * start[k]
+            lower[k] = 0.3 * start[k]
+            upper[k] = 3 * start[k]
     fastest = float(upper[np.isfinite(upper)].max(initial=0.0)) or 1.0
     for k, name in enumerate(names):
         if is_damping(plant, name):
-            lower[k] = -min(_LEAST_DAMPING, _GROWTH / (fastest * seconds))
-            upper[k] = _MOST_DAMPING
+            lower[k] = -min(least_damping, most_growth / (fastest * seconds))
+            upper[k] = most_damping
     return lower, upper

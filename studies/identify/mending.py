@@ -11,24 +11,15 @@ from quietarm.studies.identify.recording import Recording, noise_of
 from quietarm.studies.identify.running import running_maximum
 
 Array = NDArray[np.float64]
-_LENGTHS = (1, 2, 4)
-"""Samples that a glitch lasts at most: it is looked for at each."""
-_FAR = 8.0
-"""Deviations of what is usual nearby, from which on a sample is a glitch."""
-_BLOCK = 32
-"""Samples by which the usual is told."""
-_ROUNDS = 8
-_OUT = 3.0
-"""A glitch begins and ends by so many times the steps of the signal beside it."""
-_MOST = 0.1
-"""Share of the rows: where more stand out, that is how the sensor is."""
 
 
 def without_glitches(
     recordings: Sequence[Recording],
 ) -> tuple[list[Recording], list[str]]:
     """The recordings without the rows of glitches, and in words what was mended in each."""
-    mended, notes = list[Recording](), list[str]()
+    most = 0.1  # share of the rows: where more stand out, that is how the sensor is
+    mended = list[Recording]()
+    notes = list[str]()
     for recording in recordings:
         columns = [values.reshape(len(values), -1) for values in recording.measured.values()]
         glitches = np.zeros(len(recording.time), bool)
@@ -36,7 +27,7 @@ def without_glitches(
             glitches |= _glitches(recording.time, column)
         count = int(np.count_nonzero(glitches))
         notes += [f"{recording.name}: {change}" for change in recording.mended.values()]
-        if 0 < count <= _MOST * len(glitches):
+        if 0 < count <= most * len(glitches):
             samples = "1 sample is" if count == 1 else f"{count} samples are"
             notes.append(f"{recording.name}: {samples} left out, far from all beside")
             recording = recording.part(~glitches)
@@ -46,41 +37,46 @@ def without_glitches(
 
 def _glitches(time: Array, values: Array) -> NDArray[np.bool_]:
     """Samples that leave both neighbours on the same side, by far more than is usual nearby."""
-    found = np.zeros(len(values), bool)
+    far_from_usual = 8.0  # deviations of what is usual nearby
+    glitches = np.zeros(len(values), bool)
     plain = values.copy()
     noise = float(noise_of(values)[0])
-    for length in _LENGTHS:
+    for length in (1, 2, 4):  # samples that a glitch lasts at most
         if len(values) < 8 * length:
             break
-        for _ in range(_ROUNDS):
+        for _ in range(8):
             between, spike = _by_neighbours(time, plain, length)
-            far = np.abs(spike) > _FAR * np.maximum(_usual(plain - between), 1.4 * noise)
-            far &= ~found
+            usual = np.maximum(_usual(plain - between), 1.4 * noise)
+            far = np.abs(spike) > far_from_usual * usual
+            far &= ~glitches
             if not far.any():
                 break
             # what is beside a larger one is judged once that is replaced
             largest = _largest_nearby(np.abs(plain - between), 2 * length)
             new = far & (np.abs(plain - between) >= 0.8 * largest)
-            found |= new
+            glitches |= new
             plain[new] = between[new]
-            again = found & ~new
+            again = glitches & ~new
             between, _ = _by_neighbours(time, plain, length)
             plain[again] = between[again]
-    return _that_return(values, found)
+    return _that_return(values, glitches)
 
 
-def _that_return(values: Array, found: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _that_return(values: Array, candidates: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Of samples that stand out those after which the signal is back: a step is no glitch."""
-    kept, last = found.copy(), len(values) - 1
-    ends = np.flatnonzero(np.diff(np.concatenate([[False], found, [False]])))
+    far_out = 3.0  # times the steps of the signal beside a glitch, by which it begins and ends
+    glitches = candidates.copy()
+    last = len(values) - 1
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], candidates, [False]])))
     for first, after in ends.reshape(-1, 2):
-        before, behind = max(first - 1, 0), min(after, last)
+        before = max(first - 1, 0)
+        behind = min(after, last)
         jumps = np.abs([values[first] - values[before], values[after - 1] - values[behind]])
-        beside = values[[max(before - 1, 0), before]], values[[behind, min(behind + 1, last)]]
-        usual = max(float(np.ptp(pair)) for pair in beside)
-        if jumps.min() <= _OUT * usual:
-            kept[first:after] = False
-    return kept
+        step_before = np.ptp(values[[max(before - 1, 0), before]])
+        step_behind = np.ptp(values[[behind, min(behind + 1, last)]])
+        if jumps.min() <= far_out * max(step_before, step_behind):
+            glitches[first:after] = False
+    return glitches
 
 
 def _by_neighbours(time: Array, values: Array, reach: int) -> tuple[Array, Array]:
@@ -88,7 +84,8 @@ def _by_neighbours(time: Array, values: Array, reach: int) -> tuple[Array, Array
 
     A sample at an end or beside a gap is its own neighbour.
     """
-    between, spike = values.copy(), np.zeros(len(values))
+    between = values.copy()
+    spike = np.zeros(len(values))
     inner = slice(2 * reach, -2 * reach)
     offsets = (-2 * reach, -reach, reach, 2 * reach)
     count = len(values) - 4 * reach
@@ -110,8 +107,10 @@ def _by_neighbours(time: Array, values: Array, reach: int) -> tuple[Array, Array
 
 def _usual(residual: Array) -> Array:
     """The robust deviation of residuals in each block of samples, or in one beside it."""
-    count = max(len(residual) // _BLOCK, 1)
-    sizes, size = np.abs(residual), len(residual) // count
+    block = 32
+    count = max(len(residual) // block, 1)
+    sizes = np.abs(residual)
+    size = len(residual) // count
     usual = 1.4826 * np.median(sizes[: count * size].reshape(count, size), axis=1)
     blocks = np.minimum(np.arange(len(residual)) // size, count - 1)
     return running_maximum(usual, 3)[blocks]

@@ -20,7 +20,7 @@ from quietarm.studies.identify.joint_spline import smooth
 from quietarm.studies.identify.machine import Part, bounds_of, is_frequency, is_modal, values_of
 from quietarm.studies.identify.recording import Recording, noise_of
 from quietarm.studies.identify.response import response_of
-from quietarm.studies.identify.swing_model import Model
+from quietarm.studies.identify.swing_model import SwingModel
 
 Array = NDArray[np.float64]
 SAMPLES = 64
@@ -87,7 +87,7 @@ class PartFitter:
         """A piece with so many samples a period of the fastest mode."""
         return piece.averaged(1 / max(samples * self._fastest * piece.step, 1e-9))
 
-    def model(self, part: Part, thin: bool = True, samples: float = SAMPLES) -> Model:
+    def model(self, part: Part, thin: bool = True, samples: float = SAMPLES) -> SwingModel:
         """The model of a part: without saturated samples, with drift or hub, as the part says.
 
         Where it is thinned it has so many samples a period of the fastest mode.
@@ -100,7 +100,7 @@ class PartFitter:
         cosines = 0
         if part.drifts:
             cosines = int(0.5 * self.frequency * np.ptp(piece.time))  # to a quarter of the swing's
-        model = Model(piece, columns, cosines, self._scaled)
+        model = SwingModel(piece, columns, cosines, self._scaled)
         if part.saturated:
             model.counts = ~saturated(piece.values)
             if part.values:  # by the fit: near the limit the noise is cut as well
@@ -136,7 +136,7 @@ class PartFitter:
         """The largest damping ratio of a part; 0 where none is sought."""
         return max(part.vector[self.are_dampings], default=0.0)
 
-    def fit_model(self, model: Model, part: Part, start: Array) -> Fit:
+    def fit_model(self, model: SwingModel, part: Part, start: Array) -> Fit:
         """A fit of some model of a part."""
         lower, upper = bounds_of(self.plant, self.names, start, part.end - part.begin)
         return fit(model, start, lower, upper, self.frequency)

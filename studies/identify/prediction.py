@@ -16,13 +16,9 @@ from quietarm.studies.identify.mending import without_glitches
 from quietarm.studies.identify.part_fitter import PartFitter
 from quietarm.studies.identify.recording import Recording
 from quietarm.studies.identify.recording_parts import fit_parts
-from quietarm.studies.identify.swing_model import Model
+from quietarm.studies.identify.swing_model import SwingModel
 
 Array = NDArray[np.float64]
-PERIODS = 5.0
-"""That are predicted."""
-_KNOWN = 2.0
-"""Periods from which a swing's state is known."""
 
 
 @dataclass(frozen=True)
@@ -63,37 +59,53 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
         When there is no ring-down of three periods.
     """
     names = [name for name in plant.measured if is_modal(plant, name)]
-    p, found = values_of(plant, names), list[Prediction]()
+    p = values_of(plant, names)
+    predictions = list[Prediction]()
     recordings, _ = without_glitches(recordings)
-    for one, frequency in zip(recordings, find_frequencies(recordings)):
-        fitter = PartFitter(plant, names, one, frequency)
+    for recording, frequency in zip(recordings, find_frequencies(recordings)):
+        fitter = PartFitter(plant, names, recording, frequency)
         parts, why = fit_parts(fitter)
         if not parts:
-            raise ValueError(f"{one.name}: {why}")
+            raise ValueError(f"{recording.name}: {why}")
         for part in parts:
-            ends, hub = (part.begin, part.end), part.hub if part.hub == "moves" else ""
-            model = fitter.model(Part(one.name, *ends, hub=hub))
+            hub = part.hub if part.hub == "moves" else ""
+            model = fitter.model(Part(recording.name, part.begin, part.end, hub=hub))
             model.trend = model.trend[:, :1]  # a slope of two periods leads astray
-            if shares := _shares(model, p, 1 / fitter.frequency_of(p)):
-                share, own = np.median([share for share, _ in shares]), part.vector
-                found.append(Prediction(
-                    one.name, *ends, float(share), *min(shares), fitter.frequency_of(own)
-                ))  # fmt: skip
-    if not found:
+            shares = _shares(model, p, 1 / fitter.frequency_of(p))
+            if not shares:
+                continue
+            worst, worst_at = min(shares)
+            prediction = Prediction(
+                recording=recording.name,
+                begin=part.begin,
+                end=part.end,
+                share=float(np.median([share for share, _ in shares])),
+                worst=worst,
+                worst_at=worst_at,
+                frequency=fitter.frequency_of(part.vector),
+            )
+            predictions.append(prediction)
+    if not predictions:
         raise ValueError(f"{recordings[0].name}: no ring-down of three periods; record longer")
-    return found
+    return predictions
 
 
-def _shares(model: Model, p: Array, period: float) -> list[tuple[float, float]]:
+def _shares(model: SwingModel, p: Array, period: float) -> list[tuple[float, float]]:
     """How much of the swing is predicted, and where the predicted periods begin."""
-    time, y, found = model.time, model.values, list[tuple[float, float]]()
-    last = max(float(np.ptp(time)) - (_KNOWN + 1) * period, 0.0)
+    periods_known = 2.0  # from which a swing's state is known
+    periods_ahead = 5.0
+    time = model.time
+    values = model.values
+    shares = list[tuple[float, float]]()
+    last = max(float(np.ptp(time)) - (periods_known + 1) * period, 0.0)
     for start in time[0] + np.arange(0, last + 1e-9, period):
-        begin = start + _KNOWN * period
+        begin = start + periods_known * period
         known = (time >= start) & (time < begin)
-        ahead = (time >= begin) & (time < begin + PERIODS * period)
-        if np.count_nonzero(ahead) >= 4 and np.count_nonzero(known) >= 8:
-            left = y[ahead] - model.fitted(p, known)[ahead]
-            swing = y[ahead] - y[ahead].mean(axis=0)
-            found.append((1 - float(np.linalg.norm(left) / np.linalg.norm(swing)), float(begin)))
-    return found
+        ahead = (time >= begin) & (time < begin + periods_ahead * period)
+        if np.count_nonzero(ahead) < 4 or np.count_nonzero(known) < 8:
+            continue
+        residual = values[ahead] - model.fitted(p, known)[ahead]
+        swing = values[ahead] - values[ahead].mean(axis=0)
+        share = 1 - float(np.linalg.norm(residual) / np.linalg.norm(swing))
+        shares.append((share, float(begin)))
+    return shares

@@ -43,7 +43,7 @@ class Recording:
     name : str, optional
         What messages call it.
     mended : mapping, optional
-        What was mended in the times, in words.
+        What was mended in the times: sentences, by what was mended.
 
     Raises
     ------
@@ -64,7 +64,8 @@ class Recording:
         arrays = {name: np.asarray(values, float) for name, values in self._arrays.items()}
         if not arrays.keys() - {"time", "angle"}:
             self._refuse(" has no tip, acceleration or torque; give one")
-        rows, whole = len(arrays["time"]), True
+        rows = len(arrays["time"])
+        whole = np.ones(rows, bool)
         for name, values in arrays.items():
             if len(values) != rows:
                 self._refuse(f" has {rows} times and {len(values)} of {name}")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from quietarm.studies.identify.fitting import Fit
 from quietarm.studies.identify.hub_swing import with_hub
 from quietarm.studies.identify.machine import Part
 from quietarm.studies.identify.part_fitter import PartFitter
@@ -27,6 +27,7 @@ from quietarm.studies.identify.swing_changes import (
 from quietarm.studies.identify.well_damped import find_well_damped
 from quietarm.studies.identify.whole_recording import wide_range
 
+Array = NDArray[np.float64]
 Spans = Sequence[tuple[float, float]]
 NO_SWING = "no swing stands out of the noise"
 """Why a recording in which no frequency is found has no part."""
@@ -67,26 +68,22 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
     parts = list[Part]()
     why = _no_ring_down(fitter)
     earliest = 0
-    after_beat = 0
-    for k, rows in enumerate(spans):
-        if k < after_beat:
-            continue
+    while spans:
+        rows = spans[0]
+        count = 1
         part, best = fit_ring_down(fitter, rows, earliest, bool(by_hand))
-        earliest = rows.stop
+        beat = None
         if has_changes(fitter, part, best):
-            among = spans[: k + 1] if by_hand else spans
-            beat, after_beat = _beat(fitter, among, k, best)
-            if beat:
-                if after_beat == k + 1:
-                    changes = with_changes(fitter, part, best, rows)
-                    beat = with_both(fitter, beat, changes)
-                parts.append(beat)
-                earliest = spans[after_beat - 1].stop
-                continue
-            part = with_changes(fitter, part, best, rows)
-        last = parts[-1] if parts and not by_hand else None
+            beat, count = _longest_beat(fitter, spans[:1] if by_hand else spans, best.p)
+            if not beat or count == 1:
+                part = with_changes(fitter, part, best, rows)
+        earliest = spans[count - 1].stop
+        spans = spans[count:]
+        last = parts[-1] if parts and not by_hand and not beat else None
         whole = _joined(fitter, last, part) if last else None
-        if whole:
+        if beat:
+            parts.append(with_both(fitter, beat, part) if count == 1 else beat)
+        elif whole:
             parts[-1] = whole
         elif part.misfit < 1 or by_hand:
             parts.append(part)
@@ -96,55 +93,53 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
     return parts, why
 
 
-def _beat(
-    fitter: PartFitter, spans: Sequence[slice], first: int, best: Fit
+def _longest_beat(
+    fitter: PartFitter, spans: Sequence[slice], start: Array
 ) -> tuple[Part | None, int]:
-    """One swing of two modes from a span on, and the number of the span after it.
+    """The longest swing of two modes from the first span on, and how many spans it takes.
 
     Where two modes beat, the swing grows again and again without a push: what looks like several
-    ring-downs is one.
+    ring-downs is one. Most often it goes on to the last span; else it is as long as two modes meet
+    each further span.
     """
-
-    def until(last: int) -> Part | None:
-        rows = slice(spans[first].start, spans[last].stop)
-        return fit_close_modes(fitter, rows, best.p)
-
-    end = len(spans) - 1
-    if part := until(end):
-        return part, end + 1
-    longest = None
-    after = first
-    for last in range(first + 1, end):
-        part = until(last)
-        if part is None:
+    beat = _beat_over(fitter, spans, start)
+    if beat:
+        return beat, len(spans)
+    longest = _beat_over(fitter, spans[:1], start) if len(spans) > 1 else None
+    count = 1
+    for further in range(2, len(spans)):
+        beat = _beat_over(fitter, spans[:further], start)
+        if beat is None:
             break
-        longest = part
-        after = last + 1
-    if longest is None and first < end and (part := until(first)):
-        return part, first + 1
-    return longest, after
+        longest = beat
+        count = further
+    return longest, count
+
+
+def _beat_over(fitter: PartFitter, spans: Sequence[slice], start: Array) -> Part | None:
+    """One swing of two modes over all of some spans; None where two modes do not meet it."""
+    rows = slice(spans[0].start, spans[-1].stop)
+    return fit_close_modes(fitter, rows, start)
 
 
 def _with_fast_beats(fitter: PartFitter, parts: Sequence[Part]) -> list[Part]:
     """The parts, and swings of two modes in whose fast beats no ring-down is found, or a false one.
 
-    A part inside such a swing is no part of its own.
+    A part inside such a swing is no part of its own: what it says is in the swing's intervals.
     """
-    start = min(
-        fitter.starts(np.array([fitter.frequency])),
-        key=lambda p: abs(fitter.frequency_of(p) - fitter.frequency),
-    )
-    spans = find_swings(fitter.recording, fitter.frequency)
-    fits = [fit_close_modes(fitter, rows, start) for rows in spans]
-    beats = [part for part in fits if part]
-    others = list[Part]()
-    for part in parts:
-        inside = [k for k, beat in enumerate(beats) if _overlap(beat, part)]
-        for k in inside:
-            beats[k] = with_both(fitter, beats[k], part)
-        if not inside:
-            others.append(part)
-    return sorted([*others, *beats], key=lambda part: part.begin)
+    starts = fitter.starts(np.array([fitter.frequency]))
+    start = min(starts, key=lambda p: abs(fitter.frequency_of(p) - fitter.frequency))
+    beats = list[Part]()
+    for rows in find_swings(fitter.recording, fitter.frequency):
+        beat = fit_close_modes(fitter, rows, start)
+        if beat:
+            beats.append(beat)
+    outside = [part for part in parts if not any(_overlap(part, beat) for beat in beats)]
+    for k, beat in enumerate(beats):
+        for part in parts:
+            if _overlap(part, beat):
+                beats[k] = with_both(fitter, beats[k], part)
+    return sorted([*outside, *beats], key=lambda part: part.begin)
 
 
 def _is_doubted(part: Part) -> bool:

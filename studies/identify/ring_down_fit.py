@@ -11,7 +11,7 @@ from quietarm.studies.identify.fitting import Fit
 from quietarm.studies.identify.machine import Part
 from quietarm.studies.identify.part_fitter import FEW_SAMPLES, PartFitter
 from quietarm.studies.identify.recording import LEAST_ROWS
-from quietarm.studies.identify.ring_downs import moves
+from quietarm.studies.identify.ring_downs import moves, standing
 
 Fitted = tuple[Part, Fit]
 
@@ -21,6 +21,7 @@ def fit_ring_down(fitter: PartFitter, rows: slice, earliest: int, by_hand: bool)
 
     Saturated samples are left out, the hub's motion and a slow drift are added where they help.
     """
+    earliest = max(earliest, _begin_of_rest(fitter, rows))
     fitted = _first_fit(fitter, rows)
     for _ in range(0 if by_hand else 2):
         grown = _grown(fitter, rows, fitted[1], earliest)
@@ -40,6 +41,12 @@ def _first_fit(fitter: PartFitter, rows: slice) -> Fitted:
     near = fitter.frequency + np.linspace(-0.6, 0.6, 9) / seconds
     starts = fitter.starts(np.maximum(near, 0.3 * fitter.frequency))
     return fitter.fit(part, min(starts, key=rough.cost))
+
+
+def _begin_of_rest(fitter: PartFitter, rows: slice) -> int:
+    """The row from which on the joint rests before some rows: its motion drives the tip."""
+    at_rest = standing(fitter.recording, fitter.frequency)
+    return int(np.flatnonzero(~at_rest[: rows.start]).max(initial=-1)) + 1
 
 
 def _grown(fitter: PartFitter, rows: slice, best: Fit, earliest: int) -> slice:
@@ -69,8 +76,8 @@ def _without_saturated(fitter: PartFitter, fitted: Fitted) -> Fitted:
     part, best = fitted
     piece = fitter.piece(part)
     flat = saturated(piece.values)
-    others = np.count_nonzero(~flat)
-    if not flat.any() or others <= max(LEAST_ROWS, 0.1 * len(flat)):
+    not_flat = np.count_nonzero(~flat)
+    if not flat.any() or not_flat <= max(LEAST_ROWS, 0.1 * len(flat)):
         return fitted
     cut = replace(part, saturated=int(flat.sum()), values={})
     cut, without = fitter.fit(cut, best.p)

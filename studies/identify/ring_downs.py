@@ -44,8 +44,10 @@ def find_swings(recording: Recording, frequency: float) -> list[slice]:
         swing = envelope(part, frequency)
         if swing is None:
             continue
-        begin = float(swing.time[int(swing.size.argmax())])
         above = swing.time[swing.size > _least(swing)]
+        if not len(above):
+            continue
+        begin = float(swing.time[int(swing.size.argmax())])
         rows = recording.rows(begin, float(above[-1]))
         if rows.stop - rows.start >= LEAST_ROWS:
             swings.append(rows)

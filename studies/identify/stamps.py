@@ -24,22 +24,24 @@ def mended(arrays: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, str
     Rounded stamps are those of an even rate; of rows with the same stamp the first stays.
     """
     time = arrays["time"]
-    steps, found = np.diff(time), dict(arrays)
+    steps = np.diff(time)
+    unchanged = dict(arrays)
     if len(time) < _LEAST or not (steps >= 0).all() or not (steps > 0).any():
-        return found, {}
+        return unchanged, {}
     again = np.append(False, steps == 0)
     if again.any() and _stand_twice(arrays, again):
         return _without(arrays, again)
     even = _even(time, steps)
     if even is not None:
-        found["time"], tick = even
-        step = float(np.median(np.diff(found["time"])))
-        return found, {
-            "rounded": f"its times are rounded to {1e3 * tick:.3g} ms; an even rate is taken, a "
-            f"sample every {1e3 * step:.6g} ms"
-        }
+        times, tick = even
+        step = float(np.median(np.diff(times)))
+        rounded = (
+            f"its times are rounded to {1e3 * tick:.3g} ms; an even rate is taken, a sample every "
+            f"{1e3 * step:.6g} ms"
+        )
+        return unchanged | {"time": times}, {"rounded": rounded}
     if not again.any() or np.count_nonzero(again) > _SOME * len(time):
-        return found, {}
+        return unchanged, {}
     return _without(arrays, again)
 
 
@@ -55,7 +57,7 @@ def _stand_twice(arrays: Mapping[str, Array], again: NDArray[np.bool_]) -> bool:
 def _without(
     arrays: Mapping[str, Array], again: NDArray[np.bool_]
 ) -> tuple[dict[str, Array], dict[str, str]]:
-    """The arrays without some rows, and in words how many these are."""
+    """The arrays without some rows, and how many these are."""
     count = int(np.count_nonzero(again))
     rows = "1 row has" if count == 1 else f"{count} rows have"
     twice = f"{rows} the time of the row before: it stands twice, and is read once"
@@ -65,9 +67,11 @@ def _without(
 def _even(time: Array, steps: Array) -> tuple[Array, float] | None:
     """The times of an even rate and what they were rounded to; None where they were not."""
     tick = _tick(steps[steps > 0])
-    tick = float(np.ptp(time)) / round(float(np.ptp(time)) / tick)
+    seconds = float(np.ptp(time))
+    tick = seconds / round(seconds / tick)
     ties = np.count_nonzero(steps == 0)
-    whole = np.abs(time / tick - np.round(time / tick)).max() < 1e-3
+    ticks = time / tick
+    whole = np.abs(ticks - np.round(ticks)).max() < 1e-3
     if not whole or not (ties == 0 or ties > _SOME * len(time)):
         return None
     longest = _GAP * max(float(np.median(steps)), tick)

@@ -75,10 +75,15 @@ def _beyond_the_saturated(part: Part, pieces: Sequence[Part], spread: Spread) ->
 
 
 def with_both(fitter: PartFitter, beat: Part, changes: Part) -> Part:
-    """Two modes, and what pieces say as well: less than a beat may be a drift."""
+    """Two modes, and what pieces say as well: two beats or less may be a frequency that drifts.
+
+    Of 60 simulated swings of one mode whose frequency drifts, two modes met 12, up to 1.8 beats.
+    """
+    most_beats = 2.0
     rates = np.array(fitter.names)[fitter.are_rates].tolist()
     apart = max((beat.spread[name][1] - beat.spread[name][0] for name in rates), default=0.0)
-    if apart * (beat.end - beat.begin) > 1.5 * tau:
+    beats = apart * (beat.end - beat.begin) / tau
+    if beats > most_beats:
         return beat
     spread = dict(beat.spread)
     for name, (low, high) in changes.spread.items():
@@ -96,9 +101,9 @@ def _told_apart(fitter: PartFitter, part: Part, rows: slice) -> tuple[list[Part]
     for most in (12, 6, 3, 2):
         pieces = _pieces_of(fitter, part, rows, most)
         spread = {name: spread_of(pieces, name) for name in fitter.names}
-        told = {name: ends for name, ends in spread.items() if ends}
-        if told:
-            return pieces, told
+        changing = {name: ends for name, ends in spread.items() if ends}
+        if changing:
+            return pieces, changing
     return pieces, {}
 
 

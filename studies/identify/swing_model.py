@@ -14,7 +14,7 @@ from quietarm.studies.identify.recording import Recording
 Array = NDArray[np.float64]
 
 
-class Model:
+class SwingModel:
     """The signals of a recording as what a plant's modes make of it, and a slow trend.
 
     Unknown are the plant's parameters and the amplitudes of all columns, for each signal by itself:

@@ -196,6 +196,16 @@ def test_files_of_recorders_tell_the_same(push, done, name):
     same(done, f"identify {name} flexible-beam {tip} {options}")
 
 
+@pytest.mark.parametrize(
+    "footer", ["({count} rows)", "{count} rows in set (0.02 sec)", "({count} rows affected)"]
+)
+def test_the_count_of_rows_below_a_query_is_no_row(push, done, footer):
+    header, form, columns, options = RECORDERS["query.txt"]
+    below = footer.format(count=len(TIME))
+    (push / "query.txt").write_text(f"{header}{rows(form, *columns)}{below}\n\n")
+    same(done, f"identify query.txt flexible-beam {options}")
+
+
 def test_signals_of_a_simulink_structure_go_by_their_labels(push, done, refused):
     signals = np.array([(TIP[:, None], "tip_mm"), (0 * TIP, "theta")],
                        dtype=[("values", object), ("label", object)])  # fmt: skip
