@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache, partial
 from typing import NamedTuple
 
@@ -56,7 +57,7 @@ def _check_at_random(profile: JointProfile) -> None:
     target = 0.9
     duration = max(1.3, 2 * profile.least_duration)
     comparison = _compare(profile, coefficients, start, target, duration)
-    _refuse_difference(profile, comparison, start, target)
+    _refuse_difference(profile, comparison, start, target, duration)
 
 
 def check_motion(
@@ -73,14 +74,19 @@ def check_motion(
     values = np.asarray(coefficients, float)
     comparison = _compare(profile, values, start, target, duration)
     if np.isfinite(comparison).all():
-        _refuse_difference(profile, comparison, start, target)
+        _refuse_difference(profile, comparison, start, target, duration)
 
 
 def _refuse_difference(
-    profile: JointProfile, motion: _Comparison, start: float, target: float
+    profile: JointProfile, motion: _Comparison, start: float, target: float, duration: float
 ) -> None:
-    """ValueError where a motion is not at rest at the ends, or its derivatives are wrong."""
-    refuse = partial(_refuse_wrong, getattr(profile, "name", type(profile).__name__))
+    """ValueError where a motion is not at rest at the ends, or its derivatives are wrong.
+
+    What cruises may have no acceleration at any of the fractions: the move's own scale counts too.
+    """
+    span = abs(target - start)
+    scales = {"angle": span, "speed": span / duration, "acceleration": span / duration**2}
+    refuse = partial(_refuse_wrong, getattr(profile, "name", type(profile).__name__), scales)
     ends = np.array([start, target])
     what = f"its end of a move from {start:.4g} to {target:.4g}"
     remedy = "let angle, or input of a cycloid, go from 0 to 1"
@@ -104,12 +110,18 @@ def _refuse_difference(
 
 
 def _refuse_wrong(
-    name: str, quantity: str, values: Array, expected: Array, what: str, remedy: str
+    name: str,
+    scales: Mapping[str, float],
+    quantity: str,
+    values: Array,
+    expected: Array,
+    what: str,
+    remedy: str,
 ) -> None:
     """ValueError where the first values, those at the ends first, are not as expected."""
     # Share of a quantity's largest value by which it may differ from what it has to be.
     tolerance = 1e-6
-    allowed = tolerance * max(float(np.abs(values).max()), 1e-9)
+    allowed = tolerance * max(float(np.abs(values).max()), scales[quantity], 1e-9)
     compared = values[: len(expected)]
     wrong = ~(np.abs(compared - expected) <= allowed)  # nan is wrong as well
     if wrong.any():

@@ -114,7 +114,7 @@ def test_the_estimate_continues_the_falls_of_the_energy(energies, ratio, left):
     assert missed > 0
 
 
-SMOOTH = {"smooth": True, "starts": 1, "tolerance": 0.02}
+SMOOTH = {"smooth": True, "starts": 1, "energy_tolerance": 0.02}
 
 
 def test_a_jerk_limit_is_kept_and_no_plan_needs_less(tasks, solved):

@@ -67,7 +67,7 @@ def test_the_plain_cycloid_leaves_what_mujoco_says(cycloid):
 
 @pytest.mark.slow
 def test_both_solvers_find_the_same(plan):
-    other = qa.plan_move(_task(), solver="ipopt")
+    other = qa.plan_move(_task(), solver=qa.Ipopt())
     assert other.energy == pytest.approx(plan.energy, rel=1e-5)
 
 
