@@ -89,6 +89,7 @@ class Plan(MotionAnswer):
         return {"steps": verification.steps}
 
     @classmethod
+    @takes(candidate=Candidate)
     def of_candidate(cls, candidate: Candidate, **entries: Any) -> Plan:
         """The plan of a motion along a profile, which is not evaluated again; other entries."""
         if candidate.profile is None:

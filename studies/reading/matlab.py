@@ -17,6 +17,9 @@ from quietarm.ocp.files import MOST_BYTES
 
 _PROCESS = Path(__file__).with_name("matlab_process.py")
 
+LONGEST_READ = 60.0
+"""Seconds after which a reader that says nothing is given up."""
+
 
 def read_matlab(content: bytes, *, simple: bool) -> dict[str, Any]:
     """Variables by name, as scipy's `loadmat` gives them; `simple` structures are dictionaries.
@@ -24,14 +27,13 @@ def read_matlab(content: bytes, *, simple: bool) -> dict[str, Any]:
     ValueError where the file is damaged, be it that the process ends, takes too long or too much.
     """
     # of the process; a file of the largest size takes a few
-    seconds = 60
     line = [sys.executable, "-P", str(_PROCESS), str(MOST_BYTES), "simple" if simple else "whole"]
     try:
         process = subprocess.run(
-            line, input=content, capture_output=True, timeout=seconds, check=True
+            line, input=content, capture_output=True, timeout=LONGEST_READ, check=True
         )
     except subprocess.TimeoutExpired:
-        raise ValueError(f"reading it takes more than {seconds} s") from None
+        raise ValueError(f"reading it takes more than {LONGEST_READ:g} s") from None
     except subprocess.CalledProcessError as error:
         raise ValueError(f"what reads it ended with status {error.returncode}") from None
     with np.load(io.BytesIO(process.stdout), allow_pickle=False) as answer:

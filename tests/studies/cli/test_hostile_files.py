@@ -206,7 +206,7 @@ def test_a_reader_that_dies_is_no_end_of_the_command(folder, monkeypatch):
     with pytest.raises(ValueError, match=r"dead.mat: it is no whole .mat file .* status -6"):
         read_table(folder / "dead.mat")
     dying.write_text("import time; time.sleep(60)")
-    monkeypatch.setattr("quietarm.studies.reading.matlab._SECONDS", 0.1)
+    monkeypatch.setattr("quietarm.studies.reading.matlab.LONGEST_READ", 0.1)
     with pytest.raises(ValueError, match=r"reading it takes more than 0.1 s"):
         read_table(folder / "dead.mat")
 
