@@ -26,7 +26,7 @@ from quietarm.studies.cli.plants import (
 from quietarm.studies.cli.quantities import RESIDUAL_LIMIT, parse_of_plant
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.report.words import print_lines
-from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
+from quietarm.studies.sweep.grid import OF_MOVES, Axis, MoveGrid
 
 _OF_JOINT = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()), TORQUE_SPEED)
 """Options that are read once the plant is known: in radians, or in metres of a linear axis."""
@@ -134,7 +134,7 @@ class Given:
         single_values({axis.name: axis.values for axis in grid.axes})
         return grid.task
 
-    def read_grid(self, **known: float) -> Grid:
+    def read_grid(self, **known: float) -> MoveGrid:
         """The task, and axes over what has several values."""
         kind = choose_kind(self.plant, self.plant_file)
         parameters = read_parameters(kind, self.parameters)
@@ -158,7 +158,7 @@ class Given:
         furthest: dict[str, Any] = {name: max(values, key=abs) for name, values in moves.items()}
         task = PointToPoint(plant, **furthest, **given, uncertainty=uncertainty)
         warn_of_payload(kind, plant, parameters)
-        return Grid(task, tuple(axes))
+        return MoveGrid(task, tuple(axes))
 
 
 def single_values(given: Mapping[str, Sequence[float]]) -> dict[str, float]:

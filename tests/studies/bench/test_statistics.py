@@ -180,6 +180,7 @@ import sys
 from dataclasses import replace
 
 import quietarm as qa
+from quietarm.metaheuristics import problem_of
 from quietarm.studies.bench.results import Results, Run
 from quietarm.studies.bench.page import bench_report, brief_report
 
