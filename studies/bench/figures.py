@@ -92,7 +92,8 @@ def profiles_figure(results: Results) -> Figure:
         total = len(targets) * sum(map(len, reached))
         # for the band: runs drawn again so many times
         drawn = [
-            sum(_drawn_again(counts, random) for counts in reached) / total for _ in range(200)
+            np.sum([_drawn_again(counts, random) for counts in reached], axis=0) / total
+            for _ in range(200)
         ]
         share = sum(counts.sum(axis=0) for counts in reached) / total
         style = look(number)
