@@ -89,14 +89,14 @@ class Comparison:
     groups : tuple of Group
         Methods, in the order in which they were given.
     reference : str
-        What IGD+ and epsilon are measured against.
+        What IGD+ and additive epsilon are measured against.
     corner : tuple of float
         Residual [m] and energy [J] up to which hypervolumes are measured, as in a bench: a tenth
         of its extent beyond the ends of the reference front. They are shares of the box from there
         to the least residual and energy of that front.
     extent : tuple of float
         Residual [m] and energy [J] between the ends of the reference front: the units of IGD+ and
-        epsilon, so that both objectives have the same weight.
+        additive epsilon, so that both objectives have the same weight.
     levels : tuple of float
         Residuals [m] at which energies are compared.
     best_front : ndarray, shape (n, 2), read-only
@@ -137,15 +137,14 @@ def compare_fronts(
     *,
     reference: Front | None = None,
     reference_name: str = "the reference front",
-    floor: float | None = None,
     levels: Sequence[float] = LEVELS,
     fill: bool = True,
 ) -> Comparison:
     """Measure fronts of one task against each other.
 
-    The indicators are moocore's. IGD+ and epsilon are measured against the reference front, or the
-    points that none of any front dominates, thinned to even distances, so that the front of most
-    points does not decide.
+    The indicators are moocore's. IGD+ and additive epsilon are measured against the reference
+    front, or the points that none of any front dominates, thinned to even distances, so that the
+    front of most points does not decide.
 
     Parameters
     ----------
@@ -155,8 +154,6 @@ def compare_fronts(
         What each is called.
     reference, reference_name : Front and str, optional
         What to measure against.
-    floor : float, optional
-        Energy [J] of the best free motion, for pictures.
     levels : sequence of float
         Residuals [m] at which energies are compared.
     fill : bool
@@ -211,7 +208,6 @@ def compare_fronts(
         best_front=_frozen(best_front),
         best=tuple(best.tolist()),
         fill=fill,
-        floor=floor,
     )
 
 
