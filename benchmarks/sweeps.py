@@ -32,7 +32,7 @@ from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkMa
 from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move, plan_moves
 from quietarm.studies.sweep.cells import plan_chunk
 from quietarm.studies.sweep.definition import Definition, PlanSettings
-from quietarm.studies.sweep.grid import Axis, Grid
+from quietarm.studies.sweep.grid import Axis, MoveGrid
 
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
 
@@ -45,7 +45,7 @@ def speed() -> None:
             targets = np.radians(np.linspace(10, 90, steps + 1)).tolist()
             durations = np.linspace(0.6, 1.4, steps + 1).tolist()
             axes = Axis("target", tuple(targets), "rad"), Axis("duration", tuple(durations), "s")
-            grid = Grid(PointToPoint(plant, 1.0, 1.0), axes)
+            grid = MoveGrid(PointToPoint(plant, 1.0, 1.0), axes)
             sweep = Definition(grid, CycloidPolynomial(), PlanSettings())
             middle = len(sweep.chunks) // 2
             tasks = sweep.grid.tasks(sweep.chunks[middle])

@@ -19,8 +19,6 @@ from quietarm.ocp.record import Record, versions
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
-_STEP = 10 ** (1 / 24)
-"""Evaluations between neighbouring marks: 24 in a decade, at the ends of generations."""
 _BLOCK = 512
 """Candidates that are compared with each other at once: the pairs of as many fit into the cache."""
 
@@ -59,6 +57,8 @@ class Archive:
 
     def add(self, X: Array, F: Array, usable: NDArray[np.bool_]) -> None:
         """Take evaluated candidates, of which those that are usable may enter."""
+        # evaluations between neighbouring marks: 24 in a decade, at the ends of generations
+        step = 10 ** (1 / 24)
         seconds = self.seconds
         began = time.thread_time()
         numbers = self.evaluations + 1 + np.flatnonzero(usable)
@@ -70,7 +70,7 @@ class Archive:
             self._let_enter()
         if self.evaluations >= self._next_mark:
             self.mark(seconds)
-            self._next_mark = max(self.evaluations, 1) * _STEP
+            self._next_mark = max(self.evaluations, 1) * step
         self._seconds_here += time.thread_time() - began
 
     def mark(self, seconds: float) -> None:

@@ -33,9 +33,6 @@ if TYPE_CHECKING:
 
 Method: TypeAlias = "str | Algorithm | Callable[..., Any]"
 POLISH = "+polish"
-_REHEARSAL = 3
-"""Generations, or points, that are found and forgotten before the first job of its kind in a
-process: what is loaded then, and compiled by IPOPT and others, is no part of a method's time."""
 _rehearsed: set[tuple[NamedProblem, str]] = set()
 
 
@@ -124,6 +121,10 @@ class Job:
         return sealed(front.restated(settings=stated), self)
 
     def _find(self, rehearse: bool = False) -> Front:
+        # generations, or points, that are found and forgotten before the first job of its kind in
+        # a process: what is loaded then, and compiled by IPOPT and others, is no part of a
+        # method's time
+        rehearsal = 3
         problem = self.problem
         budget = self.budget
         settings = dict(self.settings)
@@ -135,7 +136,7 @@ class Job:
         }
         if budget is None:
             if rehearse:
-                settings = {"starts" if "multistart" in method else "points": _REHEARSAL}
+                settings = {"starts" if "multistart" in method else "points": rehearsal}
             return gradient_front(
                 problem.task,
                 method=method,
@@ -152,7 +153,7 @@ class Job:
             if polish:
                 options, settings = split_solver_options(settings)
             size = PRESETS[method].evaluations(population or PRESETS[method].population, 1)
-        budget = min(budget, _REHEARSAL * size) if rehearse else budget
+        budget = min(budget, rehearsal * size) if rehearse else budget
         if _is_function(method):
             function = problem.recorded(budget)
             with suppress(BudgetSpentError):

@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 
 CHECKSUM = "checksum"
 """The setting of a run's record that has it."""
-_AGAIN = "delete that file, and its run is done again"
-_SAME_HYPERVOLUME = 1e-4
-"""Those of one front differ by less: it is evaluated with the versions that wrote it."""
 
 
 def sealed(front: Front, job: Job) -> Front:
@@ -41,19 +38,20 @@ def check_run(front: Front, job: Job, path: Path) -> None:
     A file without a checksum, of before, is evaluated again: its motions, and what it states of
     its quality at the end. Its effort and what it says of the way there can only be consistent.
     """
+    remedy = "delete that file, and its run is done again"
     if is_sealed(front):
         document = read_document(path, Front.kind)
         if front.record.settings[CHECKSUM] != _checksum(front, job, document):
             raise ValueError(
                 f"{path} is not what a bench wrote for {job.label}, seed {job.seed}: it was "
                 "changed, is another run's, or was measured against another reference front; "
-                f"{_AGAIN}"
+                f"{remedy}"
             )
         return
-    check_figures(front, str(path), remedy=_AGAIN)
+    check_figures(front, str(path), remedy=remedy)
     difference = _different_job(front, job) or _different_end(front, job) or _disorder(front, job)
     if difference:
-        raise ValueError(f"{path} {difference}; {_AGAIN}")
+        raise ValueError(f"{path} {difference}; {remedy}")
 
 
 def _checksum(front: Front, job: Job, document: Any) -> str:
@@ -95,6 +93,8 @@ def _different_job(front: Front, job: Job) -> str:
 
 def _different_end(front: Front, job: Job) -> str:
     """What the last mark says of its points that is not so; a mark of today says nothing."""
+    # those of one front differ by less: it is evaluated with the versions that wrote it
+    tolerated = 1e-4
     if not front.history:
         return "says nothing of its cost"
     last = front.history[-1]
@@ -106,7 +106,7 @@ def _different_end(front: Front, job: Job) -> str:
         if quality is None:
             continue
         share = scale.score(points(front), HYPERVOLUME)
-        if not abs(quality.hypervolume - share) <= _SAME_HYPERVOLUME:
+        if not abs(quality.hypervolume - share) <= tolerated:
             return (
                 f"states a hypervolume of {quality.hypervolume:.4f} for {what}, and they have "
                 f"{share:.4f}"

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
-MOST_INDIVIDUALS = 100_000
-MOST_GENERATIONS = 1_000_000
 MOST_EVALUATIONS = 1_000_000_000
 SECONDS_OF_CANDIDATE = 5e-5
 """Of a core: 40,000 of the paper's first move take two seconds."""
@@ -121,6 +119,7 @@ def search(
         When an argument is out of range or missing, or the front to start from is of another
         profile or beyond the bound.
     """
+    most_generations = 1_000_000
     # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
     from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem
     from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
@@ -143,7 +142,7 @@ def search(
     if evaluations is None and generations is None:
         raise ValueError(f"give the number of generations or of evaluations for {method}")
     if evaluations is None:
-        generations = whole("generations", generations, 1, MOST_GENERATIONS)
+        generations = whole("generations", generations, 1, most_generations)
         limits: dict[str, Any] = {"generations": generations}
     else:
         evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
@@ -249,6 +248,7 @@ def _of_preset(
     settings: Mapping[str, object] | None,
 ) -> tuple[Algorithm, dict[str, Any]]:
     """A method that is known by name, and what it is set to."""
+    most = 100_000
     if task.limits and not preset.keeps_limits:
         raise ValueError(
             f"{preset.name} cannot search a task with limits; choose another method, or leave "
@@ -258,8 +258,8 @@ def _of_preset(
         "population",
         preset.population if population is None else population,
         2,
-        MOST_INDIVIDUALS,
-        f"{MOST_INDIVIDUALS} take 1.6 GB of memory",
+        most,
+        f"{most} take 1.6 GB of memory",
     )
     stated = {"population": size, **preset.checked(size, settings)}
     if evaluations is not None:

@@ -27,8 +27,6 @@ CORNER = 1.1
 value of each objective: as is usual, a tenth beyond, so that the ends of the front count."""
 BETWEEN = 300
 """About so many points a front has once motions between its own are added: as a reference front."""
-_OVERRUN = 1e-6
-"""Share by which a motion between may exceed a limit, as those of a reference front."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -256,6 +254,8 @@ def filled(front: Front) -> Array:
     Coefficients are interpolated and the motions simulated: each can be driven, and stays in the
     box. Those that break a limit do not count. So a front is not judged by its number of points.
     """
+    # share by which a motion between may exceed a limit, as those of a reference front
+    overrun = 1e-6
     points = objectives(front)
     coefficients = front.coefficients
     between = ceil(BETWEEN / max(len(points) - 1, 1)) - 1
@@ -265,7 +265,7 @@ def filled(front: Front) -> Array:
     inner = coefficients[:-1, None] * (1 - share) + coefficients[1:, None] * share
     evaluation = Evaluator(front.task, front.profile)(inner.reshape(-1, front.profile.size))
     table = objectives_of(evaluation)
-    usable = np.isfinite(table).all(axis=1) & (evaluation.violations <= _OVERRUN).all(axis=1)
+    usable = np.isfinite(table).all(axis=1) & (evaluation.violations <= overrun).all(axis=1)
     return np.vstack([points, table[usable]])
 
 

@@ -11,12 +11,11 @@ import numpy as np
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.variable import Variable
 
-_OPERATORS = ("sampling", "selection", "crossover", "mutation", "survival", "decomposition")
-_RENAMED = {"pop_size": "population", "n_offsprings": "offspring"}
-
 
 def settings_of(algorithm: Algorithm) -> dict[str, Any]:
     """The settings of an algorithm of one's own that was not run yet."""
+    renamed = {"pop_size": "population", "n_offsprings": "offspring"}
+    operators = ("sampling", "selection", "crossover", "mutation", "survival", "decomposition")
     stated = getattr(algorithm, "settings", None)
     if isinstance(stated, Mapping):
         return dict(stated)
@@ -24,8 +23,8 @@ def settings_of(algorithm: Algorithm) -> dict[str, Any]:
     entries = {name: value for name, value in vars(algorithm).items() if name not in base}
     for holder in ("initialization", "mating"):
         entries = {**getattr(entries.get(holder), "__dict__", {}), **entries}
-    settings: dict[str, Any] = {_RENAMED.get(name, name): value for name, value in _plain(entries)}
-    settings.update((name, _named(entries[name])) for name in _OPERATORS if entries.get(name))
+    settings: dict[str, Any] = {renamed.get(name, name): value for name, value in _plain(entries)}
+    settings.update((name, _named(entries[name])) for name in operators if entries.get(name))
     directions = entries.get("ref_dirs")
     if isinstance(directions, np.ndarray):
         digest = hashlib.sha256(np.ascontiguousarray(directions, dtype=float).tobytes())

@@ -20,12 +20,6 @@ from quietarm.ocp.checks import install
 if TYPE_CHECKING:
     from quietarm.metaheuristics.algorithms.presets import Preset  # which loads this file late
 
-_OPERATORS: dict[str, Callable[..., Any]] = {
-    "crossover": SBX,
-    "mutation": PM,
-    "rule": VelocityRule,
-}
-
 
 def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algorithm:
     """A new algorithm.
@@ -33,6 +27,11 @@ def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algor
     Its operators are its own: those of pymoo's default arguments are shared, and some remember a
     run.
     """
+    operator_kinds: dict[str, Callable[..., Any]] = {
+        "crossover": SBX,
+        "mutation": PM,
+        "rule": VelocityRule,
+    }
     if preset.needs and find_spec(preset.needs) is None:
         raise ValueError(f"{preset.name} needs {preset.needs}; {install(preset.needs)}")
     arguments = dict[str, Any]()
@@ -41,7 +40,7 @@ def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algor
         operator, dot, argument = setting.argument.partition(".")
         target = operators.setdefault(operator, {}) if dot else arguments
         target[argument if dot else operator] = values[setting.name]
-    arguments.update((name, _OPERATORS[name](**options)) for name, options in operators.items())
+    arguments.update((name, operator_kinds[name](**options)) for name, options in operators.items())
     module, _, kind = preset.kind.partition(":")
     first = directions(population) if preset.by_directions else population
     return getattr(import_module(module), kind)(first, **arguments)

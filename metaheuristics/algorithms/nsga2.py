@@ -15,12 +15,6 @@ from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 
 from quietarm.ocp.checks import whole
 
-CROSSOVER: dict[str, Any] = {"prob": 0.8, "prob_var": 0.5, "eta": 15}
-"""Simulated binary crossover: the paper's rate for a pair; pymoo's defaults for a gene and eta."""
-MUTATION: dict[str, Any] = {"prob": 1.0, "prob_var": 0.01, "eta": 20}
-"""Polynomial mutation: any individual may mutate; the paper's rate is that of a gene."""
-TOURNAMENT = "comp_by_dom_and_crowding"
-
 
 class ExactDuplicates(DuplicateElimination):
     """Drops individuals whose coefficients equal another's to the last bit.
@@ -64,15 +58,21 @@ class PaperNSGA2(NSGA2):
     def __init__(
         self, population: int = 200, crossover: SBX | None = None, mutation: PM | None = None
     ) -> None:
+        # simulated binary crossover: the paper's rate for a pair; pymoo's defaults for a gene and
+        # eta
+        # polynomial mutation: any individual may mutate; the paper's rate is that of a gene
+        tournament = "comp_by_dom_and_crowding"
+        paper_mutation: dict[str, Any] = {"prob": 1.0, "prob_var": 0.01, "eta": 20}
+        paper_crossover: dict[str, Any] = {"prob": 0.8, "prob_var": 0.5, "eta": 15}
         size = whole("population", population, 2)
         super().__init__(
             pop_size=size,
             n_offsprings=size,
             sampling=FloatRandomSampling(),
             selection=TournamentSelection(func_comp=binary_tournament, pressure=2),
-            crossover=SBX(**CROSSOVER) if crossover is None else crossover,
-            mutation=PM(**MUTATION) if mutation is None else mutation,
+            crossover=SBX(**paper_crossover) if crossover is None else crossover,
+            mutation=PM(**paper_mutation) if mutation is None else mutation,
             survival=RankAndCrowding(crowding_func="cd"),
             eliminate_duplicates=ExactDuplicates(),
         )
-        self.tournament_type = TOURNAMENT
+        self.tournament_type = tournament

@@ -10,8 +10,6 @@ from quietarm.ocp.checks import finite, has_no, nearest, not_negative, positive,
 
 Value = float | int | bool | str | None
 Check = Callable[[str, Any], Value]
-_MOST_KEPT = 100_000
-"""Most points in an archive."""
 
 
 def _number(wanted: str, fits: Callable[[float], bool]) -> Check:
@@ -41,7 +39,9 @@ def _one_of(*choices: str) -> Check:
 
 
 def _count(least: int) -> Check:
-    return lambda name, value: whole(name, value, least, _MOST_KEPT)
+    # most points in an archive
+    most = 100_000
+    return lambda name, value: whole(name, value, least, most)
 
 
 _share = _number("a number from 0 to 1", lambda number: 0 <= number <= 1)

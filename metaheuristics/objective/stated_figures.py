@@ -22,10 +22,6 @@ from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.ocp.robustness import Worst
 from quietarm.ocp.simulation.evaluator import Evaluator
 
-_SAMPLE = 100
-"""Points that are evaluated again: as many as one call takes. An edit or a conversion rarely leaves
-all of these as they were."""
-
 FIGURES = (("residual", "m", REST), ("energy", "J", 0.0))
 """Name and unit of both objectives, and the difference within which they always agree."""
 Array = NDArray[np.float64]
@@ -89,6 +85,9 @@ def _check_entries(front: Front) -> None:
 
 def _evaluated_again(front: Front, table: Array) -> Iterator[tuple[int, Array, Array]]:
     """Some rows of coefficients: which, residual and energy, and violations of the limits."""
+    # points that are evaluated again: as many as one call takes. An edit or a conversion rarely
+    # leaves all of these as they were
+    sample = 100
     count = len(table)
     if not count:
         return
@@ -96,7 +95,7 @@ def _evaluated_again(front: Front, table: Array) -> Iterator[tuple[int, Array, A
         np.linspace(
             0,
             count - 1,
-            min(count, _SAMPLE),
+            min(count, sample),
         )
         .round()
         .astype(int)

@@ -10,11 +10,6 @@ import numpy as np
 from quietarm.metaheuristics.score import objectives
 from quietarm.ocp import Front
 
-_SHALLOW = 1e-4
-"""Share of the front's extent in energy by which it rises above its convex hull where it counts."""
-_AT = 1e-6
-"""Share of the bound within which a coefficient is at it."""
-
 
 @dataclass(frozen=True)
 class Card:
@@ -41,16 +36,21 @@ class Card:
 
 def card_of(front: Front) -> Card:
     """The card of a front, by its points; a range between two neighbours is taken as convex."""
+    # share of the bound within which a coefficient is at it
+    near = 1e-6
+    # share of the front's extent in energy by which it rises above its convex hull where it
+    # counts
+    shallow = 1e-4
     points = objectives(front)
     span = np.ptp(points, axis=0)
     ranges = [
         (float(points[i, 0]), float(points[j, 0]))
         for i, j in pairwise(_hull(points))
-        if _depth(points[i : j + 1]) > _SHALLOW * span[1]
+        if _depth(points[i : j + 1]) > shallow * span[1]
     ]
     bound = front.record.bound or np.inf
     coefficients = np.abs([point.coefficients for point in front.points])
-    at = np.flatnonzero((coefficients >= bound * (1 - _AT)).any(axis=0)) + 1
+    at = np.flatnonzero((coefficients >= bound * (1 - near)).any(axis=0)) + 1
     last = np.diff(points[-2:], axis=0)[0] if len(points) > 1 else span
     return Card(
         tuple(ranges),

@@ -6,23 +6,20 @@ import warnings
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from quietarm.studies.bench.results import Results, bench_label, derivative_free
 from quietarm.studies.bench.statistics import ALPHA, Ranking
 from quietarm.studies.figures.axes import TITLE, legend_below, logarithmic, new_figure
 from quietarm.studies.figures.looks import look
 
-_LEAST = 1e-4
-"""Shares below are drawn here: the reference front's own hypervolume is no better known."""
-_PROFILE = np.geomspace(1.0, 1e-3, 51)
-"""Targets of the running-time profiles: shares of the hypervolume that may be missing."""
 _COSTS = {"seconds": "processor time [s]", "evaluations": "candidates simulated"}
-_BANDS, _INTERVAL = 200, (0.025, 0.975)
-"""How often runs are drawn again for the band about a profile, and the quantiles that it shows."""
 
 
 def curves_figure(results: Results, by: str = "seconds") -> Figure:
     """Median of what is missing on every problem, over processor time or evaluations."""
+    # shares below are drawn here: the reference front's own hypervolume is no better known
+    least = 1e-4
     problems = results.problems
     columns = min(3, len(problems))
     rows = -(-len(problems) // columns)
@@ -36,22 +33,22 @@ def curves_figure(results: Results, by: str = "seconds") -> Figure:
                 continue
             at, missing = results.missing(problem.name, method, by)
             median = np.median(missing, axis=0)
-            own = look(number)
+            style = look(number)
             few = len(at) <= len(missing)  # it ends by itself: a point a run
             ax.plot(
                 at,
-                100 * np.maximum(median, _LEAST),
+                100 * np.maximum(median, least),
                 drawstyle="steps-post",
-                color=own.colour,
-                linestyle=own.dash,
+                color=style.colour,
+                linestyle=style.dash,
                 marker="o" if few else "",
                 markersize=4,
                 label=bench_label(method),
             )
             costs += at.tolist()
         logarithmic(ax, costs)
-        logarithmic(ax, [_LEAST, 1.0], "y")
-        ax.set_ylim(100 * _LEAST, 110)
+        logarithmic(ax, [least, 1.0], "y")
+        ax.set_ylim(100 * least, 110)
         ax.set_title(problem.name, **TITLE)
         ax.grid(alpha=0.25)
     for ax in axes[len(problems) :]:
@@ -69,11 +66,12 @@ def profiles_figure(results: Results) -> Figure:
 
     The band is an interval of 95 %: runs of every problem drawn again with replacement.
     """
+    # targets of the running-time profiles: shares of the hypervolume that may be missing
+    targets = np.geomspace(1.0, 1e-3, 51)
     figure = new_figure(7.2, 4.4)
     ax = figure.subplots()
     random = np.random.default_rng(0)
-    every = [run.history.seconds for run in results.runs]
-    costs = np.concatenate(every)
+    costs = np.concatenate([run.history.seconds for run in results.runs])
     places = np.geomspace(costs[costs > 0].min(), costs.max(), 200)
     for number, method in enumerate(results.methods):
         # of each problem, how many of a run's targets were reached by then: (runs, places)
@@ -84,41 +82,32 @@ def profiles_figure(results: Results) -> Figure:
                     for hits in results.hits(
                         problem.name,
                         method,
-                        _PROFILE.tolist(),
+                        targets.tolist(),
                     )
                 ]
             )
             for problem in results.problems
             if results.of(problem.name, method)
         ]
-        total = len(_PROFILE) * sum(map(len, reached))
+        total = len(targets) * sum(map(len, reached))
+        # for the band: runs drawn again so many times
         drawn = [
-            sum(
-                own[
-                    random.integers(
-                        0,
-                        len(own),
-                        len(own),
-                    )
-                ].sum(axis=0)
-                for own in reached
-            )
-            / total
-            for _ in range(_BANDS)
+            np.sum([_drawn_again(counts, random) for counts in reached], axis=0) / total
+            for _ in range(200)
         ]
-        share = sum(own.sum(axis=0) for own in reached) / total
-        own = look(number)
+        share = sum(counts.sum(axis=0) for counts in reached) / total
+        style = look(number)
         ax.plot(
             places,
             share,
-            color=own.colour,
-            linestyle=own.dash,
+            color=style.colour,
+            linestyle=style.dash,
             label=bench_label(method),
         )
         ax.fill_between(
             places,
-            *np.quantile(drawn, _INTERVAL, axis=0),
-            color=own.colour,
+            *np.quantile(drawn, (0.025, 0.975), axis=0),
+            color=style.colour,
             alpha=0.12,
             linewidth=0,
         )
@@ -127,6 +116,12 @@ def profiles_figure(results: Results) -> Figure:
     ax.grid(alpha=0.25)
     figure.legend(loc="outside right center", fontsize=8, frameon=False)
     return figure
+
+
+def _drawn_again(counts: NDArray[np.int64], random: np.random.Generator) -> NDArray[np.int64]:
+    """Sum over the runs of a problem, a row each, drawn again with replacement."""
+    runs = random.integers(0, len(counts), len(counts))
+    return counts[runs].sum(axis=0)
 
 
 def ranks_figure(ranking: Ranking) -> Figure:

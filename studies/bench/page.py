@@ -206,8 +206,10 @@ def _windows(results: Results) -> str:
 def _repeated(results: Results) -> dict[str, list[str]]:
     """By problem, what methods found the same from every seed."""
     return {
-        one.name: [bench_label(m) for m in results.methods if results.is_repeated(one.name, m)]
-        for one in results.problems
+        problem.name: [
+            bench_label(m) for m in results.methods if results.is_repeated(problem.name, m)
+        ]
+        for problem in results.problems
     }
 
 
@@ -219,21 +221,21 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
     """Medians over the runs of every method on a problem, best first."""
     rows = []
     table = results.table[results.table["problem"] == problem]
-    for method, own in table.groupby("method"):
-        low, middle, high = (100 * share for share in quartiles(own[MISSING]))
+    for method, runs in table.groupby("method"):
+        low, middle, high = (100 * share for share in quartiles(runs[MISSING]))
         time = results.expected_running_time(problem, str(method), SHOWN_TARGET)
-        spent = {name: quartiles(own[name])[1] for name in _COST}
-        still = np.isfinite(np.asarray(own[ENERGIES[0]], dtype=float))
+        spent = {name: quartiles(runs[name])[1] for name in _COST}
+        still = np.isfinite(np.asarray(runs[ENERGIES[0]], dtype=float))
         rows.append(
             {
                 "method": bench_label(str(method)),
-                "runs": len(own),
+                "runs": len(runs),
                 "missing [%]": middle,
                 "quartiles [%]": f"{low:.3g} to {high:.3g}",
-                "with motions between [%]": 100 * quartiles(own["missing_between"])[1],
-                **_medians(own),
-                "energy above at 1 mm [%]": 100 * quartiles(own["energy_1mm"])[1],
-                _STILL: f"{np.count_nonzero(still)} of {len(own)}",
+                "with motions between [%]": 100 * quartiles(runs["missing_between"])[1],
+                **_medians(runs),
+                "energy above at 1 mm [%]": 100 * quartiles(runs["energy_1mm"])[1],
+                _STILL: f"{np.count_nonzero(still)} of {len(runs)}",
                 f"to {100 * SHOWN_TARGET:g} % [s]": interval_words(*time),
                 "candidates": spent["evaluations"],
                 "gradients": spent["gradients"],
@@ -253,25 +255,25 @@ def interval_words(value: float, low: float, high: float) -> str | None:
 def summary_table(results: Results) -> pd.DataFrame:
     """Every method over all problems: medians over problems of the medians over runs."""
     rows = []
-    for method, own in results.table.groupby("method"):
+    for method, runs in results.table.groupby("method"):
         columns = [
             *map(column_of, INDICATORS.values()),
             "missing_between",
             _ENERGY,
             *_COST,
         ]
-        medians = own.groupby("problem")[columns].agg(lambda column: quartiles(column)[1])
+        medians = runs.groupby("problem")[columns].agg(lambda column: quartiles(column)[1])
         over = {name: quartiles(medians[name])[1] for name in medians}
         rows.append(
             {
                 "method": bench_label(str(method)),
                 "problems": len(medians),
-                "runs": len(own),
+                "runs": len(runs),
                 "missing [%]": 100 * over[MISSING],
                 "with motions between [%]": 100 * over["missing_between"],
                 **_medians(medians),
                 "energy above at 1 mm [%]": 100 * over["energy_1mm"],
-                f"{_STILL} [%]": 100 * float(np.mean(np.isfinite(own[ENERGIES[0]]))),
+                f"{_STILL} [%]": 100 * float(np.mean(np.isfinite(runs[ENERGIES[0]]))),
                 "candidates": over["evaluations"],
                 "gradients": over["gradients"],
                 "seconds": over["seconds"],

@@ -14,32 +14,31 @@ from quietarm.ocp.record import Setting
 
 ALL = "all"
 
-_SPELT = {spelling(name): name for name in (*PRESETS, *GRADIENT)}
-
 
 def spell_method(typed: str) -> str:
     """A method's name, however it was spelt, and what follows: NSGA-II+polish is nsga2+polish."""
+    known = {spelling(name): name for name in (*PRESETS, *GRADIENT)}
     name, *rest = re.split(r"(?=[+.])", typed.strip(), maxsplit=1)
-    return "".join([_SPELT.get(spelling(name), name), *rest])
+    return "".join([known.get(spelling(name), name), *rest])
 
 
-def problems_of(given: Sequence[str]) -> list[NamedProblem]:
+def problems_of(names_or_files: Sequence[str]) -> list[NamedProblem]:
     """Problems by name, or by the file of a front; `all` are those with two objectives."""
-    found = list[NamedProblem]()
-    for name in given:
+    problems = list[NamedProblem]()
+    for name in names_or_files:
         if name == ALL:
-            found += [one for one in PROBLEMS.values() if not one.peak]
+            problems += [problem for problem in PROBLEMS.values() if not problem.peak]
         elif name in PROBLEMS or not Path(name).exists():
-            found.append(problem_of(name))
+            problems.append(problem_of(name))
         else:
-            found.append(NamedProblem.of_front(Path(name).stem, Front.load(name)))
-    names = [one.name for one in found]
+            problems.append(NamedProblem.of_front(Path(name).stem, Front.load(name)))
+    names = [problem.name for problem in problems]
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"the problem {name} is given twice; give it once")
-    for one in found:
-        one.reference()  # refuses a third objective
-    return found
+    for problem in problems:
+        problem.reference()  # refuses a third objective
+    return problems
 
 
 def jobs_of(
@@ -55,8 +54,8 @@ def jobs_of(
     Settings are named with their method, as ``nsga2.crossover``. Methods that know no limits are
     left out where a problem has some.
     """
-    given = settings or {}
-    for name in given:
+    stated = settings or {}
+    for name in stated:
         if name.rpartition(".")[0] not in methods:
             raise ValueError(
                 f"setting {name} names no method that runs; begin it with one of these and a dot: "
@@ -68,15 +67,15 @@ def jobs_of(
     runs = whole("runs", runs, 1, 10_000)
     of_method = {
         method: {
-            name.rpartition(".")[2]: given[name]
-            for name in given
+            name.rpartition(".")[2]: stated[name]
+            for name in stated
             if name.rpartition(".")[0] == method
         }
         for method in methods
     }
     jobs = list[Job]()
     left_out = dict[str, None]()
-    for one in range(seed, seed + runs):
+    for run_seed in range(seed, seed + runs):
         for problem in problems:
             for name in methods:
                 preset = PRESETS.get(name.partition("+")[0])
@@ -84,12 +83,12 @@ def jobs_of(
                     left_out[f"{name} knows no limits: left out on {problem.name}"] = None
                     continue
                 budget = None if name in GRADIENT else evaluations
-                jobs.append(Job(problem, name, one, budget, of_method[name]))
+                jobs.append(Job(problem, name, run_seed, budget, of_method[name]))
     return jobs, list(left_out)
 
 
 def imports_on(
-    problems: Sequence[NamedProblem], runs: Mapping[Path, Front], given: Collection[Path]
+    problems: Sequence[NamedProblem], runs: Mapping[Path, Front], named_files: Collection[Path]
 ) -> tuple[list[Front], list[str]]:
     """Imported runs, and words on those of another problem that a folder has besides.
 
@@ -100,7 +99,7 @@ def imports_on(
     left_out = list[str]()
     for path, front in runs.items():
         name = front.record.settings.get("problem")
-        if name in names or path in given:
+        if name in names or path in named_files:
             imported.append(front)
         else:
             left_out.append(f"{path} is on {name or 'no named problem'}: left out")

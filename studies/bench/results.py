@@ -39,13 +39,6 @@ ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
 """Columns of energies within these residuals."""
 MISSING = "missing"
 """Column of the hypervolume that a run lacks, which a bench ranks methods by."""
-_SAME_FRONT = 1e-5
-"""Points of two fronts, scaled to the reference front, that differ by no more are the same: nearer
-the reference fronts are not known."""
-_COPIED = 1e-5
-"""Share of the box by which a run's motion may differ from the reference motion that it copies:
-decimals that were cut, or a small shift. Neighbours on the reference fronts are 2e-4 to 9e-3 of it
-apart in the median, so that what a search finds between them is no copy."""
 
 
 @dataclass(frozen=True)
@@ -73,13 +66,18 @@ class Run:
     @property
     def copies_reference(self) -> bool:
         """Whether all its points are motions of the reference front: it searched for none."""
+        # share of the box by which a run's motion may differ from the reference motion that it
+        # copies: decimals that were cut, or a small shift. Neighbours on the reference fronts are
+        # 2e-4 to 9e-3 of it apart in the median, so that what a search finds between them is no
+        # copy
+        tolerated = 1e-5
         lower, upper = self.problem.profile.box(self.problem.bound)
         known = self.problem.reference().front.coefficients
         distances = [
             (np.abs(known - point) / (upper - lower)).max(axis=1).min()
             for point in self.front.coefficients
         ]
-        return len(distances) > 0 and max(distances) <= _COPIED
+        return len(distances) > 0 and max(distances) <= tolerated
 
     @cached_property
     def history(self) -> History:
@@ -249,11 +247,8 @@ class Results:
         indicator: Indicator = HYPERVOLUME,
     ) -> tuple[float, float, float]:
         """The time and its interval, as `running_times.expected_running_time`."""
-        return expected_running_time(
-            self.histories(problem, method, indicator),
-            target,
-            by,
-        )
+        histories = self.histories(problem, method, indicator)
+        return expected_running_time(histories, target, by)
 
     @cached_property
     def running_times(self) -> pd.DataFrame:
@@ -273,11 +268,14 @@ class Results:
 
 def _is_one_front(runs: Sequence[Run]) -> bool:
     """Whether several runs have the same points, in residual and energy."""
+    # points of two fronts, scaled to the reference front, that differ by no more are the same:
+    # nearer the reference fronts are not known
+    tolerated = 1e-5
     scale = runs[0].problem.reference()
-    first, *others = (scale.scaled(objectives(run.front)) for run in runs)
-    return bool(others) and all(
-        points.shape == first.shape and np.abs(points - first).max(initial=0.0) <= _SAME_FRONT
-        for points in others
+    first, *rest = (scale.scaled(objectives(run.front)) for run in runs)
+    return bool(rest) and all(
+        points.shape == first.shape and np.abs(points - first).max(initial=0.0) <= tolerated
+        for points in rest
     )
 
 
@@ -289,12 +287,12 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
     on the way know no box.
     """
     by_name = {job.problem.name: job.problem for job in jobs}
-    own = {job.label for job in jobs}
+    labels = {job.label for job in jobs}
     runs = list[Run]()
     for front in fronts:
         name = front.record.settings.get("problem")
         method = front.record.method
-        if method in own:
+        if method in labels:
             raise ValueError(
                 f"an imported run is of {method}, which the bench runs itself; name its method "
                 "otherwise, or leave it out"

@@ -16,10 +16,6 @@ Array = NDArray[np.float64]
 TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Shares of the reference front's hypervolume that may be missing for a target to count as
 reached."""
-_RESAMPLED = 1000
-"""How often runs are drawn again for an interval."""
-_INTERVAL = (0.025, 0.975)
-"""The quantiles that are the ends of an interval."""
 
 
 class History(NamedTuple):
@@ -45,9 +41,9 @@ class History(NamedTuple):
     def improving(self) -> History:
         """The marks at which less is missing than at any before, and the last, where it ended."""
         best = np.minimum.accumulate(np.append(np.inf, self.missing))[:-1]
-        kept = self.missing < best
-        kept[-1] = True
-        return History(*(column[kept] for column in self))
+        improving = self.missing < best
+        improving[-1] = True
+        return History(*(column[improving] for column in self))
 
 
 def hits(histories: Iterable[History], targets: Sequence[float], by: str = "seconds") -> Array:
@@ -77,6 +73,8 @@ def expected_running_time(
         The expected running time, and the ends of its interval of 95 %: runs drawn again with
         replacement.
     """
+    # the quantiles that are the ends of an interval
+    interval = (0.025, 0.975)
     first = hits(histories, [target], by)[:, 0]
     ends = np.array([history.cost(by)[-1] for history in histories])
     reached = np.isfinite(first)
@@ -86,13 +84,15 @@ def expected_running_time(
     spent = np.where(reached, first, ends)[drawn].sum(axis=1)
     count = reached[drawn].sum(axis=1)
     times = np.where(count, spent / np.maximum(count, 1), np.inf)
-    low, high = np.quantile(times[1:], _INTERVAL, method="inverted_cdf").tolist()
+    low, high = np.quantile(times[1:], interval, method="inverted_cdf").tolist()
     return float(times[0]), low, high
 
 
 def _drawn_again(runs: int) -> NDArray[np.int64]:
     """Numbers of runs: all of them, then drawn again with replacement, a row each."""
-    again = np.random.default_rng(0).integers(0, runs, (_RESAMPLED, runs))
+    # how often runs are drawn again for an interval
+    times_drawn = 1000
+    again = np.random.default_rng(0).integers(0, runs, (times_drawn, runs))
     return np.vstack([np.arange(runs), again])
 
 
@@ -104,7 +104,7 @@ def running_times(groups: Mapping[tuple[str, str], Sequence[History]]) -> pd.Dat
     rows = list[dict[str, Any]]()
     for (problem, method), histories in sorted(groups.items()):
         reached = np.isfinite(hits(histories, TARGETS)).sum(axis=0)
-        counts_candidates = all(np.isfinite(one.evaluations).all() for one in histories)
+        counts_candidates = all(np.isfinite(history.evaluations).all() for history in histories)
         for target, count in zip(TARGETS, reached.tolist()):
             row = {
                 "problem": problem,
@@ -153,11 +153,7 @@ def read_histories(path: str | Path) -> dict[tuple[str, str], list[History]]:
     """The histories that `write_histories` wrote, by problem and method, for `running_times`."""
     table = pd.read_csv(path)
     groups: dict[tuple[str, str], list[History]] = {}
-    by_run: Any = table.groupby(
-        ["problem", "method", "seed"],
-        sort=False,
-        dropna=False,
-    )
+    by_run: Any = table.groupby(["problem", "method", "seed"], sort=False, dropna=False)
     for (problem, method, _), marks in by_run:
         columns = (marks[name].to_numpy(dtype=float) for name in History._fields)
         groups.setdefault((problem, method), []).append(History(*columns))

@@ -20,18 +20,16 @@ from quietarm.studies.report.words import counted
 
 Array = NDArray[np.float64]
 ALPHA = 0.05
-_EXACT = 50
-"""Runs of the method with fewer, up to which Mann-Whitney's test is exact."""
 
 
-def attainable_p(runs: int, others: int) -> float:
+def attainable_p(runs: int, other_runs: int) -> float:
     """The least p that a pair of methods can have by its test.
 
     By Mann and Whitney's exact test; by the sign test where one method is a single value, as its
     runs repeat each other.
     """
-    fewer, more = sorted((runs, others))
-    return min(1.0, 2 / comb(runs + others, runs) if fewer > 1 else 2 / 2**more)
+    fewer, more = sorted((runs, other_runs))
+    return min(1.0, 2 / comb(runs + other_runs, runs) if fewer > 1 else 2 / 2**more)
 
 
 def attainable_by_holm(least: Array) -> Array:
@@ -80,8 +78,8 @@ def say_power_of(runs: Iterable[tuple[str, str]]) -> str:
     for problem, method in runs:
         counts[problem][method] += 1
     tested = [
-        [count for count in own.values() if count >= _least_runs(own.values())]
-        for own in counts.values()
+        [count for count in of_problem.values() if count >= _least_runs(of_problem.values())]
+        for of_problem in counts.values()
     ]
     return say_power(min(map(min, tested), default=1), max(map(len, tested), default=0))
 
@@ -125,7 +123,7 @@ class Ranking:
     def best(self) -> tuple[str, ...]:
         """The first method and those not significantly different from it."""
         near = (rank - self.ranks[0] <= self.critical for rank in self.ranks)
-        return tuple(name for name, one in zip(self.methods, near) if one)
+        return tuple(name for name, is_near in zip(self.methods, near) if is_near)
 
 
 def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.DataFrame:
@@ -137,11 +135,12 @@ def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.Data
     without a test.
     """
     values = {
-        name: own[:1] if results.is_repeated(problem, name) else own
-        for name, own in values_on(results, problem, column).items()
+        name: runs[:1] if results.is_repeated(problem, name) else runs
+        for name, runs in values_on(results, problem, column).items()
     }
     rows = [
-        (one, other, *_tested(values[one], values[other])) for one, other in combinations(values, 2)
+        (first, second, *_tested(values[first], values[second]))
+        for first, second in combinations(values, 2)
     ]
     table = pd.DataFrame(rows, columns=["one", "other", "effect", "p"])
     p_values = table["p"].to_numpy(dtype=float, copy=True)
@@ -155,17 +154,19 @@ def pairs_on(results: Results, problem: str, column: str = "missing") -> pd.Data
 
 def _tested(mine: Array, theirs: Array) -> tuple[float, float]:
     """Effect size and p value of two samples."""
+    # runs of the method with fewer, up to which Mann-Whitney's test is exact
+    most_exact = 50
     both = np.nan_to_num(np.concatenate([mine, theirs]), nan=np.inf)
     ranks = stats.rankdata(both)  # the test may refuse infinities
     if np.ptp(ranks) == 0:  # nor does it know what is all alike
         return 0.5, 1.0
     first, second = np.split(ranks, [len(mine)])
-    found = stats.mannwhitneyu(first, second, method="asymptotic")
-    effect = 1 - float(found.statistic) / (len(mine) * len(theirs))
+    test = stats.mannwhitneyu(first, second, method="asymptotic")
+    effect = 1 - float(test.statistic) / (len(mine) * len(theirs))
     fewer, more = sorted((first, second), key=len)
     if len(fewer) == 1:
         return effect, _sign_test(fewer[0], more) if len(more) > 1 else np.nan
-    return effect, _exact_p(fewer, ranks) if len(fewer) <= _EXACT else float(found.pvalue)
+    return effect, _exact_p(fewer, ranks) if len(fewer) <= most_exact else float(test.pvalue)
 
 
 def _exact_p(some: Array, ranks: Array) -> float:
@@ -198,8 +199,8 @@ def kruskal_on(results: Results, problem: str, column: str = "missing") -> float
     Of those whose runs differ; NaN of fewer than two.
     """
     values = [
-        np.nan_to_num(own, nan=1e300)
-        for name, own in values_on(results, problem, column).items()
+        np.nan_to_num(runs, nan=1e300)
+        for name, runs in values_on(results, problem, column).items()
         if not results.is_repeated(problem, name)
     ]
     if len(values) < 2 or np.ptp(np.concatenate(values)) == 0:
@@ -254,27 +255,29 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
         if any(method not in known[name] for name in names)
     ]
     methods = [m for m in results.methods if all(m in known[name] for name in names)]
-    kept = list[str]()
+    ranked = list[str]()
     for method in methods:
-        twin = next((one for one in kept if _same(known, one, method)), None)
+        twin = next((name for name in ranked if _same(known, name, method)), None)
         if twin is None:
-            kept.append(method)
+            ranked.append(method)
         else:
             left_out.append(f"{bench_label(method)} (the same as {bench_label(twin)})")
     moves = moves_of(results.problems)
-    if len(kept) < 3 or len(moves) < 3:
+    if len(ranked) < 3 or len(moves) < 3:
         return None
     rows = list[Array]()
     for move in moves:
-        medians = [[quartiles(known[one.name][m])[1] for m in kept] for one in move]
+        medians = [
+            [quartiles(known[problem.name][method])[1] for method in ranked] for problem in move
+        ]
         rows.append(np.mean([stats.rankdata(row) for row in medians], axis=0))
     ranks = np.array([stats.rankdata(row) for row in rows])
     means = ranks.mean(axis=0)
-    count = len(kept)
+    count = len(ranked)
     quantile = stats.studentized_range.ppf(1 - ALPHA, count, np.inf) / sqrt(2)
     order = np.argsort(means, kind="stable").tolist()
     return Ranking(
-        methods=tuple(kept[i] for i in order),
+        methods=tuple(ranked[i] for i in order),
         ranks=tuple(means[order].tolist()),
         moves=len(moves),
         p_value=float(np.nan_to_num(stats.friedmanchisquare(*ranks.T).pvalue, nan=1.0)),
@@ -283,15 +286,10 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
     )
 
 
-def _same(known: Mapping[str, Mapping[str, Array]], one: str, other: str) -> bool:
+def _same(known: Mapping[str, Mapping[str, Array]], first: str, second: str) -> bool:
     """Whether two methods have the same values on all problems."""
     return all(
-        np.array_equal(
-            own[one],
-            own[other],
-            equal_nan=True,
-        )
-        for own in known.values()
+        np.array_equal(values[first], values[second], equal_nan=True) for values in known.values()
     )
 
 
@@ -305,7 +303,7 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
     if len(values) < 2:
         return "fewer than two methods have two runs: no test"
     runs = min(map(len, values.values()))
-    medians = {name: quartiles(own)[1] for name, own in values.items()}
+    medians = {name: quartiles(column)[1] for name, column in values.items()}
     best = min(medians, key=lambda name: medians[name])
     if not np.isfinite(medians[best]):
         return "no method has such a motion in the median"

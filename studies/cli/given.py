@@ -32,7 +32,7 @@ from quietarm.studies.cli.quantities import (
 from quietarm.studies.cli.robots import read_robot_task
 from quietarm.studies.identify import Identified
 from quietarm.studies.reading.profiles import profile_of
-from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
+from quietarm.studies.sweep.grid import OF_MOVES, Axis, MoveGrid
 
 
 class Given:
@@ -124,7 +124,7 @@ class Given:
         single_values({axis.name: axis.values for axis in grid.axes})
         return grid.task
 
-    def read_grid(self, **known: float) -> Grid:
+    def read_grid(self, **known: float) -> MoveGrid:
         """The task, and axes over what has several values."""
         kind = choose_kind(self.plant, self.plant_file)
         if isinstance(kind, Robot):
@@ -154,9 +154,9 @@ class Given:
         furthest: dict[str, Any] = {name: max(values, key=abs) for name, values in moves.items()}
         task = PointToPoint(plant, **furthest, **options, uncertainty=uncertainty)
         warn_of_payload(kind, plant, parameters)
-        return Grid(task, tuple(axes))
+        return MoveGrid(task, tuple(axes))
 
-    def _read_robot(self, robot: Robot, **known: float) -> Grid:
+    def _read_robot(self, robot: Robot, **known: float) -> MoveGrid:
         """The task of a robot along its path, without axes."""
         text: str | None = self._context.params["duration"]
         duration = known.get("duration")
@@ -164,4 +164,4 @@ class Given:
             raise click.UsageError("Missing option '--duration'. Give it as --duration 0.8")
         if duration is None:
             (duration,) = parse_of_plant("duration", str(text), "rotary", "m")
-        return Grid(read_robot_task(self, robot, duration), ())
+        return MoveGrid(read_robot_task(self, robot, duration), ())

@@ -13,20 +13,21 @@ from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS, Impulses, convolved
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 
-CYCLOID, RUCKIG = "cycloid", "ruckig"
+CYCLOID = "cycloid"
+RUCKIG = "ruckig"
 BASELINES = (CYCLOID, *SHAPERS, RUCKIG, *(f"{name}-{RUCKIG}" for name in SHAPERS))
 """Their names; a shaper alone shapes the cycloid."""
 ALL = "all"
 _SHORTEST = 1e-9
 """Pieces of a motion that are shorter [s] are none."""
-_LEAST_SHARE = 0.02
-"""Share of the duration that a shaper has to leave for the motion that it shapes."""
 
 
 def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
     """Baselines of these names, of "all" every one, each once; ValueError where one is unknown."""
     names = several("baselines", names, "names")
-    chosen = dict.fromkeys(one for name in names for one in (BASELINES if name == ALL else [name]))
+    chosen = dict[str, None]()
+    for name in names:
+        chosen |= dict.fromkeys(BASELINES if name == ALL else [name])
     for name in chosen:
         if name not in BASELINES:
             raise ValueError(unknown("baseline", name, (ALL, *BASELINES)))
@@ -36,6 +37,8 @@ def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
 @takes(task=PointToPoint)
 def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
     """A baseline's motion of a task; ValueError where there is none."""
+    # share of the duration that a shaper has to leave for the motion that it shapes
+    least_share = 0.02
     task = task.certain
     if name == CYCLOID:
         return evaluate_coefficients(task, [])
@@ -43,13 +46,13 @@ def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
         return evaluate_coefficients(task, [], profile=shaped_cycloid(task, name))
     shaper = name.removesuffix(RUCKIG).removesuffix("-")
     impulses = _impulses(task, shaper) if shaper else Impulses((1.0,), (0.0,))
-    left = task.duration - impulses.times[-1]
-    if left < _LEAST_SHARE * task.duration:
+    remaining = task.duration - impulses.times[-1]
+    if remaining < least_share * task.duration:
         raise ValueError(
             f"the shaper alone takes {impulses.times[-1]:.3g} s, of a move of {task.duration:.4g} "
             "s; give a longer duration"
         )
-    free = shaped(ruckig_motion(replace(task, duration=left)), impulses)
+    free = shaped(ruckig_motion(replace(task, duration=remaining)), impulses)
     return Candidate.of_free_motion(task, free)
 
 
@@ -72,33 +75,33 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
             "ruckig moves within an acceleration limit, and the move has none; plan it with one, "
             "as --acceleration-limit 40"
         )
-    asked = InputParameter(1)
-    found = Trajectory(1)
+    request = InputParameter(1)
+    trajectory = Trajectory(1)
     free = (-np.inf, np.inf)
-    asked.current_position = [task.start]
-    asked.target_position = [task.target]
+    request.current_position = [task.start]
+    request.target_position = [task.target]
     bounds = {limit.name: (limit.lower, limit.upper) for limit in task.limits}
     slowest, fastest = bounds.get("speed", free)
-    asked.min_velocity = [slowest]
-    asked.max_velocity = [fastest]
+    request.min_velocity = [slowest]
+    request.max_velocity = [fastest]
     least, most = bounds["acceleration"]
-    asked.min_acceleration = [least]
-    asked.max_acceleration = [most]
-    asked.max_jerk = [min(np.abs(bounds.get("jerk", free)))]
-    asked.minimum_duration = task.duration
-    result = Ruckig(1).calculate(asked, found)
+    request.min_acceleration = [least]
+    request.max_acceleration = [most]
+    request.max_jerk = [min(np.abs(bounds.get("jerk", free)))]
+    request.minimum_duration = task.duration
+    result = Ruckig(1).calculate(request, trajectory)
     if int(result) < 0:
         raise ValueError(f"ruckig finds no motion ({result}); give wider limits")
-    if found.duration > task.duration * (1 + 1e-6):
+    if trajectory.duration > task.duration * (1 + 1e-6):
         raise ValueError(
-            f"within the limits it takes {found.duration:.4g} s, more than the "
+            f"within the limits it takes {trajectory.duration:.4g} s, more than the "
             f"{task.duration:.4g} s that it has; give a longer duration or wider limits"
         )
-    one = found.profiles[0][0]
-    lengths = np.array(one.t)
+    profile = trajectory.profiles[0][0]
+    lengths = np.array(profile.t)
     there = lengths > _SHORTEST
     times = np.concatenate([[0.0], np.cumsum(lengths[there])])
-    return FreeMotion(times, np.array(one.a)[:-1][there], np.array(one.j)[there])
+    return FreeMotion(times, np.array(profile.a)[:-1][there], np.array(profile.j)[there])
 
 
 def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
@@ -110,9 +113,9 @@ def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
     acceleration = np.zeros(len(middle))
     jerk = np.zeros(len(middle))
     for share, begin in zip(*impulses):
-        own = np.searchsorted(free.times, middle - begin, side="right") - 1
-        moving = (own >= 0) & (own < free.steps)
-        k = own[moving]
+        piece = np.searchsorted(free.times, middle - begin, side="right") - 1
+        moving = (piece >= 0) & (piece < free.steps)
+        k = piece[moving]
         since = times[:-1][moving] - begin - free.times[k]
         acceleration[moving] += share * (free.acceleration[k] + free.jerk[k] * since)
         jerk[moving] += share * free.jerk[k]

@@ -89,14 +89,14 @@ class Comparison:
     groups : tuple of Group
         Methods, in the order in which they were given.
     reference : str
-        What IGD+ and epsilon are measured against.
+        What IGD+ and additive epsilon are measured against.
     corner : tuple of float
         Residual [m] and energy [J] up to which hypervolumes are measured, as in a bench: a tenth
         of its extent beyond the ends of the reference front. They are shares of the box from there
         to the least residual and energy of that front.
     extent : tuple of float
         Residual [m] and energy [J] between the ends of the reference front: the units of IGD+ and
-        epsilon, so that both objectives have the same weight.
+        additive epsilon, so that both objectives have the same weight.
     levels : tuple of float
         Residuals [m] at which energies are compared.
     best_front : ndarray, shape (n, 2), read-only
@@ -137,15 +137,14 @@ def compare_fronts(
     *,
     reference: Front | None = None,
     reference_name: str = "the reference front",
-    floor: float | None = None,
     levels: Sequence[float] = LEVELS,
     fill: bool = True,
 ) -> Comparison:
     """Measure fronts of one task against each other.
 
-    The indicators are moocore's. IGD+ and epsilon are measured against the reference front, or the
-    points that none of any front dominates, thinned to even distances, so that the front of most
-    points does not decide.
+    The indicators are moocore's. IGD+ and additive epsilon are measured against the reference
+    front, or the points that none of any front dominates, thinned to even distances, so that the
+    front of most points does not decide.
 
     Parameters
     ----------
@@ -155,8 +154,6 @@ def compare_fronts(
         What each is called.
     reference, reference_name : Front and str, optional
         What to measure against.
-    floor : float, optional
-        Energy [J] of the best free motion, for pictures.
     levels : sequence of float
         Residuals [m] at which energies are compared.
     fill : bool
@@ -211,7 +208,6 @@ def compare_fronts(
         best_front=_frozen(best_front),
         best=tuple(best.tolist()),
         fill=fill,
-        floor=floor,
     )
 
 
@@ -282,10 +278,10 @@ def _refuse(fronts: Sequence[Front], names: Sequence[str], apart: int) -> None:
             raise ValueError(f"{name} is {twin}; give every front once")
 
 
-def differ_in_window_alone(one: PointToPoint, other: PointToPoint) -> bool:
+def differ_in_window_alone(task: PointToPoint, other_task: PointToPoint) -> bool:
     """Whether two tasks have another residual window, and are one task but for that."""
-    alike = replace(one, residual_window=other.residual_window)
-    return bool(task_difference(one, other)) and not task_difference(alike, other)
+    alike = replace(task, residual_window=other_task.residual_window)
+    return bool(task_difference(task, other_task)) and not task_difference(alike, other_task)
 
 
 def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
@@ -298,7 +294,7 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
     firsts = [fronts[members[0]] for members in groups.values()]
     return {
         _label(
-            front, [other for other in firsts if other.record.method == front.record.method]
+            front, [rival for rival in firsts if rival.record.method == front.record.method]
         ): members
         for front, members in zip(firsts, groups.values())
     }
@@ -306,17 +302,17 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
 
 def _settings(front: Front) -> dict[str, object]:
     profile = plain(front.profile)
-    own = {"bound": front.record.bound, **front.record.settings}
-    own.pop(CHECKSUM, None)  # of a bench's run, and no setting of its method
-    return {**own, "profile": profile.pop("name"), **profile}
+    settings = {"bound": front.record.bound, **front.record.settings}
+    settings.pop(CHECKSUM, None)  # of a bench's run, and no setting of its method
+    return {**settings, "profile": profile.pop("name"), **profile}
 
 
 def _label(front: Front, alike: Sequence[Front]) -> str:
     """The method, with the settings in which it differs from others of the same method."""
     words = [label_of(front.record.method)]
-    others = [_settings(other) for other in alike]
+    known = [_settings(rival) for rival in alike]
     for name, value in _settings(front).items():
-        if all(other.get(name) == value for other in others):
+        if all(settings.get(name) == value for settings in known):
             continue
         shown = str(value).removesuffix(".0")  # every digit: two groups never share a label
         words.append(f"no {name}" if value is None else f"{name} {shown}")

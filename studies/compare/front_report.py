@@ -46,7 +46,7 @@ def compare_by_task(
         reference=reference,
         reference_name=reference_name,
     )
-    return [compare(list(one.values()), list(one)) for one in tasks]
+    return [compare(list(named.values()), list(named)) for named in tasks]
 
 
 def _by_task(fronts: Mapping[str, Front]) -> list[dict[str, Front]]:
@@ -64,10 +64,10 @@ def _by_task(fronts: Mapping[str, Front]) -> list[dict[str, Front]]:
 def _apart_by_window(comparisons: Sequence[Comparison]) -> list[str]:
     """Residual windows of tasks that are one but for these; none where there are no such."""
     windows = {
-        one.task.residual_window: window_words(one.task.residual_window)
-        for one in comparisons
-        for other in comparisons
-        if differ_in_window_alone(one.task, other.task)
+        first.task.residual_window: window_words(first.task.residual_window)
+        for first in comparisons
+        for second in comparisons
+        if differ_in_window_alone(first.task, second.task)
     }
     return [words for _, words in sorted(windows.items())]
 
@@ -161,7 +161,7 @@ def fronts_report(
         if len(comparisons) == 1
         else [f"fronts-{i}.png" for i in range(1, len(comparisons) + 1)]
     )
-    tables = [methods_table(one) for one in comparisons]
+    tables = [methods_table(comparison) for comparison in comparisons]
     moves = zip(comparisons, tables)
     return Report(
         "compare/fronts.md",
@@ -174,19 +174,21 @@ def fronts_report(
             "apart": _apart_by_window(comparisons),
             "unsealed": unsealed,
             "indicators": INDICATORS,
-            "several": any(len(g.runs) > 1 for one in comparisons for g in one.groups),
+            "several": any(
+                len(group.runs) > 1 for comparison in comparisons for group in comparison.groups
+            ),
         },
         {
             "methods": pd.concat(
                 [
-                    table.assign(move=title_of(one.task)) if len(tables) > 1 else table
-                    for one, table in moves
+                    table.assign(move=title_of(comparison.task)) if len(tables) > 1 else table
+                    for comparison, table in moves
                 ]
             ),
             "runs": pd.concat(map(runs_table, comparisons)),
         },
         {
-            name: partial(figures.comparison_figure, one, points)
-            for name, one, points in zip(pictures, comparisons, known)
+            name: partial(figures.comparison_figure, comparison, points)
+            for name, comparison, points in zip(pictures, comparisons, known)
         },
     )

@@ -27,7 +27,7 @@ SAMPLES = 2000
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedMotion:
     """A motion evaluated by CVODES, or why there is none.
 
     Attributes
@@ -64,13 +64,13 @@ class Judged:
 
 
 @takes(task=PointToPoint)
-def judge(
+def judge_motion(
     name: str,
     moved: Plan | Floor | Candidate,
     ranges: Mapping[str, float],
     task: PointToPoint,
     samples: int = 0,
-) -> Judged:
+) -> JudgedMotion:
     """Evaluate a motion of a task's move within ranges of parameter errors, and by its limits.
 
     With samples, also the insensitivity, and percentiles over that many random plants.
@@ -78,7 +78,7 @@ def judge(
     candidate = moved if isinstance(moved, Candidate) else moved.candidate
     nominal = Candidate(task.certain, candidate.path)
     exceeded = nominal.motion.exceeded(task.limits, OVERRUN)
-    own = Judged(
+    judged = JudgedMotion(
         name,
         nominal.motion,
         float(task.residual_window),
@@ -87,8 +87,8 @@ def judge(
     if isinstance(moved, Plan):
         uncertain = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)
         motion = moved.candidate.on(uncertain)
-        own = replace(
-            own,
+        judged = replace(
+            judged,
             worst=worst_of(motion),
             robustness=evaluate_robustness(motion, ranges, samples=samples)
             if ranges and samples
@@ -97,14 +97,14 @@ def judge(
             turns_back=moved.turns_back,
         )
     elif ranges:
-        own = replace(own, worst=worst_case(nominal, ranges))
-    return own if isinstance(moved, Candidate) else replace(own, seconds=moved.record.seconds)
+        judged = replace(judged, worst=worst_case(nominal, ranges))
+    return judged if isinstance(moved, Candidate) else replace(judged, seconds=moved.record.seconds)
 
 
 def refuse_other_moves(tasks: Mapping[str, PointToPoint]) -> None:
     """ValueError unless tasks are one move; limits, errors and residual windows may differ."""
-    (first, wanted), *others = ((name, _bare(task)) for name, task in tasks.items())
-    for name, task in others:
+    (first, wanted), *rest = ((name, _bare(task)) for name, task in tasks.items())
+    for name, task in rest:
         if difference := task_difference(task, wanted):
             raise ValueError(
                 f"{name} is of another move than {first}: its {difference}; compare plans of one "

@@ -8,7 +8,8 @@ from pathlib import Path
 from quietarm.ocp import FileFormatError, Front, Plan
 from quietarm.studies.reading.saved import format_of, load_front, load_plans
 
-_FRONT, _PLAN = (f"quietarm-{one.kind}" for one in (Front, Plan))
+_FRONT = f"quietarm-{Front.kind}"
+_PLAN = f"quietarm-{Plan.kind}"
 
 
 def open_answers(paths: Sequence[Path]) -> dict[str, Plan] | dict[str, Front]:
@@ -18,9 +19,9 @@ def open_answers(paths: Sequence[Path]) -> dict[str, Plan] | dict[str, Front]:
     """
     if not paths:
         raise ValueError("nothing is given to compare; give plans, fronts, or a folder of fronts")
-    found = {path: format_of(path) for given in paths for path in _files(given)}
-    fronts = [path for path, kind in found.items() if kind == _FRONT]
-    plans = [path for path, kind in found.items() if kind == _PLAN]
+    kinds = {path: format_of(path) for typed in paths for path in _files(typed)}
+    fronts = [path for path, kind in kinds.items() if kind == _FRONT]
+    plans = [path for path, kind in kinds.items() if kind == _PLAN]
     if plans and fronts:
         raise ValueError(
             f"{fronts[0]} is a front and {plans[0]} a plan; compare fronts or plans, not both"
@@ -31,7 +32,7 @@ def open_answers(paths: Sequence[Path]) -> dict[str, Plan] | dict[str, Front]:
     for path in files:
         if files.count(path) > 1:
             raise ValueError(f"{path} is given twice; give it once")
-    return {str(path): load_front(path) for path in found}
+    return {str(path): load_front(path) for path in kinds}
 
 
 def _files(path: Path) -> Iterator[Path]:
@@ -39,7 +40,7 @@ def _files(path: Path) -> Iterator[Path]:
     if not path.is_dir():
         yield path
         return
-    fronts = [one for one in sorted(path.rglob("*.json")) if format_of(one) == _FRONT]
+    fronts = [file for file in sorted(path.rglob("*.json")) if format_of(file) == _FRONT]
     if not fronts:
         raise FileFormatError(f"{path} holds no fronts; give a folder of a bench, or files")
     yield from fronts

@@ -17,8 +17,8 @@ from quietarm.studies import figures
 from quietarm.studies.compare.baselines import baseline, choose_baselines
 from quietarm.studies.compare.judged_motions import (
     SAMPLES,
-    Judged,
-    judge,
+    JudgedMotion,
+    judge_motion,
     merged_ranges,
     refuse_other_moves,
 )
@@ -29,8 +29,6 @@ from quietarm.studies.tips import tip_scale
 _WHY = "why there is none"
 """Column of a table for files; a page lists the reasons below."""
 _WINDOW = "residual window [s]"
-_TURNED = 1e-4
-"""A joint that goes back by more [rad] is said to."""
 
 
 @takes(plans={str: Plan}, task=PointToPoint)
@@ -41,7 +39,7 @@ def compare_plans(
     samples: int = SAMPLES,
     *,
     task: PointToPoint | None = None,
-) -> list[Judged]:
+) -> list[JudgedMotion]:
     """Evaluate plans of one move and baselines for it, in this order.
 
     Parameters
@@ -60,7 +58,7 @@ def compare_plans(
 
     Returns
     -------
-    list of Judged
+    list of JudgedMotion
         A baseline that is impossible for the move says why.
 
     Raises
@@ -72,11 +70,11 @@ def compare_plans(
     tasks = {"the move": task} if task else {}
     tasks |= {name: plan.task for name, plan in plans.items()}
     refuse_other_moves(tasks)
-    window = max(one.residual_window for one in tasks.values())
+    window = max(planned.residual_window for planned in tasks.values())
     task = replace(next(iter(tasks.values())), residual_window=window)
     ranges = ranges or merged_ranges(tasks.values())
     judged = [
-        judge(
+        judge_motion(
             name,
             plan,
             ranges,
@@ -87,45 +85,45 @@ def compare_plans(
     ]
     for name in names:
         try:
-            judged.append(judge(name, baseline(name, task), ranges, task, samples))
+            judged.append(judge_motion(name, baseline(name, task), ranges, task, samples))
         except (QuietarmError, ValueError) as error:
-            judged.append(Judged(name, why=str(error)))
+            judged.append(JudgedMotion(name, why=str(error)))
     return judged
 
 
 def motions_table(
-    motions: Sequence[Judged], joint: str = ROTARY, tip_unit: str = "m"
+    motions: Sequence[JudgedMotion], joint: str = ROTARY, tip_unit: str = "m"
 ) -> pd.DataFrame:
     """A row for each motion with all its figures; what is known of none is left out."""
-    rows = [{"motion": one.name, **dict(_cells(one, tip_unit))} for one in motions]
+    rows = [{"motion": motion.name, **dict(_cells(motion, tip_unit))} for motion in motions]
     table = pd.DataFrame(rows).dropna(axis=1, how="all")
     return table.rename(columns=lambda name: joint_unit(str(name), joint))
 
 
-def _cells(one: Judged, tip_unit: str) -> Iterator[tuple[str, float | str | None]]:
-    motion = one.motion
-    yield "parameters", one.parameters
+def _cells(judged: JudgedMotion, tip_unit: str) -> Iterator[tuple[str, float | str | None]]:
+    motion = judged.motion
+    yield "parameters", judged.parameters
     if motion is None:
-        yield _WHY, one.why
+        yield _WHY, judged.why
         return
     yield "energy [J]", motion.energy
     shown, scale = tip_scale(tip_unit)
     yield f"residual [{shown}]", scale * motion.residual
-    yield _WINDOW, one.window
-    if one.worst is not None:
-        yield f"worst case [{shown}]", scale * one.worst.residual
-        errors = (f"{name} {100 * error:+.3g} %" for name, error in one.worst.errors.items())
+    yield _WINDOW, judged.window
+    if judged.worst is not None:
+        yield f"worst case [{shown}]", scale * judged.worst.residual
+        errors = (f"{name} {100 * error:+.3g} %" for name, error in judged.worst.errors.items())
         yield "worst case at", ", ".join(errors)
-    if one.robustness is not None:
-        yield f"95 % of samples [{shown}]", scale * one.robustness.percentile("residual", 95)
-        for sweep in one.robustness.sweeps:
+    if judged.robustness is not None:
+        yield f"95 % of samples [{shown}]", scale * judged.robustness.percentile("residual", 95)
+        for sweep in judged.robustness.sweeps:
             ends = sweep.insensitivity
             words = "none" if ends is None else f"{100 * ends[0]:.2g} to {100 * ends[1]:.2g} %"
             yield f"{sweep.name} within {100 * TOLERATED:g} %", words
     yield "peak torque [N m]", motion.peak_torque
     yield "peak acceleration [rad/s^2]", motion.peak_acceleration
-    yield "exceeds", ", ".join(one.exceeded) or None
-    yield "time [s]", one.seconds
+    yield "exceeds", ", ".join(judged.exceeded) or None
+    yield "time [s]", judged.seconds
 
 
 def shown(table: pd.DataFrame) -> pd.DataFrame:
@@ -139,14 +137,18 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     return rounded.drop(columns=files_alone, errors="ignore")
 
 
-def remarks(motions: Sequence[Judged], unit: str = "rad") -> list[str]:
+def remarks(motions: Sequence[JudgedMotion], unit: str = "rad") -> list[str]:
     """Why a motion is missing, and which joints turn back."""
+    # a joint that goes back by more [rad] is said to
+    least_turn = 1e-4
     reasons: dict[str, list[str]] = {}
-    for one in motions:
-        if one.why:
-            reasons.setdefault(one.why, []).append(one.name)
+    for motion in motions:
+        if motion.why:
+            reasons.setdefault(motion.why, []).append(motion.name)
     back = [
-        f"{m.name} by {m.turns_back:.2g} {unit}" for m in motions if (m.turns_back or 0) > _TURNED
+        f"{m.name} by {m.turns_back:.2g} {unit}"
+        for m in motions
+        if (m.turns_back or 0) > least_turn
     ]
     return [
         *(f"{', '.join(names)}: {why}" for why, names in reasons.items()),
@@ -155,7 +157,7 @@ def remarks(motions: Sequence[Judged], unit: str = "rad") -> list[str]:
 
 
 def plans_report(
-    task: PointToPoint, motions: Sequence[Judged], unsealed: Sequence[Path] = ()
+    task: PointToPoint, motions: Sequence[JudgedMotion], unsealed: Sequence[Path] = ()
 ) -> Report:
     """Motions as a table, what to know of them, and a picture.
 
@@ -163,8 +165,8 @@ def plans_report(
     """
     joint = task.plant.joint
     table = motions_table(motions, joint, task.plant.tip_unit)
-    robust = next((one.robustness for one in motions if one.robustness), None)
-    ranges = next((one.worst.errors for one in motions if one.worst), {})
+    robust = next((motion.robustness for motion in motions if motion.robustness), None)
+    ranges = next((motion.worst.errors for motion in motions if motion.worst), {})
     return Report(
         "compare/plans.md",
         {
@@ -174,11 +176,11 @@ def plans_report(
             "remarks": remarks(motions, joint_unit("rad", joint)),
             "errors": list(ranges),
             "window": window_words(
-                next((one.window for one in motions if one.window), task.residual_window)
+                next((motion.window for motion in motions if motion.window), task.residual_window)
             ),
             "robust": robust,
             "tolerated": f"{100 * TOLERATED:g} %",
-            "ruckig": any("ruckig" in one.name for one in motions),
+            "ruckig": any("ruckig" in motion.name for motion in motions),
         },
         {"motions": table},
         {

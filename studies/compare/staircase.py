@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-_STATIONS = 101
 
 
 def best_of(fronts: list[Array]) -> Array:
@@ -16,7 +15,7 @@ def best_of(fronts: list[Array]) -> Array:
     return best[np.argsort(best[:, 0])]
 
 
-def evenly_spaced(points: Array, stations: int = _STATIONS) -> Array:
+def evenly_spaced(points: Array, stations: int = 101) -> Array:
     """The points of a front nearest to stations at even distances along it, shape (few, 2)."""
     ordered = points[np.argsort(points[:, 0])]
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ordered, axis=0).T))])

@@ -23,7 +23,7 @@ from quietarm.studies.figures.looks import look
 from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
-    from quietarm.studies.compare.judged_motions import Judged
+    from quietarm.studies.compare.judged_motions import JudgedMotion
 
 
 def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None = None) -> Axes:
@@ -65,12 +65,14 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     return ax
 
 
-def draw_motions(motions: Sequence[Judged], ax: Axes | None = None, tip_unit: str = "m") -> Axes:
+def draw_motions(
+    motions: Sequence[JudgedMotion], ax: Axes | None = None, tip_unit: str = "m"
+) -> Axes:
     """Draw the energy of motions over their residual: open nominal, filled in the worst case.
 
     Parameters
     ----------
-    motions : sequence of Judged
+    motions : sequence of JudgedMotion
         Those that there are are drawn.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
@@ -100,12 +102,12 @@ def draw_motions(motions: Sequence[Judged], ax: Axes | None = None, tip_unit: st
     return ax
 
 
-def _window(motions: Sequence[Judged]) -> float | None:
+def _window(motions: Sequence[JudgedMotion]) -> float | None:
     """The residual window of motions that are judged together [s]."""
     return next((judged.window for judged in motions if judged.window is not None), None)
 
 
-def motions_figure(motions: Sequence[Judged], title: str, tip_unit: str = "m") -> Figure:
+def motions_figure(motions: Sequence[JudgedMotion], title: str, tip_unit: str = "m") -> Figure:
     """Draw motions over each other: `draw_motions`, and `draw_robustness` for each error."""
     curves = {motion.name: motion.robustness for motion in motions if motion.robustness is not None}
     names = list(next(iter(curves.values())).ranges) if curves else []

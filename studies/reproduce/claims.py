@@ -25,24 +25,13 @@ from quietarm.studies.reproduce.paper import (
 from quietarm.studies.reproduce.recompute import BEYOND_SIX, Reproduction
 from quietarm.studies.reproduce.searched import OLD_CONSTANTS, SIX_TERMS, Searched
 
-_AT_REST = 1e-7
-"""A residual below this [m] counts as cancelled."""
 _GAIN = 0.01
 """Energies that differ by more than this share differ."""
-_NO_TORQUE = 0.01
-"""Share of the plain cycloid's holding torque below which there is none to speak of."""
-_ALIKE = 1.2
-"""Peaks that differ by no more than this factor count as alike."""
-_EARLY, _RAPID = 0.05, 2.0
-"""'Immediately after starting' is this share of the duration; so many times the torque of N = 2 is
-a rapid increase."""
-_DEARER = 1.05
-"""Times that differ by no more than this factor are alike."""
 _PRINTED = (2, 4, 6)
 """Numbers of terms of the paper's coefficients."""
 
 
-Judged = tuple[Any, pd.DataFrame]
+Outcome = tuple[Any, pd.DataFrame]
 """Whether a claim holds, and the table that says so."""
 
 
@@ -68,7 +57,7 @@ def claims(result: Reproduction) -> list[Verdict]:
     return [Verdict(claim, bool(holds), evidence) for claim, holds, evidence in judged]
 
 
-_Judge = Callable[[Reproduction], Judged]
+_Judge = Callable[[Reproduction], Outcome]
 _CLAIMS: dict[str, _Judge] = {}
 
 
@@ -94,10 +83,10 @@ def _largest_torque(plan: Plan, begin: float, end: float) -> float:
     return float(np.abs(plan.trajectory.torque[(share > begin) & (share <= end)]).max())
 
 
-def _words(found: Searched) -> str:
+def _words(search: Searched) -> str:
     """Median, quartiles, and how many seeds come within the level."""
-    energy = f"{spread_words(found.energies, '.4f')} J" if found.energies.count else "no motion"
-    return f"{energy} within {found.level * 1e3:.2g} mm"
+    energy = f"{spread_words(search.energies, '.4f')} J" if search.energies.count else "no motion"
+    return f"{energy} within {search.level * 1e3:.2g} mm"
 
 
 def _by_terms(
@@ -108,23 +97,19 @@ def _by_terms(
     rows = [
         (case.name, way, *(of(by[way](case, n)) for n in _PRINTED)) for case in cases for way in by
     ]
-    table = pd.DataFrame(
-        rows,
-        columns=[
-            "condition",
-            name,
-            *(f"N = {n}" for n in _PRINTED),
-        ],
-    )
+    columns = ["condition", name, *(f"N = {n}" for n in _PRINTED)]
+    table = pd.DataFrame(rows, columns=columns)
     return table.iloc[:, 2:].to_numpy(), table
 
 
-def _falls(values: NDArray[np.float64], table: pd.DataFrame) -> Judged:
+def _falls(values: NDArray[np.float64], table: pd.DataFrame) -> Outcome:
     return (np.diff(values, axis=1) < 0).all(), table
 
 
 @_claim("Two terms suffice to cancel the residual vibration.")
-def _two_terms(result: Reproduction) -> Judged:
+def _two_terms(result: Reproduction) -> Outcome:
+    # a residual below this [m] counts as cancelled
+    at_rest = 1e-7
     table = pd.DataFrame(
         {
             "condition": case.name,
@@ -135,46 +120,34 @@ def _two_terms(result: Reproduction) -> Judged:
         }
         for case in STUDIED
     )
-    return table["gradient's two [mm]"].max() < 1e3 * _AT_REST, table
+    return table["gradient's two [mm]"].max() < 1e3 * at_rest, table
 
 
 @_claim("The plain cycloid needs torque to hold the joint after arrival, the plans none (Fig. 2d).")
-def _holding(result: Reproduction) -> Judged:
+def _holding(result: Reproduction) -> Outcome:
+    # share of the plain cycloid's holding torque below which there is none to speak of
+    no_torque = 0.01
     case = SINGLE_LINK_SIXTH
     plans = {"plain cycloid": result.cycloid(case)} | {
         f"N = {n}": _paper(case, n) for n in _PRINTED
     }
-    plain, *held = (_largest_torque(plan, 1.0, np.inf) for plan in plans.values())
-    table = pd.DataFrame([(case.name, plain, *held)], columns=["torque [N m]", *plans])
-    return max(held) <= _NO_TORQUE * plain, table
+    plain, *holding = (_largest_torque(plan, 1.0, np.inf) for plan in plans.values())
+    table = pd.DataFrame([(case.name, plain, *holding)], columns=["torque [N m]", *plans])
+    return max(holding) <= no_torque * plain, table
 
 
 @_claim("More terms lower the tip's largest displacement on the way (Fig. 2c).")
-def _link_tip(result: Reproduction) -> Judged:
-    return _falls(
-        *_by_terms(
-            result,
-            [SINGLE_LINK_SIXTH],
-            _tip_peak,
-            "displacement [mm]",
-        )
-    )
+def _link_tip(result: Reproduction) -> Outcome:
+    return _falls(*_by_terms(result, [SINGLE_LINK_SIXTH], _tip_peak, "displacement [mm]"))
 
 
 @_claim("More terms lower the energy.")
-def _energy(result: Reproduction) -> Judged:
-    return _falls(
-        *_by_terms(
-            result,
-            STUDIED,
-            lambda plan: plan.energy,
-            "energy [J]",
-        )
-    )
+def _energy(result: Reproduction) -> Outcome:
+    return _falls(*_by_terms(result, STUDIED, lambda plan: plan.energy, "energy [J]"))
 
 
 @_claim("The energy does not fall further above six terms.")
-def _beyond_six(result: Reproduction) -> Judged:
+def _beyond_six(result: Reproduction) -> Outcome:
     terms = (SIX_TERMS, *BEYOND_SIX)
     rows = list[tuple[Any, ...]]()
     for case in STUDIED:
@@ -184,20 +157,14 @@ def _beyond_six(result: Reproduction) -> Judged:
             (case.name, "gradient without one", *(result.free(case, n).energy for n in terms)),
             *([(case.name, f"{case.search_label}, medians", *medians)] * all(np.isfinite(medians))),
         ]
-    table = pd.DataFrame(
-        rows,
-        columns=[
-            "condition",
-            "energy [J]",
-            *(f"N = {n}" for n in terms),
-        ],
-    )
+    columns = ["condition", "energy [J]", *(f"N = {n}" for n in terms)]
+    table = pd.DataFrame(rows, columns=columns)
     six, *beyond = table.iloc[:, 2:].to_numpy().T
-    return all((1 - one / six <= _GAIN).all() for one in beyond), table
+    return all((1 - energy / six <= _GAIN).all() for energy in beyond), table
 
 
 @_claim("The tip's largest displacement is smaller than with the network of ref. [23] (Fig. 3c).")
-def _network_tip(result: Reproduction) -> Judged:
+def _network_tip(result: Reproduction) -> Outcome:
     case = SINGLE_LINK_SIXTH
     network = result.searched[case, case.earlier[1]].middle
     peaks = {
@@ -210,30 +177,34 @@ def _network_tip(result: Reproduction) -> Judged:
 
 
 @_claim("On the arm the tip's largest displacement is much the same for all numbers of terms (5c).")
-def _arm_tip(result: Reproduction) -> Judged:
+def _arm_tip(result: Reproduction) -> Outcome:
+    # peaks that differ by no more than this factor count as alike
+    alike = 1.2
     values, table = _by_terms(result, [ARM_HALF], _tip_peak, "displacement [mm]")
-    return (values.max(axis=1) <= _ALIKE * values.min(axis=1)).all(), table
+    return (values.max(axis=1) <= alike * values.min(axis=1)).all(), table
 
 
 @_claim("With four and six terms the arm's torque rises rapidly after starting (Fig. 5d).")
-def _early_torque(result: Reproduction) -> Judged:
-    name = f"torque in the first {_EARLY:.0%} of the move [N m]"
+def _early_torque(result: Reproduction) -> Outcome:
+    early = 0.05  # 'immediately after starting', as a share of the duration
+    rapid = 2.0  # so many times the torque of N = 2 is a rapid increase
+    name = f"torque in the first {early:.0%} of the move [N m]"
     values, table = _by_terms(
-        result, [ARM_HALF], lambda plan: _largest_torque(plan, -1.0, _EARLY), name
+        result, [ARM_HALF], lambda plan: _largest_torque(plan, -1.0, early), name
     )
-    return (values[:, 1:] > _RAPID * values[:, :1]).all(), table
+    return (values[:, 1:] > rapid * values[:, :1]).all(), table
 
 
 @_claim("The motion of ref. [24] is like that of two terms (Fig. 6).")
-def _paths(result: Reproduction) -> Judged:
+def _paths(result: Reproduction) -> Outcome:
     case = ARM_HALF
     times = np.linspace(0.0, ARM_HALF.task.duration, 201)
-    found = result.searched[case, case.earlier[1]]
-    path = np.nan if found.middle is None else found.middle.path(times)
+    network = result.searched[case, case.earlier[1]]
+    path = np.nan if network.middle is None else network.middle.path(times)
     two, six = (np.sqrt(np.mean((path - _paper(case, n).path(times)) ** 2)) for n in (2, SIX_TERMS))
     row = {
         "condition": case.name,
-        f"{case.earlier[1]}, searched": _words(found),
+        f"{case.earlier[1]}, searched": _words(network),
         "path from N = 2, rms [rad]": two,
         "path from N = 6, rms [rad]": six,
     }
@@ -253,7 +224,7 @@ def _six(
 
 
 @_claim("Six parameters leave as little vibration as sixteen.")
-def _vibration(result: Reproduction) -> Judged:
+def _vibration(result: Reproduction) -> Outcome:
     table = _six(
         result,
         lambda row, earlier, six: {
@@ -267,7 +238,7 @@ def _vibration(result: Reproduction) -> Judged:
 
 
 @_claim("The proposed method beats refs [23] and [24], as printed.")
-def _as_printed(result: Reproduction) -> Judged:
+def _as_printed(result: Reproduction) -> Outcome:
     table = _six(
         result,
         lambda row, earlier, six: {
@@ -279,7 +250,7 @@ def _as_printed(result: Reproduction) -> Judged:
 
 
 @_claim("The same search finds less energy with six terms than with the earlier inputs.")
-def _same_search(result: Reproduction) -> Judged:
+def _same_search(result: Reproduction) -> Outcome:
     table = _six(
         result,
         lambda row, earlier, six: {
@@ -292,7 +263,7 @@ def _same_search(result: Reproduction) -> Judged:
 
 
 @_claim("The printed energies are below what the paper's own search finds with the earlier inputs.")
-def _earlier_inputs(result: Reproduction) -> Judged:
+def _earlier_inputs(result: Reproduction) -> Outcome:
     table = _six(
         result,
         lambda row, earlier, six: {
@@ -305,25 +276,26 @@ def _earlier_inputs(result: Reproduction) -> Judged:
 
 
 @_claim("The energy of Table 3 hangs neither on seeds nor on constants of VEPSO (implied).")
-def _choices(result: Reproduction) -> Judged:
+def _choices(result: Reproduction) -> Outcome:
     case = SINGLE_LINK_SIXTH
     printed = SIX[0].energy
-    every = result.searched[case, SIX_TERMS]
+    standard = result.searched[case, SIX_TERMS]
     old = result.searched[case, OLD_CONSTANTS]
-    half = replace(every, fronts=every.fronts[: (len(every.fronts) + 1) // 2])
+    half = replace(standard, fronts=standard.fronts[: (len(standard.fronts) + 1) // 2])
     rows = list[dict[str, Any]]()
-    for name, found in {
-        "all": every,
+    searches = {
+        "all": standard,
         "the first": half,
         "with constants of 2002": old,
-    }.items():
-        energies = np.array([front.least_energy(found.level) for front in found.fronts])
+    }
+    for name, search in searches.items():
+        energies = np.array([front.least_energy(search.level) for front in search.fronts])
         excess = np.nan_to_num(energies, nan=10 * printed) - printed
         rows.append(
             {
                 case.search_label: name,
                 "seeds": len(energies),
-                "energy": _words(found),
+                "energy": _words(search),
                 "above the printed": int((excess > 0).sum()),
                 "Wilcoxon's p of the printed": wilcoxon(excess)[1] if len(excess) > 1 else None,
             }
@@ -333,8 +305,10 @@ def _choices(result: Reproduction) -> Judged:
 
 
 @_claim("Networks cost more to compute.")
-def _cost(result: Reproduction) -> Judged:
+def _cost(result: Reproduction) -> Outcome:
     # the fastest seed: others may have shared their core
+    # times that differ by no more than this factor are alike
+    alike = 1.05
     table = pd.DataFrame(
         {
             "fastest seed of": f"{case.name}, {case.search_label}",
@@ -343,11 +317,11 @@ def _cost(result: Reproduction) -> Judged:
         }
         for case in STUDIED
     )
-    return (table["earlier input [s]"] > _DEARER * table["six terms [s]"]).all(), table
+    return (table["earlier input [s]"] > alike * table["six terms [s]"]).all(), table
 
 
 @_claim("The tuned coefficients are optimal in their search space (implied).")
-def _tuned(result: Reproduction) -> Judged:
+def _tuned(result: Reproduction) -> Outcome:
     energies = {row: result.in_box(row.condition, SIX_TERMS).energy for row in SIX}
     table = _six(
         result,

@@ -17,7 +17,7 @@ from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients, task_differe
 from quietarm.ocp.window import EQ_11
 from quietarm.studies.figures import KnownPoint
 
-_PLANTS = {one.name: one for one in (SingleLinkManipulator(), ArmOnFlexibleLink())}
+_PLANTS = {plant.name: plant for plant in (SingleLinkManipulator(), ArmOnFlexibleLink())}
 _OF_PLANT = {
     "single-link": ("vepso", (23, "network")),
     "arm-on-flexible-link": ("nsga2-paper", (24, "Gaussians")),

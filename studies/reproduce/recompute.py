@@ -28,7 +28,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.record import versions
 from quietarm.ocp.robustness import tolerated_residual
-from quietarm.studies.compare.judged_motions import Judged, judge
+from quietarm.studies.compare.judged_motions import JudgedMotion, judge_motion
 from quietarm.studies.compare.plan_comparison import compare_plans
 from quietarm.studies.reading.profiles import OTHERS
 from quietarm.studies.reproduce.paper import (
@@ -55,7 +55,6 @@ _CONSTANTS = ("inertia", "last_inertia", "constriction", "cognitive", "social")
 VEPSO_2002: dict[str, object] = dict(zip(_CONSTANTS, astuple(INERTIA_2002)))
 """Settings with the constants of Parsopoulos and Vrahatis; the paper names none."""
 FREQUENCY_ERROR = {"frequency": 0.1}
-_SHAPERS = ("cycloid", "zv", "zvd", "ei")
 
 
 class Piece(NamedTuple):
@@ -154,11 +153,12 @@ class Reproduction:
         return self.answers[Piece("both solvers", case)]
 
     @cached_property
-    def systems(self) -> dict[Case, list[Judged]]:
+    def systems(self) -> dict[Case, list[JudgedMotion]]:
         """Every system on the same moves, each judged alike; none without full effort."""
         return {case: [*self._judged(case)] for case in self.effort.systems * self.effort.full}
 
-    def _judged(self, case: Case) -> Iterator[Judged]:
+    def _judged(self, case: Case) -> Iterator[JudgedMotion]:
+        shapers = ("cycloid", "zv", "zvd", "ei")
         (printed,) = (row.energy for row in SIX if row.condition == case)
         moved: dict[str, Plan | Floor | str] = {
             "paper": paper_plan(case, SIX_TERMS, mended=False)
@@ -174,12 +174,12 @@ class Reproduction:
             "robust plan": self.answers[Piece("robust", case)],
             "free motion": self.floor(case),
         }
-        yield from compare_plans({}, _SHAPERS, FREQUENCY_ERROR, 0, task=case.task)
-        for name, one in moved.items():
+        yield from compare_plans({}, shapers, FREQUENCY_ERROR, 0, task=case.task)
+        for name, motion in moved.items():
             yield (
-                Judged(name, why=one)
-                if isinstance(one, str)
-                else judge(name, one, FREQUENCY_ERROR, case.task)
+                JudgedMotion(name, why=motion)
+                if isinstance(motion, str)
+                else judge_motion(name, motion, FREQUENCY_ERROR, case.task)
             )
 
 

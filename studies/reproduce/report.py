@@ -34,13 +34,6 @@ TITLES = {
     5: "Table 5: number of terms, arm on a flexible link",
     6: "Table 6: against ref. [24], arm on a flexible link",
 }
-_PICTURES = {
-    "2": (SINGLE_LINK_SIXTH, False),
-    "3": (SINGLE_LINK_SIXTH, True),
-    "5": (ARM_HALF, False),
-    "6": (ARM_HALF, True),
-}
-"""The paper's figures: their condition, and whether they show the earlier study's input."""
 
 
 def paper_table(result: Reproduction, number: int) -> pd.DataFrame:
@@ -55,7 +48,7 @@ def _row(result: Reproduction, row: Row) -> dict[str, object]:
     terms = row.terms
     full = result.effort.full
     reference, name = case.earlier
-    found = result.searched[case, terms]
+    searched = result.searched[case, terms]
     printed = paper_plan(case, terms, mended=False)
     mended = paper_plan(case, terms) if (case, terms) in MENDED else None
     figures: dict[str, object] = {
@@ -67,10 +60,10 @@ def _row(result: Reproduction, row: Row) -> dict[str, object]:
         "a_5 mended [J]": mended and mended.energy,
         "  residual of it [mm]": mended and 1e3 * mended.residual,
         "search": case.search_label,
-        "  searched [J]": spread_words(found.energies, ".4g"),
-        "  within [mm]": 1e3 * found.level,
+        "  searched [J]": spread_words(searched.energies, ".4g"),
+        "  within [mm]": 1e3 * searched.level,
         "  gradient within the same [J]": result.same_residual(case, terms).energy,
-        "  time of a run [s]": median(found.seconds),
+        "  time of a run [s]": median(searched.seconds),
         "gradient at rest, in the box [J]": result.in_box(case, terms).energy,
         "gradient at rest, no box [J]": result.free(case, terms).energy,
     }
@@ -90,18 +83,27 @@ def _row(result: Reproduction, row: Row) -> dict[str, object]:
 
 def reproduction_report(result: Reproduction) -> Report:
     """The paper's tables and figures; of full effort the six conditions, systems and claims."""
+    # the paper's figures: their condition, and whether they show the earlier study's input
+    pictures = {
+        "2": (SINGLE_LINK_SIXTH, False),
+        "3": (SINGLE_LINK_SIXTH, True),
+        "5": (ARM_HALF, False),
+        "6": (ARM_HALF, True),
+    }
     tables = {f"table_{number}": paper_table(result, number) for number in TITLES}
     judged = claims(result) if result.effort.full else []
-    systems = {case.name: motions_table(every) for case, every in result.systems.items()}
+    systems = {case.name: motions_table(motions) for case, motions in result.systems.items()}
     if result.effort.full:
         tables["six"] = pd.concat([tables["table_3"], tables["table_6"]])
         tables["claims"] = pd.concat(
-            one.evidence.assign(claim=one.claim, verdict=one.word) for one in judged
+            entry.evidence.assign(claim=entry.claim, verdict=entry.word) for entry in judged
         )
-        tables["systems"] = pd.concat(one.assign(condition=name) for name, one in systems.items())
+        tables["systems"] = pd.concat(
+            entry.assign(condition=name) for name, entry in systems.items()
+        )
     figures = {
         f"figure_{number}.png": partial(_redrawn, result, f"Fig. {number}", *shows)
-        for number, shows in _PICTURES.items()
+        for number, shows in pictures.items()
     }
     values = {
         "titles": TITLES,
@@ -110,8 +112,8 @@ def reproduction_report(result: Reproduction) -> Report:
         "claims": judged,
         "error": f"{100 * FREQUENCY_ERROR['frequency']:g} %",
         "systems": [
-            (case.name, shown(systems[case.name]), remarks(every))
-            for case, every in result.systems.items()
+            (case.name, shown(systems[case.name]), remarks(motions))
+            for case, motions in result.systems.items()
         ],
         "pictures": list(figures),
         "window": EQ_11,
@@ -156,9 +158,9 @@ def _redrawn(result: Reproduction, title: str, case: Case, against_earlier: bool
 
 def _by_search(result: Reproduction, case: Case, which: Input, colour: str) -> list[Line]:
     """The middle seed of the paper's search; none where that did not come near enough."""
-    found = result.searched.get((case, which))
+    searched = result.searched.get((case, which))
     label = f"{f'N = {which}' if isinstance(which, int) else which}, {case.search_label}"
-    middle = found and found.middle
+    middle = searched and searched.middle
     return [Line(middle, label, colour, "--")] if middle else []
 
 

@@ -64,10 +64,10 @@ class Searched:
         if np.isnan(energies[place]):
             return None
         front = self.fronts[place]
-        found = front.cheapest(self.level)
+        point = front.cheapest(self.level)
         plan = evaluate_coefficients(
             self.case.task,
-            found.coefficients,
+            point.coefficients,
             profile=front.profile,
         )
         return plan.restated(seconds=front.record.seconds)

@@ -27,19 +27,6 @@ if TYPE_CHECKING:
     from quietarm.studies.sweep.library import MoveLibrary
 
 Array = NDArray[np.float64]
-_SAMPLES = 100
-"""Random moves between the cells, by which a library says how good it is."""
-_PLANTS = 10
-"""Plants of these moves, where parameters are axes: equations are compiled for each."""
-_TRIES = 20
-"""Places that are tried for each move: some have no coefficients."""
-_JUDGED = 3
-"""Moves with the largest value by fixed steps that CVODES judges: steps take the corners of the
-errors, the judge all errors within their ranges."""
-_FINER = 3
-"""So many times the solver's steps, because a limit may be broken between its nodes."""
-_SPARE = 1.5
-"""A margin is advised that is this much larger than the worst excess of these."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +76,9 @@ class Between:
     @property
     def remedy(self) -> str:
         """How moves between the cells come to keep their limits."""
-        share = ceil(100 * _SPARE * (self.of_limits - 1))
+        # a margin is advised that is this much larger than the worst excess of these
+        spare = 1.5
+        share = ceil(100 * spare * (self.of_limits - 1))
         return f"sweep again with --limit-margin {share}% or on a finer grid"
 
 
@@ -98,11 +87,14 @@ def assess(library: MoveLibrary) -> Between:
 
     ValueError where none of the moves has coefficients.
     """
+    # moves with the largest value by fixed steps that CVODES judges: steps take the corners of
+    # the errors, the judge all errors within their ranges
+    number_judged = 3
     places = _random_places(library)
     energies = library.energies(places)
     tasks = [library.task(**_named(library, place)) for place in places]
     ranks = _ranks(tasks, library.profile, library.interpolation(places), energies)
-    chosen = {k for rank in ranks.values() for k in np.argsort(rank)[-_JUDGED:]}
+    chosen = {k for rank in ranks.values() for k in np.argsort(rank)[-number_judged:]}
     judged = {k: library.plan(**_named(library, places[k])) for k in sorted(chosen)}
     shares = [
         share
@@ -129,18 +121,24 @@ def _named(library: MoveLibrary, place: Array) -> dict[str, float]:
 
 def _random_places(library: MoveLibrary) -> Array:
     """Random places that have coefficients, those of one plant one after another."""
+    # random moves between the cells, by which a library says how good it is
+    samples = 100
+    # plants of these moves, where parameters are axes: equations are compiled for each
+    plants = 10
+    # places that are tried for each move: some have no coefficients
+    tries = 20
     axes = library.grid.axes
     low, high = np.array([(axis.values[0], axis.values[-1]) for axis in axes]).T
     random = np.random.default_rng(0).uniform(
         low,
         high,
-        (_TRIES * _SAMPLES, len(low)),
+        (tries * samples, len(low)),
     )
     of_plant = np.array([axis.name not in OF_MOVES for axis in axes])
-    repeated = random[np.arange(len(random)) % _PLANTS]
+    repeated = random[np.arange(len(random)) % plants]
     random[:, of_plant] = repeated[:, of_plant]
     usable = (place for place in random if library.has(place))
-    places = np.array([*islice(usable, _SAMPLES)])
+    places = np.array([*islice(usable, samples)])
     if not len(places):
         raise ValueError(
             f"{library.store.path} has no move between its cells that has coefficients"
@@ -166,7 +164,9 @@ def _figures(
     tasks: Sequence[PointToPoint], profile: JointProfile, coefficients: Array
 ) -> list[dict[str, float]]:
     """The same by fixed steps for moves of one plant; the energy in joules."""
-    steps = _FINER * first_steps(max(tasks, key=lambda task: task.duration), profile)
+    # so many times the solver's steps, because a limit may be broken between its nodes
+    finer = 3
+    steps = finer * first_steps(max(tasks, key=lambda task: task.duration), profile)
     evaluation = Evaluator(tasks, profile, steps)(coefficients)
     columns = {
         "energy": evaluation.energy[:, 0],

@@ -23,19 +23,15 @@ from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Defi
 from quietarm.studies.sweep.grid import by_plant
 
 Cells = Iterator[dict[str, Any]]
-_CHECKED, _COLD_STARTS = 10, 4
-"""One cell in so many, at random, is planned from so many starts of its own as well."""
-_FRONT_STARTS = 2
-"""Of the ends of a front, at least."""
-_ABOVE = 1e-4
-"""Share of the energy by which none of these may be cheaper; else all of the chunk are."""
+_COLD_STARTS = 4
+"""Of a cell that does not start from its neighbours, at least."""
 
 
 def plan_chunk(definition: Definition, number: int) -> tuple[int, pd.DataFrame]:
     """The number of a chunk, and its cells; those of one plant are planned together."""
     tasks = definition.planned.tasks(definition.chunks[number])
-    found = [_plan_checked(definition, group, number) for group in by_plant(tasks)]
-    cells = pd.concat(found, ignore_index=True)
+    tables = [_plan_checked(definition, group, number) for group in by_plant(tasks)]
+    cells = pd.concat(tables, ignore_index=True)
     if definition.front:
         planned = zip(tasks, cells["energy"].notna())
         fronts = [_front_of(definition, task) if solved else {} for task, solved in planned]
@@ -54,6 +50,8 @@ def plan_cells(
 
 def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) -> pd.DataFrame:
     """Plans from neighbours, and of a tenth the excess over cold plans; the cheaper ones stay."""
+    # share of the energy by which none of these may be cheaper; else all of the chunk are
+    tolerated = 1e-4
     cells = plan_cells(
         definition,
         tasks,
@@ -63,17 +61,18 @@ def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) 
     if not len(solved):
         return cells
     random = np.random.default_rng(seed)
-    checked = random.choice(solved, -(-len(solved) // _CHECKED), replace=False)
+    tenth = -(-len(solved) // 10)
+    checked = random.choice(solved, tenth, replace=False)
     cold = plan_cells(
         definition,
         [tasks[k] for k in checked],
         cold=True,
     )["energy"].to_numpy()
-    if (cells["energy"].to_numpy()[checked] > (1 + _ABOVE) * cold).any():
-        others = plan_cells(definition, tasks, cold=True)
-        cheaper = others["energy"] < cells["energy"].fillna(np.inf)
-        both = cells.columns.union(others.columns, sort=False)
-        cells = cells.reindex(columns=both).mask(cheaper, others.reindex(columns=both))
+    if (cells["energy"].to_numpy()[checked] > (1 + tolerated) * cold).any():
+        cold_cells = plan_cells(definition, tasks, cold=True)
+        cheaper = cold_cells["energy"] < cells["energy"].fillna(np.inf)
+        both = cells.columns.union(cold_cells.columns, sort=False)
+        cells = cells.reindex(columns=both).mask(cheaper, cold_cells.reindex(columns=both))
     cells.loc[checked, "cold_excess"] = cells["energy"].to_numpy()[checked] / cold - 1
     solved = np.flatnonzero(cells["energy"].notna())
     coefficients = np.array(cells[COEFFICIENTS].to_numpy()[solved].tolist())
@@ -140,6 +139,8 @@ def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], cold: bo
 
 def _front_of(definition: Definition, task: PointToPoint) -> dict[str, Any]:
     """The front of a move, as far as it has points; one without a range has none."""
+    # of the ends of a front, at least
+    least_starts = 2
     settings = definition.settings
     points = definition.front
     try:
@@ -148,7 +149,7 @@ def _front_of(definition: Definition, task: PointToPoint) -> dict[str, Any]:
             definition.profile,
             bound=settings.bound,
             points=points,
-            starts=max(settings.starts, _FRONT_STARTS),
+            starts=max(settings.starts, least_starts),
             solver=settings.solves,
         )
     except QuietarmError:

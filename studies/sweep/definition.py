@@ -17,15 +17,14 @@ from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness import OF_MODES
 from quietarm.ocp.solvers.choice import stated_solver
-from quietarm.studies.sweep.grid import Grid
+from quietarm.studies.sweep.grid import MoveGrid
 
-STATUS, COEFFICIENTS, JUMP, DIGEST = "status", "coefficients", "jump", "digest"
+STATUS = "status"
+COEFFICIENTS = "coefficients"
+JUMP = "jump"
+DIGEST = "digest"
 STATES = ("not computed", *(status.value for status in SolveStatus))
 """What `status` says, by its number."""
-_CELLS_OF_A_CHUNK = 256
-"""A second or two of work; a robust plan or a front is as much work as many plans."""
-_WORK_OF_ROBUST = _WORK_OF_FRONT = 32
-_MOST_MARGIN = 0.5
 
 
 class Variable(NamedTuple):
@@ -94,7 +93,7 @@ class Definition:
 
     Parameters
     ----------
-    grid : Grid
+    grid : MoveGrid
         The moves.
     profile : JointProfile
         How the joint moves.
@@ -111,25 +110,29 @@ class Definition:
         When the margin is out of range, or there is no limit to leave it to.
     """
 
-    grid: Grid
+    grid: MoveGrid
     profile: JointProfile
     settings: PlanSettings
     front: int = 0
     margin: float = 0.0
 
     def __post_init__(self) -> None:
+        most = 0.5
         if self.margin:
-            positive("limit margin", self.margin, most=_MOST_MARGIN)
+            positive("limit margin", self.margin, most=most)
             if not self.grid.task.limits:
                 raise ValueError("the limit margin is of limits, and none is given; give one")
 
     @cached_property
     def chunk(self) -> tuple[int, ...]:
         """Cells of a chunk along each axis; along one that is cut, chunks are alike."""
-        work = _WORK_OF_ROBUST if self.grid.task.ranges else 1
-        work *= _WORK_OF_FRONT if self.front else 1
+        # a second or two of work; a robust plan or a front is as much work as many plans
+        cells_of_a_chunk = 256
+        work = 1
+        for expensive in (self.grid.task.ranges, self.front):
+            work *= 32 if expensive else 1
         sizes = list[int]()
-        room = max(1, _CELLS_OF_A_CHUNK // work)
+        room = max(1, cells_of_a_chunk // work)
         for length in reversed(self.grid.shape):
             parts = -(-length // max(1, room))
             sizes.append(-(-length // parts))
@@ -149,17 +152,17 @@ class Definition:
         ]
 
     @cached_property
-    def planned(self) -> Grid:
+    def planned(self) -> MoveGrid:
         """The moves as they are planned: their limits less the margin."""
         share = 1 - self.margin
         task = self.grid.task
         limits = dict[str, Any]()
-        for one in task.limits if self.margin else ():
-            if one.name == TORQUE_SPEED:
+        for limit in task.limits if self.margin else ():
+            if limit.name == TORQUE_SPEED:
                 line = task.torque_speed or ()
                 limits[TORQUE_SPEED] = tuple((share * torque, speed) for torque, speed in line)
             else:
-                limits[one.quantity.limit] = share * one.lower, share * one.upper
+                limits[limit.quantity.limit] = share * limit.lower, share * limit.upper
         return replace(self.grid, task=replace(task, **limits))
 
     @cached_property
@@ -175,8 +178,10 @@ class Definition:
             "iterations": "1",
             "cold_excess": "1",
         }
-        units |= {one.peak: one.unit for one in quantities_of(task.plant.joint, tip).values()}
-        units |= {f"price_{one.name}": f"J/({one.quantity.unit or '1'})" for one in task.limits}
+        units |= {entry.peak: entry.unit for entry in quantities_of(task.plant.joint, tip).values()}
+        units |= {
+            f"price_{entry.name}": f"J/({entry.quantity.unit or '1'})" for entry in task.limits
+        }
         for name in OF_MODES:
             units |= {f"energy_by_{name}": "J", f"residual_by_{name}": tip}
         meanings = [state.replace(" ", "_") for state in STATES]
@@ -202,13 +207,13 @@ class Definition:
     def difference(self, other: Definition) -> str:
         """Names of all in which two sweeps differ, and the residual window of the other."""
         mine = self._entries()
-        others = other._entries()
-        names = [name for name in mine | others if mine.get(name) != others.get(name)]
+        theirs = other._entries()
+        names = [name for name in mine | theirs if mine.get(name) != theirs.get(name)]
         there = {"residual_window": f" ({other.grid.task.residual_window:.10g} s there)"}
         return ", ".join(f"{name}{there.get(name, '')}" for name in names)
 
     def _entries(self) -> dict[str, Any]:
         of = self, self.settings, self.grid.task
-        entries = {entry.name: getattr(one, entry.name) for one in of for entry in fields(one)}
+        entries = {entry.name: getattr(part, entry.name) for part in of for entry in fields(part)}
         del entries["grid"], entries["settings"]
         return entries | {axis.name: axis for axis in self.grid.axes}

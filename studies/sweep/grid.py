@@ -16,16 +16,12 @@ from quietarm.ocp import PointToPoint
 from quietarm.ocp.checks import finite, has_no
 from quietarm.ocp.window import DefaultWindow, default_window
 
-_SECONDS_OF_CELL = 0.005
-"""Of six terms, without ranges of errors."""
 OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
 """Axes over the move, with their units; all others are parameters of the plant."""
-MOST_VALUES, MOST_CELLS = 100_000, 5_000_000
-"""Of an axis and of a grid; so many cells take some 7 hours on a core, and as dataset 1.5 GB."""
-
-
-_MOST_OF_FEW_AXES, _MOST_OF_MANY_AXES = 41, 7
-"""Values of each axis at which a grid's residual window is worked out, the ends among them."""
+MOST_VALUES = 100_000
+"""Of an axis."""
+MOST_CELLS = 5_000_000
+"""Of a grid; so many take some 7 hours on a core, and as dataset 1.5 GB."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +43,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Grid:
+class MoveGrid:
     """The moves of several axes, in C order.
 
     Parameters of the plant come before the quantities of the move: chunks then have few plants.
@@ -114,7 +110,9 @@ class Grid:
     @property
     def hours(self) -> float:
         """How long a core takes to plan them, roughly."""
-        return _SECONDS_OF_CELL * self.cells / 3600
+        # of six terms, without ranges of errors
+        seconds_of_cell = 0.005
+        return seconds_of_cell * self.cells / 3600
 
     def tasks(self, chunk: tuple[slice, ...]) -> list[PointToPoint]:
         """The moves of some cells."""
@@ -134,7 +132,7 @@ class Grid:
     def _plants_and_targets(self) -> Iterator[tuple[Plant, float]]:
         """Where the moves end, by what decides how slowly the plant swings there."""
         axes = [axis for axis in self.axes if axis.name not in ("start", "duration")]
-        most = _MOST_OF_FEW_AXES if len(axes) <= 2 else _MOST_OF_MANY_AXES
+        most = 41 if len(axes) <= 2 else 7  # values of an axis, the ends among them
         for values in product(*(_thinned(axis.values, most) for axis in axes)):
             at = dict(zip([axis.name for axis in axes], values))
             yield self._plant_at(at), at.get("target", self.task.target)

@@ -16,26 +16,26 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 ORDERS = (6, 4, 2)
 """Cells along an axis through which a polynomial goes, the most first."""
-_JUMP = 4.0
-"""Coefficients that change so many times faster than on either side are of another motion."""
-_LITTLE = 0.05
-"""Unless they change by less than this share of their size: so well is a flat minimum known."""
-_SAME = 1e-12
-"""A place this near to a cell [share, and units of the axis] is the cell."""
 
 
 def find_jumps(axes: Sequence[Array], cells: Array) -> NDArray[np.int32]:
     """Marks of the cells after which coefficients jump: bit k where they do along axis k."""
+    # coefficients that change so many times faster than on either side are of another motion
+    much = 4.0
+    # unless they change by less than this share of their size: so well is a flat minimum known
+    little_share = 0.05
     marks = np.zeros(cells.shape[:-1], np.int32)
     sizes = np.linalg.norm(cells, axis=-1)
-    little = _LITTLE * np.median(sizes[np.isfinite(sizes)]) if np.isfinite(sizes).any() else 0.0
+    little = (
+        little_share * np.median(sizes[np.isfinite(sizes)]) if np.isfinite(sizes).any() else 0.0
+    )
     for k, axis in enumerate(axes):
         steps = np.moveaxis(np.linalg.norm(np.diff(cells, axis=k), axis=-1), k, -1)
         slopes = steps / np.abs(np.diff(axis))
         beside = np.full_like(slopes, np.nan)  # of fewer than three none stands out
         beside[..., 1:] = slopes[..., :-1]
         beside[..., :-1] = np.fmax(beside[..., :-1], slopes[..., 1:])
-        jump = (slopes > _JUMP * beside) & (steps > little)  # NaN is no jump
+        jump = (slopes > much * beside) & (steps > little)  # NaN is no jump
         np.moveaxis(marks, k, -1)[..., :-1] |= jump.astype(np.int32) << k
     return marks
 
@@ -99,29 +99,29 @@ class Interpolation:
         return np.array([self._at(place, cells) for place in places])
 
     def _at(self, place: Array, cells: Array) -> Array:
-        each = [*zip(self.axes, place)]
-        near = tuple(int(np.abs(axis - at).argmin()) for axis, at in each)
+        # a place this near to a cell [share, and units of the axis] is the cell
+        tolerated = 1e-12
+        pairs = [*zip(self.axes, place)]
+        near = tuple(int(np.abs(axis - at).argmin()) for axis, at in pairs)
         values = [axis[k] for axis, k in zip(self.axes, near)]
-        if np.allclose(values, place, rtol=_SAME, atol=_SAME):
+        if np.allclose(values, place, rtol=tolerated, atol=tolerated):
             return cells[near]
-        box = tuple(min(np.searchsorted(axis, at, "right"), len(axis) - 1) - 1 for axis, at in each)
+        box = tuple(
+            min(np.searchsorted(axis, at, "right"), len(axis) - 1) - 1 for axis, at in pairs
+        )
         if not (order := int(self.orders[box])):
             return np.full(cells.shape[-1], np.nan)
         window = tuple(slice(first, first + order) for first in self._first(box, order))
         values = cells[window]
-        for (axis, at), cut in zip(each, window):
+        for (axis, at), cut in zip(pairs, window):
             values = np.tensordot(_lagrange_weights(axis[cut], at), values, axes=1)
         return values
 
 
 def _lagrange_weights(nodes: Array, at: float) -> Array:
     """What each node's value counts in the polynomial through all of them, at a place."""
-    others = ~np.eye(len(nodes), dtype=bool)
+    off_diagonal = ~np.eye(len(nodes), dtype=bool)
     distances = np.subtract.outer(nodes, nodes)
-    ratios = np.divide(
-        at - nodes,
-        distances,
-        out=np.ones_like(distances),
-        where=others,
-    )
+    ones = np.ones_like(distances)
+    ratios = np.divide(at - nodes, distances, out=ones, where=off_diagonal)
     return ratios.prod(axis=1)

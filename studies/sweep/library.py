@@ -17,9 +17,6 @@ from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.store import Store
 
 Array = NDArray[np.float64]
-_BETWEEN = "moves between the cells"
-"""The note of the dataset that keeps what `between` says."""
-_ALONE = "plan this move by itself: leave --from out"
 
 
 class MoveLibrary:
@@ -77,6 +74,7 @@ class MoveLibrary:
             When an axis is missing, a move is beyond the grid, or next to a cell without a plan or
             to a jump from one branch to another.
         """
+        remedy = "plan this move by itself: leave --from out"
         self._check_names(at)
         columns = np.broadcast_arrays(*(np.asarray(at[name], float) for name in self.grid.names))
         for axis, values in zip(self.grid.axes, columns):
@@ -85,14 +83,14 @@ class MoveLibrary:
             if beyond := values[~((low <= values) & (values <= high))].tolist():
                 raise ValueError(
                     f"{axis.name} is {beyond[0]:g} {axis.unit}, and the grid has {low:g} to "
-                    f"{high:g}; sweep a wider one, or {_ALONE}"
+                    f"{high:g}; sweep a wider one, or {remedy}"
                 )
         places = np.stack(columns, axis=-1)
         coefficients = self.interpolation(places.reshape(-1, places.shape[-1]))
         if not np.isfinite(coefficients).all():
             raise ValueError(
                 "the move is next to a cell without a plan, or where the least energy jumps from "
-                f"one motion to another; sweep a finer grid, or {_ALONE}"
+                f"one motion to another; sweep a finer grid, or {remedy}"
             )
         return coefficients.reshape(*places.shape[:-1], -1)
 
@@ -119,10 +117,12 @@ class MoveLibrary:
 
     def between(self) -> Between:
         """Residual and energy of random moves between the cells; kept in the dataset."""
-        if known := self.store.kept(_BETWEEN):
+        # the note of the dataset that keeps what `between` says
+        entry = "moves between the cells"
+        if known := self.store.kept(entry):
             return Between(**known)
         assessed = assess(self)
-        self.store.keep(_BETWEEN, asdict(assessed))
+        self.store.keep(entry, asdict(assessed))
         return assessed
 
 

@@ -16,13 +16,11 @@ from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.sweep.cells import plan_chunk
 from quietarm.studies.sweep.definition import Definition, PlanSettings
-from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
+from quietarm.studies.sweep.grid import OF_MOVES, Axis, MoveGrid
 from quietarm.studies.sweep.store import Store
 
 if TYPE_CHECKING:
     import xarray
-
-_REMEDY = "what is done is kept; give the same line again to go on"
 
 
 @takes(task=PointToPoint, profile=JointProfile, solver=Solver)
@@ -82,7 +80,7 @@ def sweep(
             raise ValueError(has_no(task.plant.name, "axis", name, units))
     values = {name: several(f"axis {name}", axes[name], "values") for name in axes}
     order = sorted(axes, key=lambda name: name in OF_MOVES)  # chunks then have few plants
-    grid = Grid(
+    grid = MoveGrid(
         task,
         tuple(
             Axis(
@@ -117,6 +115,7 @@ def run_sweep(
     report: Callable[[int, int], object] = lambda done, total: None,
 ) -> None:
     """Plan the chunks of a part that are missing; each is in the store as soon as it is done."""
+    remedy = "what is done is kept; give the same line again to go on"
     missing = store.missing(part)
     done = 0
     planned = side_by_side(partial(plan_chunk, store.definition), missing, workers)
@@ -129,7 +128,7 @@ def run_sweep(
             if came:
                 raise KeyboardInterrupt
     except LostWorkersError as error:
-        raise QuietarmError(f"{error}; {_REMEDY}") from None
+        raise QuietarmError(f"{error}; {remedy}") from None
     if not store.missing():
         with note_interrupts():
             store.mark_jumps()

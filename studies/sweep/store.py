@@ -28,18 +28,16 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-NEEDS = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
 _FORMAT = "quietarm-sweep"
-_DESCRIPTION = "zarr.json"
-"""The file in which an array of zarr describes itself."""
-PEAK = "peak_"
-"""Variables that begin so are of limited quantities, of which a dataset has those of its time."""
 
 
 class Store:
     """The dataset of a sweep; FileFormatError where a folder is none."""
 
     def __init__(self, path: Path) -> None:
+        # variables that begin so are of limited quantities, of which a dataset has those of its
+        # time
+        prefix = "peak_"
         self.path = path
         with _undisturbed():
             self.dataset = _open(path)
@@ -48,7 +46,7 @@ class Store:
             self._names = [
                 name
                 for name in self.definition.variables
-                if name != JUMP and (name in self.dataset or not name.startswith(PEAK))
+                if name != JUMP and (name in self.dataset or not name.startswith(prefix))
             ]
             self._check_layout()
 
@@ -73,8 +71,8 @@ class Store:
         for name in [*self._names, JUMP]:
             _, beside, empty, _ = self.definition.variables[name]
             shape = (*self.definition.grid.shape, *beside.values())
-            found = self.dataset[name]
-            if (found.shape, found.dtype) != (shape, np.asarray(empty).dtype):
+            variable = self.dataset[name]
+            if (variable.shape, variable.dtype) != (shape, np.asarray(empty).dtype):
                 raise ValueError(f"variable {name} has another shape or type than was asked for")
 
     def read(self, name: str) -> NDArray[Any]:
@@ -255,11 +253,12 @@ def _damage_told(path: Path) -> Iterator[None]:
 
 
 def _xarray() -> Any:
+    reason = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
     try:
         import_module("zarr")
         return import_module("xarray")
     except ImportError:
-        raise ValueError(NEEDS) from None
+        raise ValueError(reason) from None
 
 
 def _open(path: Path) -> xarray.Dataset:
@@ -294,6 +293,6 @@ def _read_descriptions(path: Path) -> None:
     """
     import zarr
 
-    for description in sorted(path.glob(f"*/{_DESCRIPTION}")):
+    for description in sorted(path.glob("*/zarr.json")):
         with _damage_told(description):
             zarr.open_array(description.parent, mode="r")

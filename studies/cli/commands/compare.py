@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     option("--baselines", type=NAMES, help="Plans: add for the same move, as zvd,ruckig; or all."),
     ERROR,
     option("--samples", default=SAMPLES, help="Plans: random plants for the percentiles."),
-    option("--reference", type=INPUT, help="Fronts: measure IGD+ and epsilon against this one."),
+    option("--reference", type=INPUT,
+           help="Fronts: measure IGD+ and additive epsilon against this one."),
     option("--free-motion/--no-free-motion", "free", default=True,
            help="Fronts: find the best free motion as well."),
     REPORT_OPTION,
@@ -38,7 +39,7 @@ def compare(given: Given) -> None:
     """Compare fronts of one task, or plans of one move.
 
     Fronts, found by any methods, or a folder of a bench: energies within residuals, hypervolume,
-    IGD+, epsilon, candidates and time; several seeds of a method as median and quartiles.
+    IGD+, additive epsilon, candidates and time; several seeds of a method as median and quartiles.
 
     Plans: energy, residual, the worst case within parameter errors, insensitivity, percentiles,
     peaks, and the limits that they exceed, beside the cycloid, input shapers and ruckig. Ruckig

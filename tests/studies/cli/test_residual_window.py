@@ -15,7 +15,7 @@ from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint, evaluate_
 from quietarm.studies.compare import compare_plans
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.explore.start_page import open_file, open_plant
-from quietarm.studies.sweep.grid import Axis, Grid
+from quietarm.studies.sweep.grid import Axis, MoveGrid
 
 CRANE = "linear-axis --set omega1=0.6283 --set zeta1=0.002 --target 8 --duration 16 --quiet"
 WITHIN = "within 20 s"  # two periods of 0.6283 rad/s
@@ -108,19 +108,19 @@ def test_fronts_of_two_windows_are_told_apart_with_what_to_do(call, done, folder
 def test_a_grid_has_one_window_the_longest_of_its_cells():
     task = PointToPoint(LinearAxis(omega1=3.0), 1.0, 2.0)
     slowness = Axis("omega1", (0.6283, 3.0, 30.0), "rad/s")
-    grid = Grid(task, (slowness, Axis("duration", (2.0, 3.0), "s")))
+    grid = MoveGrid(task, (slowness, Axis("duration", (2.0, 3.0), "s")))
     tasks = grid.tasks((slice(None), slice(None)))
     assert {one.residual_window for one in tasks} == {grid.task.residual_window}
     assert grid.task.residual_window == pytest.approx(EXACTLY, rel=1e-12)
     # of the arm it depends on the target: eq (13), with the numbers of eq (15)
     arm = PointToPoint(qa.ArmOnFlexibleLink(), 1.0, 1.0)
-    targets = Grid(arm, (Axis("target", (0.5, 1.0, 2.0), "rad"),))
+    targets = MoveGrid(arm, (Axis("target", (0.5, 1.0, 2.0), "rad"),))
     slowest = 7.320 / math.sqrt(1 - 1.055e-1 * math.cos(2.0))
     assert targets.task.residual_window == pytest.approx(4 * math.pi / slowest, rel=1e-12)
     # one that was given stays, and a single move has its own
-    given = Grid(replace(task, residual_window=2.0), (slowness,))
+    given = MoveGrid(replace(task, residual_window=2.0), (slowness,))
     assert {one.residual_window for one in given.tasks((slice(None),))} == {2.0}
-    assert replace(Grid(task, ()).task, plant=LinearAxis()).residual_window == 1.0
+    assert replace(MoveGrid(task, ()).task, plant=LinearAxis()).residual_window == 1.0
 
 
 def test_a_sweep_has_it_in_its_dataset_and_one_of_before_goes_on_with_its_own(call, done, folder):

@@ -31,7 +31,7 @@ SHORT = Effort(
     starts=1,
     points=3,
     systems=STUDIED,
-    free_motion={"starts": 1, "tolerance": 0.05},
+    free_motion={"starts": 1, "energy_tolerance": 0.05},
 )
 ROUNDED = 1 + 1e-6
 """Room for two solves of one problem to end at the same optimum."""

@@ -6,9 +6,9 @@ import quietarm as qa
 from quietarm.ocp.saved import plain, typed
 from quietarm.studies.sweep.cells import plan_cells
 from quietarm.studies.sweep.definition import Definition, PlanSettings
-from quietarm.studies.sweep.grid import Axis, Grid
+from quietarm.studies.sweep.grid import Axis, MoveGrid
 
-GRID = Grid(
+GRID = MoveGrid(
     qa.PointToPoint(qa.SingleLinkManipulator(), target=0.5, duration=0.8),
     (Axis("target", (0.4, 0.5), "rad"),),
 )
