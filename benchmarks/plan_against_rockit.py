@@ -54,7 +54,13 @@ from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.solvers.nlp import OPTIONS
-from quietarm.ocp.solvers.problem import RESIDUAL, Problem, Scalarization, Solution, Transcription
+from quietarm.ocp.solvers.problem import (
+    RESIDUAL,
+    NonlinearProgram,
+    Scalarization,
+    Solution,
+    Transcription,
+)
 from quietarm.ocp.solvers.sqp import Sqp
 
 PROFILE = CycloidPolynomial(6)
@@ -92,7 +98,7 @@ class Move:
     def solve(self, steps: int) -> Solution:
         """Solve by quietarm, without the verification."""
         asked = Scalarization({RESIDUAL: 0.0}, self.bound)
-        problem = Problem(Transcription(self.task, PROFILE, steps), asked)
+        problem = NonlinearProgram(Transcription(self.task, PROFILE, steps), asked)
         (solution,) = Sqp().solve([problem], [PROFILE.plain])
         return solution
 

@@ -37,7 +37,13 @@ from rich.table import Table
 
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
-from quietarm.ocp.solvers.problem import RESIDUAL, Problem, Scalarization, Solution, Transcription
+from quietarm.ocp.solvers.problem import (
+    RESIDUAL,
+    NonlinearProgram,
+    Scalarization,
+    Solution,
+    Transcription,
+)
 from quietarm.ocp.solvers.sqp import Sqp
 
 TASK = PointToPoint(ArmOnFlexibleLink(), target=pi / 2, duration=0.8)
@@ -74,7 +80,7 @@ def measure(case: Case) -> Timing:
 
     def solved() -> Solution:
         asked = Scalarization({RESIDUAL: 0.0}, case.bound)
-        problem = Problem(Transcription(TASK, profile, case.steps), asked)
+        problem = NonlinearProgram(Transcription(TASK, profile, case.steps), asked)
         (solution,) = Sqp().solve([problem], [guess])
         return solution
 

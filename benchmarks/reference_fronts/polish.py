@@ -25,7 +25,7 @@ from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.certify import Certified, Tolerances, certify
 from quietarm.ocp.record import versions
 from quietarm.ocp.simulation.free_vibration import after_arrival
-from quietarm.ocp.solvers.problem import STILL, Problem, Scalarization, Transcription
+from quietarm.ocp.solvers.problem import STILL, NonlinearProgram, Scalarization, Transcription
 from quietarm.ocp.solvers.sqp import Sqp
 
 STEPS = 500
@@ -86,7 +86,7 @@ def _solved_from_neighbours(
 
     From the points themselves, and from so many neighbours on either side.
     """
-    problems = list[Problem]()
+    problems = list[NonlinearProgram]()
     starts = list[list[NDArray[np.float64]]]()
     for place in places:
         residual = points[place].residual
@@ -94,7 +94,7 @@ def _solved_from_neighbours(
             Limit.of_residual(residual if residual > STILL else 0.0),
             *transcription.task.limits,
         )
-        problems.append(Problem(transcription, Scalarization(limits, bound)))
+        problems.append(NonlinearProgram(transcription, Scalarization(limits, bound)))
         near = points[max(place - reach, 0) : place + reach + 1]
         starts.append([np.array(point.coefficients) for point in near])
     solutions = best_of_starts(problems, starts, Sqp(), warm=True, leave=False)

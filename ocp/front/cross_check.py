@@ -17,7 +17,7 @@ from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN, by_cvodes
 from quietarm.ocp.record import number_of_points
 from quietarm.ocp.solvers.choice import other_solver, stated_solver
-from quietarm.ocp.solvers.problem import Problem, Transcription
+from quietarm.ocp.solvers.problem import NonlinearProgram, Transcription
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 
@@ -111,7 +111,7 @@ def _compare(curve: Curve, point: FrontPoint, same: float = 1e-6) -> Compared:
     coefficients = np.array(point.coefficients)
     motion = by_cvodes(transcription, coefficients)
     limits = tuple(_limits_at_nodes(transcription, motion, coefficients))
-    problem = Problem(transcription, scalarization._replace(limits=limits))
+    problem = NonlinearProgram(transcription, scalarization._replace(limits=limits))
     best = np.nan
     starts = [(start, False) for start in curve.starts]
     for start, warm in [*starts, (coefficients, True)]:

@@ -17,7 +17,7 @@ from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, cert
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Solution, Transcription
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, NonlinearProgram, Solution, Transcription
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
@@ -78,9 +78,9 @@ class Curve:
 
     def problem(
         self, residual_limit: float = np.inf, minimise: Mapping[str, float] = LEAST_ENERGY
-    ) -> Problem:
+    ) -> NonlinearProgram:
         """The problem at a residual limit [m]."""
-        return Problem.of(self.transcription, residual_limit, self.setup.bound, minimise)
+        return NonlinearProgram.of(self.transcription, residual_limit, self.setup.bound, minimise)
 
     def certify(
         self,

@@ -19,7 +19,7 @@ from quietarm.ocp.solvers.problem import (
     ENERGY,
     LEAST_ENERGY,
     STILL,
-    Problem,
+    NonlinearProgram,
     Solution,
     Transcription,
 )
@@ -125,7 +125,7 @@ def _least_residual(curve: Curve, cheapest: Solution) -> _Still:
     return _Still(curve, still, certificate._replace(iterations=iterations))
 
 
-def _cheapest_of_residual(reached: Certified, between_samples: float = 1e-4) -> Problem:
+def _cheapest_of_residual(reached: Certified, between_samples: float = 1e-4) -> NonlinearProgram:
     """The problem of least energy within the residual that was reached.
 
     By the share `between_samples` the residual may exceed there what it is at its samples.
@@ -138,7 +138,7 @@ def _cheapest_of_residual(reached: Certified, between_samples: float = 1e-4) -> 
         minimise=LEAST_ENERGY,
         offset=0.0,
     )
-    return Problem(transcription, cheapest)
+    return NonlinearProgram(transcription, cheapest)
 
 
 def _of_scenarios(curve: Curve, energy_weights: tuple[float, ...] = (1.0, 0.1, 0.02, 2e-3)) -> Ends:

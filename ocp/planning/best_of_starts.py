@@ -14,7 +14,7 @@ from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveSta
 from quietarm.ocp.limits import Limit, Ranged
 from quietarm.ocp.planning.certify import by_cvodes, certify_one
 from quietarm.ocp.solvers.choice import stand_in
-from quietarm.ocp.solvers.problem import ENERGY, STILL, Problem, Scalarization, Solution
+from quietarm.ocp.solvers.problem import ENERGY, STILL, NonlinearProgram, Scalarization, Solution
 from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
@@ -41,7 +41,7 @@ def better(solution: Solution, known: Solution, scalarization: Scalarization) ->
 
 
 def best_of_starts(
-    problems: Sequence[Problem],
+    problems: Sequence[NonlinearProgram],
     starts: Sequence[Sequence[Array]],
     solver: Solver,
     *,
@@ -76,7 +76,7 @@ def _lowest(solutions: Sequence[Solution], scalarization: Scalarization) -> Solu
 
 
 def solve_from_starts(
-    problem: Problem, starts: Sequence[Array], solver: Solver, *, quick: bool = False
+    problem: NonlinearProgram, starts: Sequence[Array], solver: Solver, *, quick: bool = False
 ) -> tuple[Solution, list[Solution]]:
     """The best solution from several starts, and all, the best first.
 
@@ -148,7 +148,7 @@ def least_peaks(
 
 
 def least_peaks_of(
-    problem: Problem, starts: Sequence[Array], solver: Solver
+    problem: NonlinearProgram, starts: Sequence[Array], solver: Solver
 ) -> dict[str, Solution]:
     """The same of a problem, from several starts."""
 
@@ -159,7 +159,7 @@ def least_peaks_of(
     return least_peaks(problem.scalarization.limits, solve_least)
 
 
-def _with_scalarization(problem: Problem, **changes: object) -> Problem:
+def _with_scalarization(problem: NonlinearProgram, **changes: object) -> NonlinearProgram:
     """The same task on the same steps, with other limits or another objective."""
     return problem._replace(scalarization=problem.scalarization._replace(**changes))
 
@@ -184,7 +184,7 @@ def true_peaks(
 
 
 def explain(
-    problem: Problem,
+    problem: NonlinearProgram,
     tried: Sequence[Solution],
     least: Mapping[str, Solution],
     solver: Solver,
@@ -214,7 +214,7 @@ def explain(
     return unmet(sought, limits, tried, confirmed)
 
 
-def _widened(problem: Problem, limit: Limit, peak: float) -> Problem:
+def _widened(problem: NonlinearProgram, limit: Limit, peak: float) -> NonlinearProgram:
     """The problem with a limit that is as wide as would be offered."""
     offered = limit.widened_to(peak * _ROOM)
     limits = problem.scalarization.limits
@@ -222,7 +222,7 @@ def _widened(problem: Problem, limit: Limit, peak: float) -> Problem:
     return _with_scalarization(problem, limits=replaced)
 
 
-def _has_a_plan(problem: Problem, start: Array, solver: Solver) -> bool:
+def _has_a_plan(problem: NonlinearProgram, start: Array, solver: Solver) -> bool:
     """Whether a plan is found from one start, and CVODES confirms it."""
     (solution,) = solver.solve([problem], [start])
     if not solution.status.solved:

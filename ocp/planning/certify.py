@@ -23,7 +23,7 @@ from quietarm.ocp.solvers.problem import (
     MOST_SOLVER_STEPS,
     STILL,
     STILL_SHARE,
-    Problem,
+    NonlinearProgram,
     Solution,
     Transcription,
     evaluate,
@@ -82,7 +82,7 @@ class Certified:
 
     solution: Solution
     checked: Judgement
-    problem: Problem
+    problem: NonlinearProgram
 
     @property
     def steps(self) -> int:
@@ -103,7 +103,7 @@ Outcome = Certified | SolverFailedError
 
 
 def certify(
-    problems: Sequence[Problem],
+    problems: Sequence[NonlinearProgram],
     solutions: Sequence[Solution],
     solver: Solver,
     tolerances: Tolerances = OF_A_PLAN,
@@ -132,13 +132,13 @@ def certify(
     return [outcomes[i] for i in range(len(problems))]
 
 
-def _is_without_limits(problem: Problem) -> bool:
+def _is_without_limits(problem: NonlinearProgram) -> bool:
     task = problem.transcription.task
     return not task.limits and task.uncertainty is None
 
 
 def certify_one(
-    problem: Problem,
+    problem: NonlinearProgram,
     solution: Solution,
     solver: Solver,
     tolerances: Tolerances = OF_A_PLAN,
@@ -156,7 +156,7 @@ class _Row:
 
     def __init__(
         self,
-        problem: Problem,
+        problem: NonlinearProgram,
         solution: Solution,
         tolerances: Tolerances,
         limits: Sequence[Limit] | None,
@@ -186,7 +186,7 @@ class _Row:
         self.tried.append(Certified(self.solution, judgement, self.problem))
         self.tightened = tighten(self.tightened, judgement, self.limits)
 
-    def go_on_from(self, solution: Solution, problem: Problem) -> None:
+    def go_on_from(self, solution: Solution, problem: NonlinearProgram) -> None:
         """Take another solution, whose iterations count as well."""
         iterations = self.solution.iterations + solution.iterations
         self.solution = replace(solution, iterations=iterations)
@@ -258,7 +258,7 @@ def _correct(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
                 limits=row.tightened,
                 offset=row.judgement.arrival - motion.arrival,
             )
-            problems.append(Problem(row.transcription, corrected))
+            problems.append(NonlinearProgram(row.transcription, corrected))
         solved += _solve_again(alike, problems, solver)
     return solved
 
@@ -274,13 +274,13 @@ def _refine(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
         problems = []
         for row, transcription in zip(alike, finer):
             row.tightened = row.scalarization.limits
-            problems.append(Problem(transcription, row.scalarization))
+            problems.append(NonlinearProgram(transcription, row.scalarization))
         solved += _solve_again(alike, problems, solver)
     return solved
 
 
 def _solve_again(
-    rows: Sequence[_Row], problems: Sequence[Problem], solver: Solver
+    rows: Sequence[_Row], problems: Sequence[NonlinearProgram], solver: Solver
 ) -> Iterable[_Row]:
     """The rows that are solved from their solutions."""
     starts = [row.solution.coefficients for row in rows]

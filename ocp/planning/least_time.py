@@ -25,7 +25,7 @@ from quietarm.ocp.planning.rigid_motion import (
 from quietarm.ocp.profiles.joint_spline import JointSpline
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.solvers.least_excess import Excess, least_excess
-from quietarm.ocp.solvers.problem import Problem, Transcription, first_steps
+from quietarm.ocp.solvers.problem import NonlinearProgram, Transcription, first_steps
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 Array = NDArray[np.float64]
@@ -197,9 +197,9 @@ class _Durations:
             self._start = excess.coefficients
         return excess
 
-    def _problem(self, transcription: Transcription) -> Problem:
+    def _problem(self, transcription: Transcription) -> NonlinearProgram:
         """Within narrower limits of what is limited on the way."""
-        problem = Problem.of(transcription, self._residual_limit, self._bound)
+        problem = NonlinearProgram.of(transcription, self._residual_limit, self._bound)
         limits = [
             limit.tightened(1 + self._margins.get(limit.name, 0.0))
             for limit in problem.scalarization.limits

@@ -22,7 +22,7 @@ from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
 from quietarm.ocp.solvers.choice import stand_in
-from quietarm.ocp.solvers.problem import Problem, Solution, first_steps, transcribe
+from quietarm.ocp.solvers.problem import NonlinearProgram, Solution, first_steps, transcribe
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
@@ -109,7 +109,9 @@ def plan_moves(
     _check(tasks, profile)
     limit = ResidualLimit.of(tasks[0], residual_limit).size
     transcriptions = transcribe(tasks, profile, _steps(tasks, profile))
-    problems = [Problem.of(transcription, limit, setup.bound) for transcription in transcriptions]
+    problems = [
+        NonlinearProgram.of(transcription, limit, setup.bound) for transcription in transcriptions
+    ]
     guesses = setup.start_coefficients(profile)
     plain = guesses[:1]
     random = guesses[1:]
@@ -130,7 +132,7 @@ def plan_moves(
 
 
 def _solve_the_unsolved(
-    problems: Sequence[Problem],
+    problems: Sequence[NonlinearProgram],
     solutions: list[Solution],
     starts: Sequence[Array],
     solver: Solver,
@@ -146,7 +148,7 @@ def _solve_the_unsolved(
 
 
 def _from_neighbours(
-    problems: Sequence[Problem],
+    problems: Sequence[NonlinearProgram],
     start: Array,
     setup: Setup,
     share: int = 8,
@@ -183,7 +185,7 @@ def _steps(tasks: Sequence[PointToPoint], profile: JointProfile) -> int:
 class _Table:
     """The columns of `Moves`, empty until a solution is certified."""
 
-    def __init__(self, problems: Sequence[Problem], solutions: Sequence[Solution]) -> None:
+    def __init__(self, problems: Sequence[NonlinearProgram], solutions: Sequence[Solution]) -> None:
         count = len(problems)
         self._problems = problems
         self._solutions = list(solutions)
@@ -268,7 +270,7 @@ class _Table:
 
 
 def _certify_from_another_start(
-    problem: Problem, starts: Sequence[Array], solver: Solver
+    problem: NonlinearProgram, starts: Sequence[Array], solver: Solver
 ) -> Certified | None:
     """The first solution that CVODES confirms, of a move whose own it does not; None if none."""
     for start in starts:

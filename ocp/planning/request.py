@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Transcription
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, NonlinearProgram, Transcription
 from quietarm.ocp.task import PointToPoint
 
 
@@ -45,10 +45,10 @@ class PlanRequest:
         """Coefficients to start from."""
         return self.setup.start_coefficients(self.profile)
 
-    def problem(self, minimise: Mapping[str, float] = LEAST_ENERGY) -> Problem:
+    def problem(self, minimise: Mapping[str, float] = LEAST_ENERGY) -> NonlinearProgram:
         """The nonlinear program, of the least energy or another sum."""
         transcription = Transcription.of(self.task, self.profile, self.setup.steps)
-        return Problem.of(
+        return NonlinearProgram.of(
             transcription,
             self.residual_limit.size,
             self.setup.bound,

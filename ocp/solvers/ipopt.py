@@ -34,7 +34,7 @@ from quietarm.ocp.sample import total
 from quietarm.ocp.simulation.objective import integrated, smooth_power
 from quietarm.ocp.simulation.rollout import Simulation, SymbolicRollout
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, options_of, run_ipopt
-from quietarm.ocp.solvers.problem import Problem, Solution, shadow_prices
+from quietarm.ocp.solvers.problem import NonlinearProgram, Solution, shadow_prices
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.uncertainty import Scenario
 
@@ -78,7 +78,7 @@ class Ipopt(Solver):
 
     def solve(
         self,
-        problems: Sequence[Problem],
+        problems: Sequence[NonlinearProgram],
         starts: Sequence[Array],
         *,
         warm: bool = False,
@@ -115,7 +115,7 @@ class _Form(NamedTuple):
     peak: str | None
 
     @classmethod
-    def of(cls, problem: Problem) -> _Form:
+    def of(cls, problem: NonlinearProgram) -> _Form:
         """The form of a problem."""
         transcription, scalarization = problem
         return cls(
@@ -215,7 +215,7 @@ def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
 class _Numbers:
     """A problem's numbers: parameters and bounds of its program, and what its solution means."""
 
-    def __init__(self, problem: Problem, warm: bool, solver: Ipopt) -> None:
+    def __init__(self, problem: NonlinearProgram, warm: bool, solver: Ipopt) -> None:
         self.problem = problem
         # Shares of the plain motion's mean power over which |power| is rounded off, run by run.
         widths = (0.5, 0.05, 0.0)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.batch import Derivatives
-from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.problem import NonlinearProgram
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class Excess(NamedTuple):
     holds: bool
 
 
-def least_excess(problem: Problem, start: Array, reach: float = 3.0) -> Excess:
+def least_excess(problem: NonlinearProgram, start: Array, reach: float = 3.0) -> Excess:
     """The least share by which all limits but the residual's have to be widened, from a start.
 
     Coefficients may move by the reach at first.
@@ -64,7 +64,7 @@ def least_excess(problem: Problem, start: Array, reach: float = 3.0) -> Excess:
 class _Linearised:
     """A problem about a motion: rows of its limits, and of what is wanted on arrival."""
 
-    def __init__(self, problem: Problem, coefficients: Array) -> None:
+    def __init__(self, problem: NonlinearProgram, coefficients: Array) -> None:
         transcription = problem.transcription
         self.coefficients = coefficients
         self._box = transcription.profile.box(problem.scalarization.bound)
@@ -72,7 +72,7 @@ class _Linearised:
         self._limit_rows(problem, motions)
         self._arrival_rows(problem, motions)
 
-    def _limit_rows(self, problem: Problem, motions: Derivatives) -> None:
+    def _limit_rows(self, problem: NonlinearProgram, motions: Derivatives) -> None:
         """Values and their Jacobian as shares of the limits' sizes, and both bounds."""
         values = []
         tables = []
@@ -94,7 +94,7 @@ class _Linearised:
         self.upper = np.concatenate(uppers)
         self.lower = np.concatenate(lowers)
 
-    def _arrival_rows(self, problem: Problem, motions: Derivatives) -> None:
+    def _arrival_rows(self, problem: NonlinearProgram, motions: Derivatives) -> None:
         """What has to be 0, or within 1: scaled states on arrival, or displacements after it."""
         transcription = problem.transcription
         scalarization = problem.scalarization

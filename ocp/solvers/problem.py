@@ -202,7 +202,7 @@ class Scalarization(NamedTuple):
         return self.peak == RESIDUAL or (np.isfinite(self.residual_limit) and not self.at_rest)
 
 
-class Problem(NamedTuple):
+class NonlinearProgram(NamedTuple):
     """A nonlinear program over a profile's coefficients."""
 
     transcription: Transcription
@@ -215,7 +215,7 @@ class Problem(NamedTuple):
         residual_limit: float = np.inf,
         bound: float | None = None,
         minimise: Mapping[str, float] = LEAST_ENERGY,
-    ) -> Problem:
+    ) -> NonlinearProgram:
         """Within a task's limits and one of the residual [m], the least energy or another sum."""
         task = transcription.task
         limits = Limit.of_residual(residual_limit, task.plant.tip_unit), *task.limits

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.solvers.batch import Derivatives, MotionMultipliers
-from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.problem import NonlinearProgram
 from quietarm.ocp.solvers.quadratic import Model, Multipliers
 
 Array = NDArray[np.float64]
@@ -161,7 +161,7 @@ class Programs:
     box, the last `linear` ones. The `weights`, (problems, 2), are of the scaled energy and peak.
     """
 
-    def __init__(self, problems: Sequence[Problem]) -> None:
+    def __init__(self, problems: Sequence[NonlinearProgram]) -> None:
         self._transcriptions = [problem.transcription for problem in problems]
         self._scalarizations = [problem.scalarization for problem in problems]
         transcription, scalarization = problems[0]

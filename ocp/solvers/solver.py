@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.record import Setting
-from quietarm.ocp.solvers.problem import Problem, Solution
+from quietarm.ocp.solvers.problem import NonlinearProgram, Solution
 
 NAME = "solver"
 """What a record calls it; an option that is not the default stands beside, as solver_tolerance."""
@@ -64,7 +64,7 @@ class Solver:
 
     def solve(
         self,
-        problems: Sequence[Problem],
+        problems: Sequence[NonlinearProgram],
         starts: Sequence[NDArray[np.float64]],
         *,
         warm: bool = False,
@@ -74,7 +74,7 @@ class Solver:
 
         Parameters
         ----------
-        problems : sequence of Problem
+        problems : sequence of NonlinearProgram
             Of any tasks, steps and scalarizations.
         starts : sequence of ndarray, each of shape (profile.size,)
             Coefficients to start from.

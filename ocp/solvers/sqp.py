@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, Course, End, Ended, minimise
-from quietarm.ocp.solvers.problem import Problem, Solution, evaluate, shadow_prices
+from quietarm.ocp.solvers.problem import NonlinearProgram, Solution, evaluate, shadow_prices
 from quietarm.ocp.solvers.programs import Programs
 from quietarm.ocp.solvers.solver import Solver
 
@@ -38,7 +38,7 @@ class Sqp(Solver):
 
     def solve(
         self,
-        problems: Sequence[Problem],
+        problems: Sequence[NonlinearProgram],
         starts: Sequence[Array],
         *,
         warm: bool = False,
@@ -70,7 +70,7 @@ class Sqp(Solver):
         return [solutions[i] for i in range(len(problems))]
 
 
-def _group_by_form(problems: Sequence[Problem]) -> Iterable[list[int]]:
+def _group_by_form(problems: Sequence[NonlinearProgram]) -> Iterable[list[int]]:
     """The places of the problems that are solved together."""
     forms: dict[tuple[object, ...], list[int]] = {}
     for i, (transcription, scalarization) in enumerate(problems):
@@ -85,7 +85,9 @@ def _group_by_form(problems: Sequence[Problem]) -> Iterable[list[int]]:
     return forms.values()
 
 
-def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> list[Solution]:
+def _in_units(
+    programs: Programs, ended: Ended, problems: Sequence[NonlinearProgram]
+) -> list[Solution]:
     """The solutions in SI units."""
     coefficients = programs.coefficients(ended.x)
     motions = evaluate([problem.transcription for problem in problems], coefficients)
@@ -113,7 +115,7 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Problem]) -> 
 
 
 def _shadow_prices(
-    programs: Programs, ended: Ended, problems: Sequence[Problem]
+    programs: Programs, ended: Ended, problems: Sequence[NonlinearProgram]
 ) -> list[dict[str, float]]:
     """What each least energy falls by if a limit is widened [J by its unit]."""
     multipliers = programs.split(ended.multipliers.bounded)

@@ -12,7 +12,7 @@ from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, TorqueSpeedLine
 from quietarm.ocp.simulation.evaluator import Evaluation
 from quietarm.ocp.solvers import ipopt as ipopt_module
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.problem import NonlinearProgram, Scalarization
 from quietarm.ocp.solvers.sqp import Sqp
 
 TERMS = 6
@@ -35,7 +35,7 @@ SOLVERS = Sqp(), Ipopt()
 
 
 def _solved(transcription, asked, solver=SOLVERS[0], start=PROFILE.plain, **settings):
-    (found,) = solver.solve([Problem(transcription, asked)], [np.array(start)], **settings)
+    (found,) = solver.solve([NonlinearProgram(transcription, asked)], [np.array(start)], **settings)
     return found
 
 
@@ -120,7 +120,7 @@ def test_rows_of_many_kinds_are_solved_as_alone(link_and_arm):
         (limited, _ask(AT_REST, None, {"torque": 1.0})),
         (free, _ask({RESIDUAL: 5e-3}, box)),
     ]
-    problems = [Problem(*one) for one in asks]
+    problems = [NonlinearProgram(*one) for one in asks]
     together = Sqp().solve(problems, [PROFILE.plain] * len(problems))
     for one, found in zip(asks, together, strict=True):
         alone = _solved(*one)
@@ -204,7 +204,7 @@ def test_the_log_of_either_solver_can_be_shown(link_and_arm, capfd, solver, colu
 
 def test_how_a_start_ended_is_said_truly(link_and_arm):
     steps, _, box = link_and_arm["arm"]
-    problem = Problem(steps, _ask(AT_REST, box))
+    problem = NonlinearProgram(steps, _ask(AT_REST, box))
     found = Sqp().solve([problem] * 4, [PROFILE.plain] * 4, groups=[0] * 4)
     assert [one.status for one in found].count(SolveStatus.SUPERSEDED) == 3
     assert all("another start" in one.reason for one in found if not one.status.solved)
