@@ -1,4 +1,4 @@
-"""The one door to CasADi's functions: built once, one thread at a time, and no Ctrl-C is lost."""
+"""The one door to CasADi's functions: built once, by one thread at a time; no Ctrl-C is lost."""
 
 from __future__ import annotations
 

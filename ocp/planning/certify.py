@@ -231,7 +231,10 @@ JudgeAll = Callable[[Sequence[_Row]], None]
 def _settle(
     rows: Sequence[_Row], solver: Solver, judge_all: JudgeAll, rounds: int = 12
 ) -> list[Outcome]:
-    """Judge and solve again until nothing differs, or no solution is nearer."""
+    """At most `rounds` times: correct or refine what differs, until nothing does.
+
+    It ends as well where no row was solved again.
+    """
     judge_all(rows)
     going = rows
     for _ in range(rounds):

@@ -120,8 +120,8 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
     """The plan whose residual limit holds between the scenarios as well, if that can be had.
 
     Where its residual exceeds the limit between them by more than `EXCESS`, those peaks become
-    scenarios, and of the motions that were found so many are the next starts. The remaining excess
-    is then subtracted from the limit; where that does not settle it, they become scenarios as well.
+    scenarios, and of the motions that were found so many are the next starts. The limit is then
+    divided by the remaining excess; where that does not settle it, they become scenarios as well.
     """
     limit = request.residual_limit.size
     attempt = _solve_and_look_between(request, starts)

@@ -63,6 +63,8 @@ def plan_move(
         How many starts: the guess or the plain cycloid first, then random ones; all at once. Once
         half of them, and more than one, have ended at the lowest energy, the others are stopped.
         Gaussians and networks take four random starts for each: they have many local minima.
+        With limits and no named profile these are starts of six terms; 18 or 24 terms start from
+        the plain cycloid, and from the answer with six terms where that fails.
     seed : int
         Seed of the random starts.
     steps : int, optional
