@@ -24,7 +24,7 @@ from quietarm.studies.cli.plants import (
     warn_of_payload,
 )
 from quietarm.studies.cli.quantities import RESIDUAL_LIMIT, parse_of_plant
-from quietarm.studies.cli.robots import read_robot_task
+from quietarm.studies.cli.robots import LINE_NAMES, OF_ROBOT, read_robot_task
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.report.words import print_lines
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
@@ -141,7 +141,8 @@ class Given:
         if isinstance(kind, Robot):
             return self._read_robot(kind, **known)
         if self._context.command.name != "evaluate":  # which has recorded paths
-            self.refuse(["path"], "is for a robot, whose file is PLANT, as ur5.yaml")
+            self.refuse(["path"], OF_ROBOT)
+        self.refuse(LINE_NAMES, OF_ROBOT)
         parameters = read_parameters(kind, self.parameters)
         plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
         uncertainty = build_uncertainty(kind, self.errors, parameters)

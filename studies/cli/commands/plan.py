@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
+from quietarm.models import RobotOnPath
 from quietarm.ocp import Plan, SolverFailedError, energy_floor, fastest_move, plan_move
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
@@ -20,12 +21,12 @@ from quietarm.studies.cli.given import Given, single_values
 from quietarm.studies.cli.options import (
     BOUND,
     RESIDUAL_LIMIT,
+    ROBOT_PATH,
     SEED,
     SENSITIVITIES,
     SOLVER,
     STARTS,
     TASK,
-    WAYPOINTS,
     YES,
     busy,
     command,
@@ -33,6 +34,7 @@ from quietarm.studies.cli.options import (
     profile_options,
 )
 from quietarm.studies.cli.plants import read_parameters
+from quietarm.studies.cli.robots import line_note
 from quietarm.studies.cli.types import INPUT
 from quietarm.studies.reading.profiles import chooses_terms, families
 from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
@@ -47,7 +49,7 @@ _OF_SOLVES = ("starts", "seed", *(one.name or "" for one in SOLVER))
 
 
 @command(
-    *TASK, WAYPOINTS,
+    *TASK, *ROBOT_PATH,
     *profile_options(
         *SHAPERS, *FREE,
         words="; a plain cycloid through an input shaper for the plant's frequencies at the "
@@ -89,7 +91,10 @@ def plan(given: Given) -> None:
             raise ValueError(f"--duration fastest {why}; give a time")
         if free:
             return _plan_freely(given)
-    task, notes = given.read_task(**{"duration": _BEGIN} if fastest else {}), list[str]()
+    task = given.read_task(**{"duration": _BEGIN} if fastest else {})
+    notes = list[str]()
+    if isinstance(task.plant, RobotOnPath) and (straight := line_note(given, task.plant)):
+        notes.append(straight)
     motions = None if chooses_terms(given.profile, given.terms) else given.read_profile(task)
     asked: dict[str, Any] = given.pick("bound", "seed") | {
         "residual_limit": given.read_residual_limit(task.plant),
@@ -100,7 +105,7 @@ def plan(given: Given) -> None:
         with busy("looking for the shortest duration"):
             shortest = fastest_move(task, motions, **asked)
         found = shortest.plan
-        notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
+        notes += [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
     else:
         with busy("solving"):
             found = plan_move(task, motions, starts=given.starts, **asked)

@@ -55,6 +55,35 @@ def test_a_plan_of_a_robot_and_its_files(call):
     assert float(rows[-1][1]) == pytest.approx(path(1.0)[0])
 
 
+def test_a_straight_line_in_space(call):
+    """The file has the joints' path, and the answer says how straight the link goes."""
+    line = f"plan ur5_bar.yaml {START} --line-by=200mm,300mm,-100mm --duration 1"
+    code, out, _ = call(f"{line} --output move.json")
+    assert code == 0
+    assert "line: tool0 goes straight within 1e-09 mm" in out
+    assert "at rest (below 0.001 mm)" in out
+    plan = qa.Plan.load("move.json")
+    assert plan.task.plant.path.joints == UR5_JOINTS
+
+
+def test_waypoints_of_another_planner(call):
+    """A JointTrajectory, joints in another order, is followed without its times."""
+    message = {
+        "joint_names": list(reversed(UR5_JOINTS)),
+        "points": [
+            {"positions": [0.0, -1.57, -1.87, 1.7, -1.4, 0.0], "time_from_start": {"sec": 0}},
+            {"positions": [0.2, -1.5, -1.6, 1.5, -1.2, 0.6], "time_from_start": {"sec": 7}},
+            {"positions": [0.6, -1.2, -1.3, 1.2, -1.0, 1.4], "time_from_start": {"sec": 9}},
+        ],
+    }
+    Path("waypoints.yaml").write_text(yaml.safe_dump(message))
+    code, _, _ = call("plan ur5_bar.yaml --path waypoints.yaml --duration 1 --output move.json")
+    assert code == 0
+    path = qa.Plan.load("move.json").task.plant.path
+    assert path(0.0) == pytest.approx([0.0, -1.4, 1.7, -1.87, -1.57, 0.0])
+    assert path(1.0) == pytest.approx([1.4, -1.0, 1.2, -1.3, -1.2, 0.6])
+
+
 def test_limits_by_joint_and_of_the_file(call):
     """A limit that is typed stands in place of that of the file."""
     Path("limited.yaml").write_text(Path("ur5_bar.yaml").read_text() + "limits: urdf\n")
@@ -93,6 +122,16 @@ def test_a_robot_is_listed_with_what_was_read(call):
     ("plan ur5_bar.yaml --path none.csv --duration 1", "none.csv cannot be read"),
     (f"plan stiff.yaml {ENDS} --duration 1", "has nothing that bends; give a beam"),
     (f"plan none.yaml {ENDS} --duration 1", "none.yaml cannot be read"),
+    (f"plan ur5_bar.yaml {START} --line-by 2,0,0 --duration 1", "of its 2 m: it is out of reach"),
+    (f"plan ur5_bar.yaml {START} --line-by 0,0,0 --duration 1", "the line has a length of 0 m"),
+    (f"plan ur5_bar.yaml {START} --line-by 1,0 --duration 1", "--line-by has 2 numbers; give x,y"),
+    (f"plan ur5_bar.yaml {START} --line-to 1,a,0 --duration 1", "'a' is not a number of --line-to"),
+    (f"plan ur5_bar.yaml {START} --line-to 1,0,0 --line-by 1,0,0 --duration 1", "in place of"),
+    (f"plan ur5_bar.yaml {ENDS} --line-by 1,0,0 --duration 1", "--target is where joints go"),
+    (f"plan ur5_bar.yaml {START} --line-by 1,0,0 --link tool --duration 1", "did you mean 'tool0'"),
+    ("plan ur5_bar.yaml --line-by 0,0,0.1 --duration 1", "a line begins somewhere; give --start"),
+    (f"plan ur5_bar.yaml {ENDS} --link tool0 --duration 1", "--link is for --line-to and"),
+    ("plan single-link --line-by 0,0,1 --target 1 --duration 1", "--line-by is for a robot"),
     ("plan single-link --path corner.csv --target 1 --duration 1", "--path is for a robot"),
 ])  # fmt: skip
 def test_what_is_refused_in_one_line(refused, line, words):
