@@ -23,7 +23,7 @@ from quietarm.ocp.files import write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, WIDTHS, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
 from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
-from quietarm.studies.figures.structure import Structure, structures_of
+from quietarm.studies.figures.structure import GROUND, Structure, structures_of
 from quietarm.studies.report.saving import as_written
 from quietarm.studies.report.words import move_of, moved, residual_words, title_of, window_words
 
@@ -246,16 +246,20 @@ def _draw_structure(ax: Axes, one: Structure) -> Iterator[Update]:
     ax.tick_params(labelsize=8)
     ax.autoscale_view()
     ax.set_aspect("equal", adjustable="datalim")
+    if one.line.plan.task.plant.in_space:  # lengths along the axes are not those of the robot
+        ax.set(xticks=[], yticks=[])
 
     def part(points: Sequence[NDArray[np.float64]] | NDArray[np.float64], **look: Any) -> Update:
         (artist,) = ax.plot([], [], solid_capstyle="round", **look)
         return lambda k: artist.set_data(*points[k].T)
 
-    for points, _, _ in one.unbent:
+    for points, colour, _ in one.unbent:
+        if colour == GROUND:
+            continue
         yield part(points, color="0.55", linewidth=1.0, linestyle="--")
-    arrived = int(np.searchsorted(one.times, one.line.plan.task.duration))
+    begun = int(np.searchsorted(one.times, one.trail_begins))
     for path in one.paths:
-        trail = [path[arrived : k + 1] for k in range(len(path))]
+        trail = [path[begun : k + 1] for k in range(len(path))]
         yield part(trail, color=one.line.colour, linewidth=2.0, alpha=0.5)
     for points, colour, width in one.bent:
         disc = np.ptp(points[0], axis=0).max() < _DISC

@@ -109,7 +109,8 @@ def move_of(task: PointToPoint) -> str:
 def ends_words(task: PointToPoint) -> str:
     """From where to where: "0 to 30 deg", of several joints the places on their path."""
     if len(task.plant.joint_names) > 1:
-        return f"{task.start:.6g} to {task.target:.6g} of the path"
+        whole = (task.start, task.target) == (0.0, 1.0)
+        return "along its path" if whole else f"{task.start:.6g} to {task.target:.6g} of the path"
     factor, unit = (1e3, "mm") if task.plant.joint == LINEAR else (degrees(1.0), "deg")
     return f"{factor * task.start:.6g} to {factor * task.target:.6g} {unit}"
 
@@ -126,9 +127,9 @@ def energy_words(task: PointToPoint) -> list[str]:
     return [] if task.energy == ABSOLUTE_POWER else [f"energy {task.energy.label}"]
 
 
-def title_of(task: PointToPoint) -> str:
+def title_of(task: PointToPoint, *, limits: bool = True) -> str:
     """A task in a line: its plant and move; its limits where it has any."""
-    return ", ".join([moved(task), move_of(task), *limit_words(task)])
+    return ", ".join([moved(task), move_of(task), *(limit_words(task) if limits else [])])
 
 
 def limit_words(task: PointToPoint) -> list[str]:

@@ -35,7 +35,7 @@ def test_a_plan_of_a_robot_and_its_files(call):
     outputs = "--output move.json --output move.yaml --output move.csv"
     code, out, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 {outputs}")
     assert code == 0
-    assert "ur5 (6 joints; beam at tool0), 0 to 1 of the path in 1 s" in out
+    assert "ur5 (6 joints; beam at tool0), along its path in 1 s" in out
     assert "at rest (below 0.001 mm) at the worst of 2 tips" in out
     plan = qa.Plan.load("move.json")
     path = plan.task.plant.path
