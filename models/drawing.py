@@ -1,4 +1,4 @@
-"""How a structure looks from above, or in space, in metres: for pictures, no equation of motion uses this."""
+"""How a structure looks, in metres: for pictures, no equation of motion uses this."""
 
 from __future__ import annotations
 

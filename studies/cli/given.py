@@ -167,14 +167,16 @@ class Given:
         return Grid(task, tuple(axes))
 
     def _read_robot(self, robot: Robot, **known: float) -> Grid:
-        """The task of a robot along its path, without axes."""
+        """The task of a robot along its path, and an axis where there are several durations."""
         text: str | None = self._context.params["duration"]
         duration = known.get("duration")
         if duration is None and text is None:
             raise click.UsageError("Missing option '--duration'. Give it as --duration 0.8")
-        if duration is None:
-            (duration,) = parse_of_plant("duration", str(text), "rotary", "m")
-        return Grid(read_robot_task(self, robot, duration), ())
+        durations: tuple[float, ...] = (duration,) if duration is not None else ()
+        if not durations:
+            durations = parse_of_plant("duration", str(text), "rotary", "m")
+        axes = (Axis("duration", durations, "s"),) if len(durations) > 1 else ()
+        return Grid(read_robot_task(self, robot, max(durations)), axes)
 
 
 def single_values(given: Mapping[str, Sequence[float]]) -> dict[str, float]:

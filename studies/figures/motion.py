@@ -241,7 +241,7 @@ def _figure_of_joints(
     of_joints = [name for name in quantities if name == "angle" or QUANTITIES[name].of_joints]
     others = [name for name in quantities if name not in of_joints]
     below = [(name, curve) for name in others for curve in range(len(curves(lines[0].plan, name)))]
-    columns = max(len(of_joints), min(len(below) + 1, _MOST_COLUMNS))
+    columns = max(len(of_joints), min(len(below), _MOST_COLUMNS))
     last_rows = -(-len(below) // columns)
     figure = new_figure(0.8 + 3.2 * columns, 1.0 + 1.3 * len(names) + 2.2 * last_rows)
     heights = [1.0] * len(names) + [1.6] * last_rows

@@ -66,9 +66,7 @@ class Structure:
 
     @property
     def trail_begins(self) -> float:
-        """From when on the paths of the tips are drawn [s]: in space from the start, else from
-        arrival.
-        """
+        """From when on paths of tips are drawn [s]: in space from the start, else on arrival."""
         task = self.line.plan.task
         return 0.0 if task.plant.in_space else task.duration
 

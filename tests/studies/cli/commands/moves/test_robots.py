@@ -84,6 +84,51 @@ def test_waypoints_of_another_planner(call):
     assert path(1.0) == pytest.approx([1.4, -1.0, 1.2, -1.3, -1.2, 0.6])
 
 
+def test_a_plan_is_compared_with_shapers_and_ruckig_in_phase(call):
+    """Ruckig's joints keep their own limits, and what it leaves is much."""
+    limits = "--acceleration-limit 14 --speed-limit shoulder_pan_joint=2.6 --terms 6"
+    code, _, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 {limits} --output move.json")
+    assert code == 0
+    code, _, _ = call("compare move.json --baselines cycloid,zvd,ruckig --output compared")
+    assert code == 0
+    with open("compared/motions.csv", newline="") as file:
+        rows = {row["motion"]: row for row in csv.DictReader(file)}
+    residuals = {name: float(row["residual [mm]"]) for name, row in rows.items()}
+    assert residuals["move"] < 1e-3
+    assert min(residuals["zvd"], residuals["ruckig"], residuals["cycloid"]) > 5.0
+    fastest = float(rows["ruckig"]["peak speed [rad/s]"])
+    assert fastest <= 2.6 * (1 + 1e-6)  # the pan joint turns furthest
+    assert float(rows["ruckig"]["peak acceleration [rad/s^2]"]) <= 14 * (1 + 1e-6)
+
+
+def test_ruckig_does_not_follow_a_curved_path(call):
+    """One line says so, and what else to compare with."""
+    Path("curved.csv").write_text(
+        "0,-1.4,1.7,-1.8,-1.5,0\n0.8,-1.3,1.4,-1.4,-1.3,0\n1.4,-1,1.2,-1.3,-1.2,0.6\n"
+    )
+    line = "plan ur5_bar.yaml --path curved.csv --duration 1 --acceleration-limit 30 --terms 6"
+    assert call(f"{line} --output move.json")[0] == 0
+    code, out, _ = call("compare move.json --baselines ruckig")
+    assert code == 0
+    assert "ruckig goes straight in joint space, and the path of the plan is curved" in " ".join(
+        out.split()
+    )
+
+
+def test_durations_are_swept_and_points_are_searched(call):
+    code, out, _ = call(f"sweep ur5_bar.yaml {ENDS} --duration 0.9,1.0 --output moves.zarr")
+    assert code == 0
+    assert "optimal" in out
+    line = f"search ur5_bar.yaml {ENDS} --duration 1 --bound 0.2 --terms 3"
+    code, out, _ = call(f"{line} --population 6 --generations 2 --output found.json")
+    assert code == 0
+    assert qa.Front.load("found.json").points
+
+
+def test_the_page_of_sliders_is_of_plants_of_one_joint(refused):
+    assert "give it to quietarm plan, evaluate, front or search" in refused("explore ur5_bar.yaml")
+
+
 def test_limits_by_joint_and_of_the_file(call):
     """A limit that is typed stands in place of that of the file."""
     Path("limited.yaml").write_text(Path("ur5_bar.yaml").read_text() + "limits: urdf\n")
