@@ -129,7 +129,7 @@ def straight_positions(kinematics: Kinematics, start: Array, end: Pose) -> Calla
     guess = chebyshev.chebfit(2 * shares - 1, np.array(walked), _DEGREE)
 
     def positions(share: float) -> Array:
-        begin = chebyshev.chebval(2 * share - 1, guess)
+        begin = np.asarray(chebyshev.chebval(2 * share - 1, guess), float)
         solution = _newton(kinematics, begin, line.pose(share))
         if solution is None:
             raise ValueError(

@@ -23,7 +23,7 @@ from quietarm.studies.compare.judged_motions import (
     refuse_other_moves,
 )
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import title_of, window_words
+from quietarm.studies.report.words import title_of, unit_of_way, window_words
 from quietarm.studies.tips import tip_scale
 
 _WHY = "why there is none"
@@ -161,7 +161,7 @@ def plans_report(
             "title": title_of(task),
             "shown": shown(table),
             "unsealed": unsealed,
-            "remarks": remarks(motions, joint_unit("rad", joint)),
+            "remarks": remarks(motions, unit_of_way(task.plant)),
             "errors": list(ranges),
             "window": window_words(
                 next((one.window for one in motions if one.window), task.residual_window)

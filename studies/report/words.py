@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR
+from quietarm.models.joint_motion import LINEAR, joint_unit
 from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.checks import printable
 from quietarm.ocp.energy import ABSOLUTE_POWER
@@ -113,6 +113,11 @@ def ends_words(task: PointToPoint) -> str:
         return "along its path" if whole else f"{task.start:.6g} to {task.target:.6g} of the path"
     factor, unit = (1e3, "mm") if task.plant.joint == LINEAR else (degrees(1.0), "deg")
     return f"{factor * task.start:.6g} to {factor * task.target:.6g} {unit}"
+
+
+def unit_of_way(plant: Plant) -> str:
+    """What a way is in: "rad" or "m" of a joint, "of the path" of several."""
+    return "of the path" if len(plant.joint_names) > 1 else joint_unit("rad", plant.joint)
 
 
 def state_words(state: ModalState, tip_unit: str) -> str:
