@@ -23,7 +23,7 @@ from quietarm.studies.compare.judged_motions import (
     refuse_other_moves,
 )
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import title_of, unit_of_way, window_words
+from quietarm.studies.report.words import title_of, title_of_picture, unit_of_way, window_words
 from quietarm.studies.tips import tip_scale
 
 _WHY = "why there is none"
@@ -173,7 +173,7 @@ def plans_report(
         {"motions": table},
         {
             "motions.png": partial(
-                figures.motions_figure, motions, title_of(task), task.plant.tip_unit
+                figures.motions_figure, motions, title_of_picture(task), task.plant.tip_unit
             )
         },
     )

@@ -25,7 +25,13 @@ from quietarm.studies.figures.axes import TITLE, new_figure
 from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
 from quietarm.studies.figures.structure import GROUND, Structure, structures_of
 from quietarm.studies.report.saving import as_written
-from quietarm.studies.report.words import move_of, moved, residual_words, title_of, window_words
+from quietarm.studies.report.words import (
+    move_of,
+    moved,
+    residual_words,
+    title_of_picture,
+    window_words,
+)
 
 _MOST_MOTIONS, _MOST_FRAMES = 6, 500
 """More could not be seen side by side, or would take minutes."""
@@ -194,7 +200,7 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     rows, inches = -(-len(structures) // columns), _PANEL * max(columns, 2)
     same = len({one.line.plan.task for one in structures}) == 1
     titles = [_title(one, same, int(_LETTERS * inches / columns)) for one in structures]
-    words = title_of(structures[0].line.plan.task) if same else "several moves on one clock"
+    words = title_of_picture(structures[0].line.plan.task) if same else "several moves on one clock"
     heading = wrap(words, int(_LETTERS * inches) - 24)  # the clock stands beside it
     above = _LINE * len(heading) + rows * (_HIGH + _LINE * max(map(len, titles)))
     figure = new_figure(inches, above + _CURVES_HIGH)

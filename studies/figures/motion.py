@@ -26,7 +26,7 @@ from quietarm.studies.figures.axes import (
     new_figure,
 )
 from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
-from quietarm.studies.report.words import raised, title_of
+from quietarm.studies.report.words import raised, title_of_picture
 from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
@@ -134,7 +134,7 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
     for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn), curve)):
         label = "_" if k else "limit"  # once in the legend
         ax.axhline(level, color="black", linewidth=1.1, linestyle=":", label=label)
-    if _cut_off_pulses(ax, lines, quantity):
+    if _cut_off_pulses(ax, lines, quantity, curve):
         title += ", pulses cut off"
     ax.set_title(title, **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
@@ -226,7 +226,7 @@ def motion_figure(
         spare[0].legend(*legend_of(panels), loc="center left", fontsize=10, frameon=False)
     else:
         legend_below(figure, axes, min(3, len(lines)), 9)
-    title = title_of(lines[0].plan.task) if title is None else title
+    title = title_of_picture(lines[0].plan.task) if title is None else title
     if title:
         figure.suptitle(fill(title, _LETTERS * columns), fontsize=12)
     return figure
@@ -272,7 +272,7 @@ def _figure_of_joints(
         last[len(below)].legend(*entries, loc="center left", fontsize=10, frameon=False)
     else:
         figure.legend(*entries, loc="outside lower center", ncols=3, fontsize=9, frameon=False)
-    title = title_of(task, limits=False) if title is None else title
+    title = title_of_picture(task) if title is None else title
     if title:
         figure.suptitle(fill(title, _LETTERS * columns), fontsize=12)
     return figure
@@ -343,14 +343,17 @@ def limits_in_sight(
     ]  # fmt: skip
 
 
-def _cut_off_pulses(ax: Axes, lines: Sequence[Line], quantity: str) -> bool:
+def _cut_off_pulses(
+    ax: Axes, lines: Sequence[Line], quantity: str, curve: int | None = None
+) -> bool:
     """Cut off a floor's short pulses, a thousand times all other values; whether there are some."""
     if not any(isinstance(line.plan, Floor) for line in lines):
         return False
     peak = usual = 0.0
     for line in lines:
         evenly = np.linspace(0.0, line.plan.task.duration, 2001)
-        for values in np.abs(curves(line.plan, quantity)):
+        shown = curves(line.plan, quantity)
+        for values in np.abs(shown if curve is None else [shown[curve]]):
             on_the_way = np.interp(evenly, line.plan.trajectory.time, values)
             peak = max(peak, float(values.max()))
             usual = max(usual, float(np.quantile(on_the_way, _SHOWN)))

@@ -132,9 +132,15 @@ def energy_words(task: PointToPoint) -> list[str]:
     return [] if task.energy == ABSOLUTE_POWER else [f"energy {task.energy.label}"]
 
 
-def title_of(task: PointToPoint, *, limits: bool = True) -> str:
+def title_of(task: PointToPoint) -> str:
     """A task in a line: its plant and move; its limits where it has any."""
-    return ", ".join([moved(task), move_of(task), *(limit_words(task) if limits else [])])
+    return ", ".join([moved(task), move_of(task), *limit_words(task)])
+
+
+def title_of_picture(task: PointToPoint) -> str:
+    """The same, without the limits of several joints: a line would not hold them."""
+    several = len(task.plant.joint_names) > 1
+    return ", ".join([moved(task), move_of(task)]) if several else title_of(task)
 
 
 def limit_words(task: PointToPoint) -> list[str]:
