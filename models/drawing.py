@@ -1,4 +1,4 @@
-"""How a structure looks from above, in metres: for pictures, no equation of motion uses this."""
+"""How a structure looks, in metres: for pictures, no equation of motion uses this."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TIP_SLOPE: float = mode_shape(_FIRST, 1.0)[1]
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """One part of a structure, seen from above.
+    """One part of a structure, as it is seen.
 
     Attributes
     ----------
@@ -30,11 +30,14 @@ class Body:
         The line through its length [m]; a single point stands for a disc, as of a hub.
     rigid, tip : bool
         Whether it does not bend; whether its last point is a tip, whose path is drawn.
+    ground : bool
+        Whether it is the floor, or a shadow on it, which is drawn thin.
     """
 
     points: Array
     rigid: bool = False
     tip: bool = False
+    ground: bool = False
 
 
 def rigid_link(

@@ -79,6 +79,8 @@ class Plant(ABC):
     path_range: ClassVar[tuple[float, float] | None] = None
     """Least and largest joint angle, or place on the path, that the equations are made for; None
     where they hold at any. A move must begin and end within it."""
+    in_space: ClassVar[bool] = False
+    """Whether its `structure` is seen from the side, in space; else from above."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}

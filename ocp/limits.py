@@ -209,10 +209,11 @@ class Shares:
         return shares
 
     def __str__(self) -> str:
-        words = (
-            f"{bound.name} {_ends(bound.lower, bound.upper)} {self.unit}" for bound in self.bounds
-        )
-        return ", ".join(words)
+        names = dict[str, list[str]]()
+        for bound in self.bounds:
+            names.setdefault(_ends(bound.lower, bound.upper), []).append(bound.name)
+        words = (f"{', '.join(joints)} {ends} {self.unit}" for ends, joints in names.items())
+        return "; ".join(words)
 
 
 def sides_of(bounds: Sides) -> tuple[float, float]:

@@ -14,11 +14,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.models.joint_motion import Array
+from quietarm.models.robot.cartesian import Pose, kinematics_of, straight_positions
 from quietarm.models.robot.files import read_text, read_yaml
 from quietarm.models.robot.piecewise import NoFitError, Piecewise, fit, interpolate
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
+
+    from quietarm.models.robot.robot import Robot
 
 BEYOND = 0.1
 """So much of a path is added at its ends, where a motion overshoots."""
@@ -36,7 +39,7 @@ _BACK = -0.95
 class GeometricPath:
     """Positions of the joints along a path, polynomials of s between knots.
 
-    `line`, `through`, `of` and `load` make one.
+    `line`, `cartesian_line`, `through`, `of` and `load` make one.
 
     Parameters
     ----------
@@ -90,6 +93,57 @@ class GeometricPath:
         middle = (ends[0] + ends[1]) / 2
         half = (ends[1] - ends[0]) / 2
         return cls((0.0, 1.0), (tuple(zip(middle, half)),), tuple(joints))
+
+    @classmethod
+    def cartesian_line(
+        cls,
+        robot: Robot,
+        start: ArrayLike,
+        *,
+        to: ArrayLike | None = None,
+        by: ArrayLike | None = None,
+        link: str | None = None,
+    ) -> GeometricPath:
+        """Straight in space for a link of the robot that does not bend, by inverse kinematics.
+
+        The joints follow within 1e-12 rad. Springs do not count: the link of a robot that bends
+        hangs by its sag below the line.
+
+        Parameters
+        ----------
+        robot : Robot
+            Whose link moves.
+        start : array_like
+            Positions of its joints at the start [rad or m]; they tell the elbow's side, too.
+        to : array_like, optional
+            Where the link goes, seen from the ground: x, y, z [m], or these and roll, pitch, yaw
+            [rad], as in a URDF. Without these the link does not turn.
+        by : array_like, optional
+            In place of `to`: the way x, y, z [m], along the ground's axes; the link does not turn.
+        link : str, optional
+            By default the one that carries the beam, or else the tip.
+
+        Raises
+        ------
+        ValueError
+            When the line has no length, is out of reach or meets a singular posture.
+        """
+        positions = _row("start of the line", start)
+        if len(positions) != len(robot.joints):
+            raise ValueError(
+                f"start of the line has {len(positions)} positions, and the robot drives "
+                f"{len(robot.joints)} joints; give one of each"
+            )
+        if (to is None) == (by is None):
+            raise ValueError("a line has to end somewhere; give either to=, a pose, or by=, a way")
+        kinematics = kinematics_of(robot, link)
+        before = kinematics.pose(positions)
+        if by is not None:
+            end = before.moved(_numbers("by", by, (3,), "x, y, z [m]"))
+        else:
+            pose = _numbers("to", to, (3, 6), "x, y, z [m], or these and roll, pitch, yaw [rad]")
+            end = Pose.of(pose, before)
+        return cls.of(straight_positions(kinematics, positions, end), joints=robot.joints)
 
     @classmethod
     def through(
@@ -295,6 +349,14 @@ def _row(name: str, values: ArrayLike) -> Array:
         row = np.zeros((0, 0))
     if row.ndim != 1 or not len(row) or not np.all(np.isfinite(row)):
         raise ValueError(f"{name} is {values!r}; give a finite number for each joint")
+    return row
+
+
+def _numbers(name: str, values: Any, counts: tuple[int, ...], wanted: str) -> Array:
+    """A row of as many numbers as one of the counts."""
+    row = _row(f"{name} of the line", values)
+    if len(row) not in counts:
+        raise ValueError(f"{name} of the line has {len(row)} numbers; give {wanted}")
     return row
 
 

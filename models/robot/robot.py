@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from quietarm.models.checks import finite, has_no, not_negative, positive, whole
+from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
 from quietarm.models.plant import Plant, content
 from quietarm.models.robot.beam import Beam
@@ -23,6 +24,7 @@ from quietarm.models.robot.mechanism import BEAM_END, Mechanism, build_mechanism
 from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
 from quietarm.models.robot.path import GeometricPath
 from quietarm.models.robot.robot_file import read_robot
+from quietarm.models.robot.stick_figure import stick_figure_of
 from quietarm.models.robot.tables import Tables, reach, tables_of
 from quietarm.models.robot.urdf import Urdf, dynamics_of, read_urdf
 
@@ -343,6 +345,7 @@ class RobotOnPath(Plant):
 
     name: ClassVar[str] = "robot"
     path_range: ClassVar[tuple[float, float] | None] = reach()
+    in_space: ClassVar[bool] = True
 
     robot: Robot = content("what moves")  # noqa: RUF009
     path: GeometricPath = content("where its joints go")  # noqa: RUF009
@@ -463,6 +466,10 @@ class RobotOnPath(Plant):
         """Displacements of the tip from its place at rest, in its own frame [m]."""
         rows = self.tables.at(path.angle).values(self.tables.tips)
         return [_sum(list(zip(row, W))) + 0 * path.angle for row in rows]
+
+    def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
+        """The robot in space at a place of its path, as a stick figure."""
+        return stick_figure_of(self).bodies(angle, tips)
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
         """Their rates [m/s]."""

@@ -29,7 +29,7 @@ from quietarm.studies.cli.quantities import (
     parse_parameters,
     single_values,
 )
-from quietarm.studies.cli.robots import read_robot_task
+from quietarm.studies.cli.robots import LINE_NAMES, OF_ROBOT, read_robot_task
 from quietarm.studies.identify import Identified
 from quietarm.studies.reading.profiles import profile_of
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, MoveGrid
@@ -130,7 +130,8 @@ class Given:
         if isinstance(kind, Robot):
             return self._read_robot(kind, **known)
         if self._context.command.name != "evaluate":  # which has recorded paths
-            self.refuse(["path"], "is for a robot, whose file is PLANT, as ur5.yaml")
+            self.refuse(["path"], OF_ROBOT)
+        self.refuse(LINE_NAMES, OF_ROBOT)
         parameters = self._parameters_of(kind)
         plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
         uncertainty = build_uncertainty(kind, self.errors, parameters)
@@ -157,11 +158,13 @@ class Given:
         return MoveGrid(task, tuple(axes))
 
     def _read_robot(self, robot: Robot, **known: float) -> MoveGrid:
-        """The task of a robot along its path, without axes."""
+        """The task of a robot along its path, and an axis where there are several durations."""
         text: str | None = self._context.params["duration"]
         duration = known.get("duration")
         if duration is None and text is None:
             raise click.UsageError("Missing option '--duration'. Give it as --duration 0.8")
-        if duration is None:
-            (duration,) = parse_of_plant("duration", str(text), "rotary", "m")
-        return MoveGrid(read_robot_task(self, robot, duration), ())
+        durations: tuple[float, ...] = (duration,) if duration is not None else ()
+        if not durations:
+            durations = parse_of_plant("duration", str(text), "rotary", "m")
+        axes = (Axis("duration", durations, "s"),) if len(durations) > 1 else ()
+        return MoveGrid(read_robot_task(self, robot, max(durations)), axes)

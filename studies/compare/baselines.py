@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from quietarm.models import JointMotion
 from quietarm.ocp import Candidate, Plan, PointToPoint, evaluate_coefficients, shaped_cycloid
 from quietarm.ocp.checks import install, several, takes, unknown
+from quietarm.ocp.limits import Limit, Shares
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS, Impulses, convolved
 from quietarm.ocp.simulation.free_vibration import FreeVibration
@@ -20,6 +22,12 @@ BASELINES = (CYCLOID, *SHAPERS, RUCKIG, *(f"{name}-{RUCKIG}" for name in SHAPERS
 ALL = "all"
 _SHORTEST = 1e-9
 """Pieces of a motion that are shorter [s] are none."""
+_PLACES = 21
+"""Of a path, at which it is seen whether it is straight."""
+_STRAIGHT = 1e-9
+"""Curvature of a straight path, as a share of its slope."""
+_LEAST_SHARE = 0.02
+"""Share of the duration that a shaper has to leave for the motion that it shapes."""
 
 
 def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
@@ -80,7 +88,7 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
     free = (-np.inf, np.inf)
     request.current_position = [task.start]
     request.target_position = [task.target]
-    bounds = {limit.name: (limit.lower, limit.upper) for limit in task.limits}
+    bounds = _bounds_along(task)
     slowest, fastest = bounds.get("speed", free)
     request.min_velocity = [slowest]
     request.max_velocity = [fastest]
@@ -102,6 +110,42 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
     there = lengths > _SHORTEST
     times = np.concatenate([[0.0], np.cumsum(lengths[there])])
     return FreeMotion(times, np.array(profile.a)[:-1][there], np.array(profile.j)[there])
+
+
+def _bounds_along(task: PointToPoint) -> dict[str, tuple[float, float]]:
+    """Least and largest speed, acceleration and jerk of the motion along the path.
+
+    Several joints move in phase: the joint that is nearest to its limit counts. ValueError where
+    their path is curved, so that these would not follow.
+    """
+    joints = task.plant.joints(JointMotion(np.linspace(task.start, task.target, _PLACES), 1.0, 0.0))
+    slopes = [np.broadcast_to(joint.speed, _PLACES) for joint in joints]
+    bends = [np.broadcast_to(joint.acceleration, _PLACES) for joint in joints]
+    if np.abs(bends).max() > _STRAIGHT * np.abs(slopes).max():
+        raise ValueError(
+            "ruckig goes straight in joint space, and the path of the plan is curved; compare it "
+            "with cycloid and shapers"
+        )
+    along = dict[str, tuple[float, float]]()
+    for limit in task.limits:
+        least = -np.inf
+        most = np.inf
+        for joint, lower, upper in _joint_bounds(limit, len(joints)):
+            slope = float(slopes[joint][0])
+            if slope:
+                ends = sorted((lower / slope, upper / slope))
+                least = max(least, ends[0])
+                most = min(most, ends[1])
+        along[limit.name] = (least, most)
+    return along
+
+
+def _joint_bounds(limit: Limit, joints: int) -> list[tuple[int, float, float]]:
+    """Number of the joint, least and largest value, of each joint that is limited."""
+    values = limit.quantity.values
+    if isinstance(values, Shares):
+        return [(bound.place, bound.lower, bound.upper) for bound in values.bounds]
+    return [(joint, limit.lower, limit.upper) for joint in range(joints)]
 
 
 def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:

@@ -23,7 +23,7 @@ from quietarm.studies.compare.judged_motions import (
     refuse_other_moves,
 )
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import title_of, window_words
+from quietarm.studies.report.words import title_of, title_of_picture, unit_of_way, window_words
 from quietarm.studies.tips import tip_scale
 
 _WHY = "why there is none"
@@ -173,7 +173,7 @@ def plans_report(
             "title": title_of(task),
             "shown": shown(table),
             "unsealed": unsealed,
-            "remarks": remarks(motions, joint_unit("rad", joint)),
+            "remarks": remarks(motions, unit_of_way(task.plant)),
             "errors": list(ranges),
             "window": window_words(
                 next((motion.window for motion in motions if motion.window), task.residual_window)
@@ -185,7 +185,7 @@ def plans_report(
         {"motions": table},
         {
             "motions.png": partial(
-                figures.motions_figure, motions, title_of(task), task.plant.tip_unit
+                figures.motions_figure, motions, title_of_picture(task), task.plant.tip_unit
             )
         },
     )

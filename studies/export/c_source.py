@@ -8,7 +8,8 @@ from collections.abc import Iterable
 import casadi as ca
 import numpy as np
 
-from quietarm.models.joint_motion import joint_unit
+from quietarm.models import Plant
+from quietarm.models.joint_motion import JointMotion, joint_unit
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.report.templates import templates
@@ -49,7 +50,15 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         figures = moves.between().words
         figures += f", residuals {window_words(task.residual_window)}"
     move = dict(zip(OF_MOVES, map(repr, task.move)))
-    helpers, statements = _path_in_c(moves.profile)
+    plant = task.plant
+    names = plant.joint_names if len(plant.joint_names) > 1 else ()
+    if names and between is not None:
+        raise ValueError(
+            "C of the moves of a sweep is of one joint, and these have "
+            f"{len(names)}; export their plans one by one"
+        )
+    helpers, statements = _path_in_c(moves.profile, plant)
+    ends = [_positions(plant, place) for place in (task.start, task.target)] if names else []
     texts = templates(keep_trailing_newline=True)
     texts.filters["row"] = _row
     header, source = (
@@ -59,26 +68,33 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
             unit=joint_unit("rad", task.plant.joint), axes=axes, between=between, most=max(ORDERS),
             move=move | {axis.name: axis.name for axis in axes if axis.name in move},
             coefficients=() if between else moves.coefficients, helpers=helpers,
-            statements=statements, no_plan=np.nan_to_num,
+            statements=statements, no_plan=np.nan_to_num, joints=names, ends=ends,
         )
         for kind in "hc"
     )  # fmt: skip
     return header, source
 
 
-def _path_in_c(profile: JointProfile) -> tuple[list[str], str]:
-    """Functions that are called, and the statements of the joint's path, by CasADi's generator."""
+def _path_in_c(profile: JointProfile, plant: Plant) -> tuple[list[str], str]:
+    """Functions that are called, and the statements of the joints' path, by CasADi's generator."""
     fraction = ca.SX.sym("t")
     a = ca.SX.sym("a", profile.size)
     move = ca.SX.sym("move", 3)
-    joint = profile.motion(ca.vertsplit(a), fraction, *ca.vertsplit(move), jerk=False)
-    results = ca.densify(ca.vertcat(joint.angle, joint.speed, joint.acceleration))
+    path = profile.motion(ca.vertsplit(a), fraction, *ca.vertsplit(move), jerk=False)
+    motions = plant.joints(path)
+    orders = zip(*((joint.angle, joint.speed, joint.acceleration) for joint in motions))
+    results = ca.densify(ca.vertcat(*(value for order in orders for value in order)))
     generator = ca.CodeGenerator("path", {"with_export": False})
     generator.add(ca.Function("path", [fraction, a, move], [results], {"cse": True}))
     text = generator.dump().replace("casadi_real", "double")
     match = _STATEMENTS.search(text)
     assert match is not None
     return _HELPER.findall(text), match[1]
+
+
+def _positions(plant: Plant, place: float) -> list[float]:
+    """Where the joints rest at a place of the path."""
+    return [float(joint.angle) for joint in plant.joints(JointMotion(place, 0.0, 0.0))]
 
 
 def _row(values: Iterable[float]) -> str:

@@ -23,9 +23,15 @@ from quietarm.ocp.files import write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, WIDTHS, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
 from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
-from quietarm.studies.figures.structure import Structure, structures_of
+from quietarm.studies.figures.structure import GROUND, Structure, structures_of
 from quietarm.studies.report.saving import as_written
-from quietarm.studies.report.words import move_of, moved, residual_words, title_of, window_words
+from quietarm.studies.report.words import (
+    move_of,
+    moved,
+    residual_words,
+    title_of_picture,
+    window_words,
+)
 
 _COLUMNS = {1: 1, 2: 2, 4: 2}
 """Panels in a row, by how many there are; else 3."""
@@ -204,7 +210,7 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     inches = _PANEL * max(columns, 2)
     same = len({structure.line.plan.task for structure in structures}) == 1
     titles = [_title(structure, same, int(_LETTERS * inches / columns)) for structure in structures]
-    words = title_of(structures[0].line.plan.task) if same else "several moves on one clock"
+    words = title_of_picture(structures[0].line.plan.task) if same else "several moves on one clock"
     heading = wrap(words, int(_LETTERS * inches) - 24)  # the clock stands beside it
     above = _LINE * len(heading) + rows * (_HIGH + _LINE * max(map(len, titles)))
     figure = new_figure(inches, above + _CURVES_HIGH)
@@ -257,16 +263,20 @@ def _draw_structure(ax: Axes, structure: Structure) -> Iterator[Update]:
     ax.tick_params(labelsize=8)
     ax.autoscale_view()
     ax.set_aspect("equal", adjustable="datalim")
+    if structure.line.plan.task.plant.in_space:  # lengths along the axes are not those of the robot
+        ax.set(xticks=[], yticks=[])
 
     def part(points: Sequence[NDArray[np.float64]] | NDArray[np.float64], **look: Any) -> Update:
         (artist,) = ax.plot([], [], solid_capstyle="round", **look)
         return lambda k: artist.set_data(*points[k].T)
 
-    for points, _, _ in structure.unbent:
+    for points, colour, _ in structure.unbent:
+        if colour == GROUND:
+            continue
         yield part(points, color="0.55", linewidth=1.0, linestyle="--")
-    arrived = int(np.searchsorted(structure.times, structure.line.plan.task.duration))
+    begun = int(np.searchsorted(structure.times, structure.trail_begins))
     for path in structure.paths:
-        trail = [path[arrived : k + 1] for k in range(len(path))]
+        trail = [path[begun : k + 1] for k in range(len(path))]
         yield part(trail, color=structure.line.colour, linewidth=2.0, alpha=0.5)
     for points, colour, width in structure.bent:
         disc = np.ptp(points[0], axis=0).max() < _DISC

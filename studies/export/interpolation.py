@@ -67,6 +67,8 @@ def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POIN
 def residual_between(plan: Plan, rate: float, derivatives: int) -> float:
     """The residual of a motion interpolated between points of a plan, by CVODES [m].
 
+    Of several joints the place on their path is interpolated: on a straight path as the joints are.
+
     Parameters
     ----------
     plan : Plan
@@ -80,7 +82,8 @@ def residual_between(plan: Plan, rate: float, derivatives: int) -> float:
     from scipy.interpolate import BPoly, CubicSpline, PPoly  # slow to load
 
     times = times_of(plan, rate)
-    joint = plan.sampled(times).joint[:, :derivatives]
+    along = plan.sampled(times).sample.path
+    joint = np.column_stack(along[:derivatives])
     if derivatives == 1:
         pieces = CubicSpline(times, joint[:, 0], bc_type="clamped")
     else:

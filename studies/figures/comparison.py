@@ -26,7 +26,7 @@ from quietarm.studies.figures.axes import (
     residual_label,
 )
 from quietarm.studies.figures.looks import Look, look
-from quietarm.studies.report.words import title_of
+from quietarm.studies.report.words import title_of_picture
 from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def comparison_figure(comparison: Comparison, known: Sequence[KnownPoint] = ()) 
         title="Several seeds: the line is what half of them reach\n"
         "(of two, the better one), the band best to worst" if several else None,
     )  # fmt: skip
-    figure.suptitle(title_of(comparison.task), fontsize=12)
+    figure.suptitle(title_of_picture(comparison.task), fontsize=12)
     return figure
 
 

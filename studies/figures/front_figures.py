@@ -26,7 +26,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.looks import BLUE, RED, look
 from quietarm.studies.report.methods import is_gradient, label_of
-from quietarm.studies.report.words import spread_words, title_of
+from quietarm.studies.report.words import spread_words, title_of_picture
 from quietarm.studies.tips import tip_scale, tip_words
 
 _MOST_NAMED = 10
@@ -221,7 +221,7 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     gradient = is_gradient(method)
     panels = 1 + (not gradient and all(front.history for front in fronts))
     panels += panels > 1 and len(fronts) > 1
-    title = f"{label_of(method)}: {title_of(fronts[0].task)}"
+    title = f"{label_of(method)}: {title_of_picture(fronts[0].task)}"
     figure, axes = side_by_side(panels, title, width=4.2 if panels > 1 else 6.4)
     draw_fronts(fronts, axes[0], linear=gradient)
     tip_unit = fronts[0].task.plant.tip_unit
@@ -242,7 +242,7 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """Draw a front before and after polishing, and the energy that this saved point by point."""
     name = label_of(polish.front.record.method)
-    figure, (ax, saved) = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
+    figure, (ax, saved) = side_by_side(2, f"{name}: {title_of_picture(before.task)}", width=5.6)
     draw_fronts([before, polish.front], ax, ("before", "after"))
     tip_unit = before.task.plant.tip_unit
     name_objectives(ax, tip_unit, before.task.residual_window)

@@ -26,7 +26,7 @@ from quietarm.studies.figures.axes import (
     new_figure,
 )
 from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
-from quietarm.studies.report.words import raised, title_of
+from quietarm.studies.report.words import raised, title_of_picture
 from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
@@ -49,6 +49,8 @@ _ALWAYS_DRAWN = (
     *(name for name, quantity in QUANTITIES.items() if quantity.always_drawn),
 )
 """These are panels of every motion; others are where a task limits them."""
+LETTERS_A_PANEL = 48
+"""Of a title, that fit above each column of panels."""
 PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
@@ -108,25 +110,31 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     """
     if quantity not in QUANTITIES_DRAWN:
         raise ValueError(unknown("quantity", quantity, QUANTITIES_DRAWN))
-    ax = axes_or_new(ax)
-    lines = lines_of(motions)
+    return _draw(lines_of(motions), quantity, axes_or_new(ax))
+
+
+def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = None) -> Axes:
+    """Draw all curves of a quantity, or the one of a joint or a tip by its number."""
     plant = lines[0].plan.task.plant
     drawn = list[Array]()
     title = heading(quantity, plant.joint, plant.tip_unit)
     for line in lines:
-        drawn += curves(line.plan, quantity)
         other_styles = [style for style in (":", "-.", "--") if style != line.style]
         for i, values in enumerate(curves(line.plan, quantity)):
-            style = other_styles[(i - 1) % len(other_styles)] if i else line.style
-            label = line.label + _which(plant, quantity, i)
+            if curve not in (None, i):
+                continue
+            alone = i == 0 or curve is not None
+            style = line.style if alone else other_styles[(i - 1) % len(other_styles)]
+            label = line.label + ("" if curve is not None else _which(plant, quantity, i))
+            drawn.append(values)
             ax.plot(line.plan.trajectory.time, values, color=line.colour, linestyle=style,
                     linewidth=1.6, label=label)  # fmt: skip
     for duration in {line.plan.task.duration for line in lines}:
         ax.axvline(duration, color="0.6", linewidth=0.8, linestyle="--")
-    for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn))):
+    for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn), curve)):
         label = "_" if k else "limit"  # once in the legend
         ax.axhline(level, color="black", linewidth=1.1, linestyle=":", label=label)
-    if _cut_off_pulses(ax, lines, quantity):
+    if _cut_off_pulses(ax, lines, quantity, curve):
         title += ", pulses cut off"
     ax.set_title(title, **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
@@ -185,7 +193,8 @@ def motion_figure(
     Returns
     -------
     matplotlib.figure.Figure
-        The panels, lettered where there are several, with one legend.
+        The panels, lettered where there are several, with one legend. Several joints stand above
+        each other, a row each, and the tips below them.
 
     Raises
     ------
@@ -193,11 +202,12 @@ def motion_figure(
         As `draw_quantity`.
     """
     # of a title, for each column of panels
-    letters = 48
     lines = lines_of(motions)
     if quantities is None:
         limited = {limit.name for line in lines for limit in line.plan.task.limits}
         quantities = [name for name in QUANTITIES_DRAWN if name in limited or name in _ALWAYS_DRAWN]
+    if len(lines[0].plan.task.plant.joint_names) > 1 and len(quantities) > 1:
+        return _figure_of_joints(lines, title, quantities)
     count = len(quantities)
     columns = min(count, 2) if count <= 4 else 3
     rows = -(-count // columns)
@@ -218,10 +228,67 @@ def motion_figure(
         spare[0].legend(*legend_of(panels), loc="center left", fontsize=10, frameon=False)
     else:
         legend_below(figure, axes, min(3, len(lines)), 9)
-    title = title_of(lines[0].plan.task) if title is None else title
+    title = title_of_picture(lines[0].plan.task) if title is None else title
     if title:
-        figure.suptitle(fill(title, letters * columns), fontsize=12)
+        figure.suptitle(fill(title, LETTERS_A_PANEL * columns), fontsize=12)
     return figure
+
+
+def _figure_of_joints(
+    lines: Sequence[Line], title: str | None, quantities: Sequence[str]
+) -> Figure:
+    """A row for each joint with what it does, and a last one with each tip, and with the power."""
+    task = lines[0].plan.task
+    names = task.plant.joint_names
+    of_joints = [name for name in quantities if name == "angle" or QUANTITIES[name].of_joints]
+    others = [name for name in quantities if name not in of_joints]
+    below = [(name, curve) for name in others for curve in range(len(curves(lines[0].plan, name)))]
+    columns = max(len(of_joints), min(len(below), _MOST_COLUMNS))
+    last_rows = -(-len(below) // columns)
+    figure = new_figure(0.8 + 3.2 * columns, 1.0 + 1.3 * len(names) + 2.2 * last_rows)
+    heights = [1.0] * len(names) + [1.6] * last_rows
+    axes = figure.subplots(len(heights), columns, sharex=True, squeeze=False, height_ratios=heights)
+    for joint, (name, row) in enumerate(zip(names, axes)):
+        for quantity, ax in zip(of_joints, row):
+            _draw(lines, quantity, ax, joint).set(xlabel="")
+            ax.grid(alpha=0.25)
+            if joint:
+                ax.set_title("", loc="left")
+        row[0].set_ylabel(_in_two_lines(name), fontsize=9)
+    spare = [ax for row in axes[: len(names)] for ax in row[len(of_joints) :]]
+    last = list(axes[len(names) :].flat)
+    for (quantity, curve), ax in zip(below, last):
+        _draw(lines, quantity, ax, curve).grid(alpha=0.25)
+        if sum(name == quantity for name, _ in below) > 1:
+            ax.set_title(f"{ax.get_title(loc='left')}, tip {curve + 1}", **TITLE)
+        ax.tick_params(labelbottom=True)
+    spare += last[len(below) :]
+    for ax in spare:
+        ax.axis("off")
+        ax.margins(x=0)  # time is shared
+    for ax in axes[len(names) - 1, len(below) : len(of_joints)]:  # nothing stands below it
+        ax.tick_params(labelbottom=True)
+        ax.set_xlabel("time [s]  (dashed: arrival)")
+    entries = legend_of(list(axes.flat))
+    if last[len(below) :]:
+        last[len(below)].legend(*entries, loc="center left", fontsize=10, frameon=False)
+    else:
+        figure.legend(*entries, loc="outside lower center", ncols=3, fontsize=9, frameon=False)
+    title = title_of_picture(task) if title is None else title
+    if title:
+        figure.suptitle(fill(title, LETTERS_A_PANEL * columns), fontsize=12)
+    return figure
+
+
+_MOST_COLUMNS = 4
+"""Of tips and the power."""
+
+
+def _in_two_lines(name: str) -> str:
+    """A joint's name beside its panels, broken near its middle."""
+    words = name.split("_")
+    half = -(-len(words) // 2)
+    return "\n".join(filter(None, ["_".join(words[:half]), "_".join(words[half:])]))
 
 
 @takes(floor=Floor, plan=Plan)
@@ -256,8 +323,13 @@ def lines_of(motions: Motions) -> list[Line]:
     ]
 
 
-def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list[float]:
-    """The limits of a quantity that its values come near, in the unit that is shown."""
+def limits_in_sight(
+    lines: Sequence[Line], quantity: str, values: Array, curve: int | None = None
+) -> list[float]:
+    """The limits of a quantity that its values come near, in the unit that is shown.
+
+    Of limits by joint those of all, or of the joint of a curve.
+    """
     # a limit is drawn where a motion comes to this share of it; else it would flatten the motion
     in_sight = 0.4
     limits = [line.plan.task.limit_of(quantity) for line in lines]
@@ -265,7 +337,9 @@ def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list
     bounds = set[float]()
     for limit in limits:
         if limit is not None and isinstance(limit.quantity.values, Shares):
-            by_joint = limit.quantity.values.bounds
+            by_joint = [
+                bound for bound in limit.quantity.values.bounds if curve in (None, bound.place)
+            ]
             bounds |= {level for bound in by_joint for level in (bound.lower, bound.upper)}
         elif limit is not None:
             bounds |= {limit.lower, limit.upper}
@@ -275,14 +349,17 @@ def limits_in_sight(lines: Sequence[Line], quantity: str, values: Array) -> list
     ]  # fmt: skip
 
 
-def _cut_off_pulses(ax: Axes, lines: Sequence[Line], quantity: str) -> bool:
+def _cut_off_pulses(
+    ax: Axes, lines: Sequence[Line], quantity: str, curve: int | None = None
+) -> bool:
     """Cut off a floor's short pulses, a thousand times all other values; whether there are some."""
     if not any(isinstance(line.plan, Floor) for line in lines):
         return False
     peak = usual = 0.0
     for line in lines:
         evenly = np.linspace(0.0, line.plan.task.duration, 2001)
-        for values in np.abs(curves(line.plan, quantity)):
+        shown = curves(line.plan, quantity)
+        for values in np.abs(shown if curve is None else [shown[curve]]):
             on_the_way = np.interp(evenly, line.plan.trajectory.time, values)
             peak = max(peak, float(values.max()))
             usual = max(usual, float(np.quantile(on_the_way, _SHOWN)))

@@ -16,6 +16,8 @@ from quietarm.studies.figures.motion import Line
 
 Array = NDArray[np.float64]
 INK = "#404040"
+GROUND = "0.8"
+"""Of the floor, and of shadows on it."""
 _SCALES = (1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0)
 _BENT = 0.2
 """Share of a structure's size up to which deflections are drawn larger than they are."""
@@ -62,6 +64,12 @@ class Structure:
         return [part.points[:, -1] for part, body in zip(self.bent, first) if body.tip]
 
     @property
+    def trail_begins(self) -> float:
+        """From when on paths of tips are drawn [s]: in space from the start, else on arrival."""
+        task = self.line.plan.task
+        return 0.0 if task.plant.in_space else task.duration
+
+    @property
     def corners(self) -> Array:
         """Least and largest coordinates of all that is drawn [m], shape (2, 2)."""
         points = np.vstack([part.points.reshape(-1, 2) for part in (*self.bent, *self.unbent)])
@@ -86,7 +94,7 @@ class Structure:
     def _bodies(self, tips: Array) -> list[list[Body]]:
         """The bodies at every frame."""
         plant = self.line.plan.task.plant
-        angles = self._at_frames(self.trajectory.joint[:, :1])[:, 0]
+        angles = self._at_frames(np.column_stack([self.trajectory.sample.path.angle]))[:, 0]
         return [
             list(plant.structure(float(angle), row.tolist())) for angle, row in zip(angles, tips)
         ]
@@ -96,6 +104,9 @@ class Structure:
         for bodies in zip(*self._bodies(tips)):
             points = np.array([bent.points for bent in bodies])
             body = bodies[0]
+            if body.ground:
+                parts.append(Part(points, GROUND, 1.5))
+                continue
             if points.shape[1] == 1:
                 parts.append(Part(points + _DOT, INK, 16.0))
                 continue

@@ -25,7 +25,13 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
 from quietarm.ocp.planning.plan_along import EXCESS
 from quietarm.ocp.record import AGREEMENT, REST
-from quietarm.studies.report.words import move_of, moved, residual_place, state_words
+from quietarm.studies.report.words import (
+    move_of,
+    moved,
+    residual_place,
+    state_words,
+    unit_of_way,
+)
 from quietarm.studies.tips import tip_words
 
 if TYPE_CHECKING:
@@ -229,8 +235,8 @@ def _tip(task: PointToPoint, displacement: float) -> str:
 
 
 def _way(size: float, task: PointToPoint) -> str:
-    """A way of the joint in its unit."""
-    return f"{size:.3g} {joint_unit('rad', task.plant.joint)}"
+    """A way of the joint in its unit; of several joints a share of their path."""
+    return f"{size:.3g} {unit_of_way(task.plant)}"
 
 
 def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> str:

@@ -6,7 +6,7 @@ from math import degrees, isfinite
 from typing import TYPE_CHECKING
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR
+from quietarm.models.joint_motion import LINEAR, joint_unit
 from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.record import REST
@@ -102,9 +102,15 @@ def move_of(task: PointToPoint) -> str:
 def ends_words(task: PointToPoint) -> str:
     """From where to where: "0 to 30 deg", of several joints the places on their path."""
     if len(task.plant.joint_names) > 1:
-        return f"{task.start:.6g} to {task.target:.6g} of the path"
+        whole = (task.start, task.target) == (0.0, 1.0)
+        return "along its path" if whole else f"{task.start:.6g} to {task.target:.6g} of the path"
     factor, unit = (1e3, "mm") if task.plant.joint == LINEAR else (degrees(1.0), "deg")
     return f"{factor * task.start:.6g} to {factor * task.target:.6g} {unit}"
+
+
+def unit_of_way(plant: Plant) -> str:
+    """What a way is in: "rad" or "m" of a joint, "of the path" of several."""
+    return "of the path" if len(plant.joint_names) > 1 else joint_unit("rad", plant.joint)
 
 
 def state_words(state: ModalState, tip_unit: str) -> str:
@@ -123,6 +129,12 @@ def energy_words(task: PointToPoint) -> list[str]:
 def title_of(task: PointToPoint) -> str:
     """A task in a line: its plant and move; its limits where it has any."""
     return ", ".join([moved(task), move_of(task), *limit_words(task)])
+
+
+def title_of_picture(task: PointToPoint) -> str:
+    """The same, without the limits of several joints: a line would not hold them."""
+    several = len(task.plant.joint_names) > 1
+    return ", ".join([moved(task), move_of(task)]) if several else title_of(task)
 
 
 def limit_words(task: PointToPoint) -> list[str]:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from floors import coarse_floors
 from pages import COMMAND_BLOCKS, PAGES, blocks
+from robots import urdf_of
 
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
@@ -37,6 +38,11 @@ SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
 COUNTS, CRANE, GANTRY = blocks("plants", "python")
+(ROBOT,) = blocks("robots", "python")
+ROBOT_FILES = {
+    block.split(maxsplit=2)[1]: block for block in blocks("robots", "text") if block[0] == "#"
+}
+"""Files that the page of robots shows, by the name in their first line."""
 STARTED = "README-0"
 """The block that is started as it stands; all others, and most of Python, cost no process each."""
 
@@ -150,9 +156,27 @@ def test_a_plant_of_two_joints_takes_what_the_page_says(run_python):
     assert run_python(GANTRY) == f"{joules} J\n"
 
 
+@pytest.fixture
+def robot_files(tmp_path):
+    """The files that the page of robots shows, beside the URDF."""
+    for name, text in ROBOT_FILES.items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "ur5_robot.urdf").write_bytes(urdf_of("ur5_robot.urdf").read_bytes())
+
+
+@pytest.mark.usefixtures("robot_files")
+def test_the_example_of_a_robot_plans_through_its_waypoints(run_python):
+    energy, residual, sag = re.fullmatch(
+        r"(\S+) J, (\S+) mm, \[(.*)\] m\n", run_python(ROBOT)
+    ).groups()
+    assert 20 < float(energy) < 40
+    assert float(residual) == 0.0
+    assert 5e-3 < math.hypot(*map(float, sag.split())) < 30e-3
+
+
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 16
+    assert sum(len(blocks(page, "python")) for page in others) == 17
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "sh", "text"}
 
@@ -214,6 +238,8 @@ CALLED = [name for name in COMMAND_BLOCKS if not name.startswith((STARTED, "expl
 @pytest.mark.slow
 @pytest.mark.parametrize("block", CALLED)
 def test_the_commands_run_one_after_another(follow, block, request):
+    if block.startswith("robots"):
+        request.getfixturevalue("robot_files")
     follow(block)
     if block == "sweeps-0":
         energy = float(request.getfixturevalue("run_python")(CELL).split()[0])

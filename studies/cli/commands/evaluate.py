@@ -15,6 +15,7 @@ from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_opt
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
+    LINE,
     SENSITIVITIES,
     TASK,
     busy,
@@ -41,6 +42,7 @@ def _coefficients(text: str) -> list[float] | Path:
            "motion (.csv, .txt, .npy, .npz, .mat), which gives a front."),
     option("--path", type=INPUT, help="A CSV file with columns such as time_s and angle_deg, in "
            "place of start, target and duration; of a robot its waypoints."),
+    *LINE,
     BOUND,
     option("--evaluations", type=int, help="Candidates that it took to find a file's rows."),
     SENSITIVITIES,

@@ -12,11 +12,11 @@ from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_opt
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
+    ROBOT_PATH,
     SEED,
     SOLVER,
     STARTS,
     TASK,
-    WAYPOINTS,
     YES,
     busy,
     command,
@@ -37,7 +37,7 @@ _SEARCHES = {
 
 
 @command(
-    *TASK, WAYPOINTS,
+    *TASK, *ROBOT_PATH,
     method_option(_METHODS, _SEARCHES, "epsilon",
                   "Least energy at one residual limit after another (epsilon), or the least "
                   "weighted sum for one pair of weights after another."),

@@ -9,7 +9,7 @@ from quietarm.models import Robot, known_plants
 from quietarm.ocp import Front
 from quietarm.studies.cli.files import FOLDER, finish, output_option
 from quietarm.studies.cli.given import Given
-from quietarm.studies.cli.options import ENDS, WAYPOINTS, command
+from quietarm.studies.cli.options import ENDS, ROBOT_PATH, command
 from quietarm.studies.cli.plants import OF_ROBOTS
 from quietarm.studies.cli.robots import path_of
 from quietarm.studies.report.catalogue import KINDS, catalogue_rows
@@ -19,7 +19,7 @@ from quietarm.studies.report.words import counted
 
 @command(
     click.Argument(["names"], nargs=-1, metavar="[plants|problems|methods|NAME|ROBOT.yaml]..."),
-    *ENDS, WAYPOINTS,
+    *ENDS, *ROBOT_PATH,
     output_option({FOLDER: "the reference fronts of the problems"}),
 )  # fmt: skip
 def list_(given: Given) -> None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from quietarm.models import RobotOnPath
 from quietarm.ocp import (
     Floor,
     JointProfile,
@@ -34,18 +35,19 @@ from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
     RESIDUAL_LIMIT,
+    ROBOT_PATH,
     SEED,
     SENSITIVITIES,
     SOLVER,
     STARTS,
     TASK,
-    WAYPOINTS,
     YES,
     busy,
     command,
     option,
     profile_options,
 )
+from quietarm.studies.cli.robots import line_note
 from quietarm.studies.cli.types import INPUT
 from quietarm.studies.reading.profiles import chooses_terms, families
 from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
@@ -61,7 +63,7 @@ _OF_SOLVES = ("starts", "seed", *(param.name or "" for param in SOLVER))
 
 
 @command(
-    *TASK, WAYPOINTS,
+    *TASK, *ROBOT_PATH,
     *profile_options(
         *SHAPERS, *FREE,
         words="; a plain cycloid through an input shaper for the plant's frequencies at the "
@@ -118,6 +120,10 @@ def plan(given: Given) -> None:
             answer = _find_fastest(task, profile, **within, **solves)
         else:
             answer = _find_least_energy(task, profile, starts=given.starts, **within, **solves)
+        if isinstance(task.plant, RobotOnPath):
+            straightness = line_note(given, task.plant)
+            if straightness is not None:
+                answer = replace(answer, notes=[straightness, *answer.notes])
     finish_motion(answer, given.output, sensitivities=given.sensitivities)
 
 

@@ -21,9 +21,9 @@ from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
     METHOD_SETTING,
+    ROBOT_PATH,
     SEED,
     TASK,
-    WAYPOINTS,
     WORKERS,
     YES,
     command,
@@ -50,7 +50,7 @@ _BY_GRADIENT = {
 
 
 @command(
-    *TASK, WAYPOINTS,
+    *TASK, *ROBOT_PATH,
     method_option(PRESETS, _BY_GRADIENT, "nsga2",
                   "The metaheuristic; quietarm list methods has them."),
     *profile_options(), BOUND,

@@ -20,10 +20,10 @@ from quietarm.studies.cli.options import (
     BOUND,
     PART,
     RESIDUAL_LIMIT,
+    ROBOT_PATH,
     SCHEDULER,
     SOLVER,
     TASK,
-    WAYPOINTS,
     WORKERS,
     command,
     counting,
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 @command(
-    *TASK, WAYPOINTS, *profile_options(), BOUND, RESIDUAL_LIMIT, *SOLVER,
+    *TASK, *ROBOT_PATH, *profile_options(), BOUND, RESIDUAL_LIMIT, *SOLVER,
     option("--limit-margin", "margin", type=SHARE, default="0%", help="Share of each limit that "
            "plans leave unused, so that moves between the cells keep it."),
     option("--front", type=click.IntRange(2, 1000), metavar="POINTS",

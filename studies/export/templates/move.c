@@ -12,7 +12,7 @@ static {{ helper }}
 
 {% endfor %}
 /* The path over the share of the duration arg[0], of coefficients arg[1] and of start, target and
-   duration arg[2]: res[0] is angle, speed and acceleration. */
+   duration arg[2]: res[0] is {% if joints %}the joints' positions, speeds and accelerations{% else %}angle, speed and acceleration{% endif %}. */
 static void path(const double **arg, double **res)
 {
 {{ statements }}
@@ -95,6 +95,37 @@ int {{ name }}_plan({{ places }}, double coefficients[{{ size }}])
 static const double coefficients[] = { {{- coefficients | row or "0.0" -}} };
 {% endif %}
 
+{% if joints %}
+/* Where the joints rest before and after the move. */
+static const double start[] = { {{- ends[0] | row -}} };
+static const double target[] = { {{- ends[1] | row -}} };
+
+const char *const {{ name }}_joints[{{ upper }}_JOINTS] = {
+{% for joint in joints %}
+    "{{ joint }}",
+{% endfor %}
+};
+
+void {{ name }}_at(double time, double position[{{ upper }}_JOINTS],
+    double speed[{{ upper }}_JOINTS], double acceleration[{{ upper }}_JOINTS])
+{
+    const double move[] = { {{- moving | join(", ") -}} };
+    double fraction, joint[3 * {{ upper }}_JOINTS];
+    const double *arg[] = { &fraction, coefficients, move };
+    double *res[] = { joint };
+    int i, moves;
+
+    fraction = time / move[2];
+    moves = fraction > 0.0 && fraction < 1.0; /* not where it is no number */
+    if (moves)
+        path(arg, res);
+    for (i = 0; i < {{ upper }}_JOINTS; i++) {
+        position[i] = moves ? joint[i] : fraction >= 1.0 ? target[i] : start[i];
+        speed[i] = moves ? joint[{{ upper }}_JOINTS + i] : 0.0;
+        acceleration[i] = moves ? joint[2 * {{ upper }}_JOINTS + i] : 0.0;
+    }
+}
+{% else %}
 void {{ name }}_at({{ given }}double time,
     double *angle, double *speed, double *acceleration)
 {
@@ -115,3 +146,4 @@ void {{ name }}_at({{ given }}double time,
     *speed = joint[1];
     *acceleration = joint[2];
 }
+{% endif %}

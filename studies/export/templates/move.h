@@ -18,6 +18,16 @@ int {{ name }}_plan({{ places }}, double coefficients[{{ size }}]);
 /* The joint's {{ "angle" if unit == "rad" else "position" }} [{{ unit }}], speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2] on such a move, a time [s]
    after its start. The joint rests at the start before the move, and where a time or the duration is no
    number; at the target after it. */
+{% elif joints %}
+/* How long the move takes [s], how many joints it has, and their names. */
+#define {{ upper }}_DURATION {{ move.duration }}
+#define {{ upper }}_JOINTS {{ joints | length }}
+extern const char *const {{ name }}_joints[{{ upper }}_JOINTS];
+
+/* Positions [{{ unit }}; m of sliding joints], speeds [/s] and accelerations [/s^2] of all joints, a time [s]
+   after the start. They rest at the start before the move, and at a time that is no number; at the target after it. */
+void {{ name }}_at(double time, double position[{{ upper }}_JOINTS],
+    double speed[{{ upper }}_JOINTS], double acceleration[{{ upper }}_JOINTS]);
 {% else %}
 /* How long the move takes [s], and where the joint rests before and after it [{{ unit }}]. */
 #define {{ upper }}_DURATION {{ move.duration }}
@@ -27,7 +37,9 @@ int {{ name }}_plan({{ places }}, double coefficients[{{ size }}]);
 /* The joint's {{ "angle" if unit == "rad" else "position" }} [{{ unit }}], speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2], a time [s] after the start.
    The joint rests at {{ upper }}_START before the move, and at a time that is no number; at {{ upper }}_TARGET after it. */
 {% endif %}
+{% if not joints %}
 void {{ name }}_at({{ given }}double time,
     double *angle, double *speed, double *acceleration);
+{% endif %}
 
 #endif

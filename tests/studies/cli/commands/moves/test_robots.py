@@ -9,6 +9,7 @@ import yaml
 from robots import UR5_JOINTS, urdf_of
 
 import quietarm as qa
+from quietarm.studies.compare import baseline
 
 START = "--start=0,-80deg,97deg,-107deg,-90deg,0"
 TARGET = "--target=80deg,-57deg,69deg,-75deg,-69deg,34deg"
@@ -35,7 +36,7 @@ def test_a_plan_of_a_robot_and_its_files(call):
     outputs = "--output move.json --output move.yaml --output move.csv"
     code, out, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 {outputs}")
     assert code == 0
-    assert "ur5 (6 joints; beam at tool0), 0 to 1 of the path in 1 s" in out
+    assert "ur5 (6 joints; beam at tool0), along its path in 1 s" in out
     assert "at rest (below 0.001 mm) at the worst of 2 tips" in out
     plan = qa.Plan.load("move.json")
     path = plan.task.plant.path
@@ -53,6 +54,95 @@ def test_a_plan_of_a_robot_and_its_files(call):
     assert header[1] == "shoulder_pan_joint_angle_rad"
     assert "wrist_3_joint_torque_Nm" in header
     assert float(rows[-1][1]) == pytest.approx(path(1.0)[0])
+
+
+def test_a_straight_line_in_space(call):
+    """The file has the joints' path, and the answer says how straight the link goes."""
+    line = f"plan ur5_bar.yaml {START} --line-by=200mm,300mm,-100mm --duration 1"
+    code, out, _ = call(f"{line} --output move.json")
+    assert code == 0
+    assert "line: tool0 goes straight within 1e-09 mm" in out
+    assert "at rest (below 0.001 mm)" in out
+    plan = qa.Plan.load("move.json")
+    assert plan.task.plant.path.joints == UR5_JOINTS
+
+
+def test_waypoints_of_another_planner(call):
+    """A JointTrajectory, joints in another order, is followed without its times."""
+    message = {
+        "joint_names": list(reversed(UR5_JOINTS)),
+        "points": [
+            {"positions": [0.0, -1.57, -1.87, 1.7, -1.4, 0.0], "time_from_start": {"sec": 0}},
+            {"positions": [0.2, -1.5, -1.6, 1.5, -1.2, 0.6], "time_from_start": {"sec": 7}},
+            {"positions": [0.6, -1.2, -1.3, 1.2, -1.0, 1.4], "time_from_start": {"sec": 9}},
+        ],
+    }
+    Path("waypoints.yaml").write_text(yaml.safe_dump(message))
+    code, _, _ = call("plan ur5_bar.yaml --path waypoints.yaml --duration 1 --output move.json")
+    assert code == 0
+    path = qa.Plan.load("move.json").task.plant.path
+    assert path(0.0) == pytest.approx([0.0, -1.4, 1.7, -1.87, -1.57, 0.0])
+    assert path(1.0) == pytest.approx([1.4, -1.0, 1.2, -1.3, -1.2, 0.6])
+
+
+def test_a_plan_is_compared_with_shapers_and_ruckig_in_phase(call):
+    """Ruckig's joints keep their own limits, and what it leaves is much."""
+    limits = "--acceleration-limit 14 --speed-limit shoulder_pan_joint=2.6 --terms 6"
+    code, _, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 {limits} --output move.json")
+    assert code == 0
+    code, _, _ = call("compare move.json --baselines cycloid,zvd,ruckig --output compared")
+    assert code == 0
+    with open("compared/motions.csv", newline="") as file:
+        rows = {row["motion"]: row for row in csv.DictReader(file)}
+    residuals = {name: float(row["residual [mm]"]) for name, row in rows.items()}
+    assert residuals["move"] < 1e-3
+    assert min(residuals["zvd"], residuals["ruckig"], residuals["cycloid"]) > 5.0
+    in_phase = baseline("ruckig", qa.Plan.load("move.json").task).motion
+    assert in_phase.peak_speed <= 2.6 * (1 + 1e-6)  # the pan joint turns furthest
+    assert float(rows["ruckig"]["peak acceleration [rad/s^2]"]) <= 14 * (1 + 1e-6)
+
+
+def test_ruckig_does_not_follow_a_curved_path(call):
+    """One line says so, and what else to compare with."""
+    Path("curved.csv").write_text(
+        "0,-1.4,1.7,-1.8,-1.5,0\n0.8,-1.3,1.4,-1.4,-1.3,0\n1.4,-1,1.2,-1.3,-1.2,0.6\n"
+    )
+    line = "plan ur5_bar.yaml --path curved.csv --duration 1 --acceleration-limit 30 --terms 6"
+    assert call(f"{line} --output move.json")[0] == 0
+    code, out, _ = call("compare move.json --baselines ruckig")
+    assert code == 0
+    assert "ruckig goes straight in joint space, and the path of the plan is curved" in " ".join(
+        out.split()
+    )
+
+
+def test_durations_are_swept_and_points_are_searched(call):
+    code, out, _ = call(f"sweep ur5_bar.yaml {ENDS} --duration 0.9,1.0 --output moves.zarr")
+    assert code == 0
+    assert "optimal" in out
+    line = f"search ur5_bar.yaml {ENDS} --duration 1 --bound 0.2 --terms 3"
+    code, out, _ = call(f"{line} --population 6 --generations 2 --output found.json")
+    assert code == 0
+    assert qa.Front.load("found.json").points
+
+
+def test_the_page_of_sliders_is_of_plants_of_one_joint(refused):
+    assert "give it to quietarm plan, evaluate, front or search" in refused("explore ur5_bar.yaml")
+
+
+def test_ways_are_shares_of_the_path_and_have_no_angles(call):
+    """The place on a path goes from 0 to 1, in whatever units the joints are."""
+    line = f"evaluate ur5_bar.yaml {ENDS} --duration 1 --coefficients=0,-3 --output move.json"
+    code, out, _ = call(line)
+    assert code == 0
+    words = " ".join(out.split())
+    assert "along its path in 1 s" in words
+    assert " of the path on the way" in words
+    assert "deg" not in words
+    code, out, _ = call("compare move.json --baselines cycloid")
+    assert code == 0
+    assert "The joint turns back on its way: move by" in " ".join(out.split())
+    assert " of the path" in " ".join(out.split())
 
 
 def test_limits_by_joint_and_of_the_file(call):
@@ -93,6 +183,16 @@ def test_a_robot_is_listed_with_what_was_read(call):
     ("plan ur5_bar.yaml --path none.csv --duration 1", "none.csv cannot be read"),
     (f"plan stiff.yaml {ENDS} --duration 1", "has nothing that bends; give a beam"),
     (f"plan none.yaml {ENDS} --duration 1", "none.yaml cannot be read"),
+    (f"plan ur5_bar.yaml {START} --line-by 2,0,0 --duration 1", "of its 2 m: it is out of reach"),
+    (f"plan ur5_bar.yaml {START} --line-by 0,0,0 --duration 1", "the line has a length of 0 m"),
+    (f"plan ur5_bar.yaml {START} --line-by 1,0 --duration 1", "--line-by has 2 numbers; give x,y"),
+    (f"plan ur5_bar.yaml {START} --line-to 1,a,0 --duration 1", "'a' is not a number of --line-to"),
+    (f"plan ur5_bar.yaml {START} --line-to 1,0,0 --line-by 1,0,0 --duration 1", "in place of"),
+    (f"plan ur5_bar.yaml {ENDS} --line-by 1,0,0 --duration 1", "--target is where joints go"),
+    (f"plan ur5_bar.yaml {START} --line-by 1,0,0 --link tool --duration 1", "did you mean 'tool0'"),
+    ("plan ur5_bar.yaml --line-by 0,0,0.1 --duration 1", "a line begins somewhere; give --start"),
+    (f"plan ur5_bar.yaml {ENDS} --link tool0 --duration 1", "--link is for --line-to and"),
+    ("plan single-link --line-by 0,0,1 --target 1 --duration 1", "--line-by is for a robot"),
     ("plan single-link --path corner.csv --target 1 --duration 1", "--path is for a robot"),
 ])  # fmt: skip
 def test_what_is_refused_in_one_line(refused, line, words):
