@@ -152,6 +152,13 @@ class Plant(ABC):
         """Time derivatives of `tips_at` [`tip_unit`/s]; by default where the place has no part."""
         return self.tip_displacements(dW)
 
+    def with_frequency(self, factor: Expression) -> Plant | None:
+        """The plant with natural frequencies so many times as high.
+
+        None, the default, where no more changes than the terms of the modes at rest.
+        """
+        return None
+
     @property
     def label(self) -> str:
         """What reports call it, by default its name."""

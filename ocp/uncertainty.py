@@ -123,6 +123,11 @@ def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     for name, factor in factors.items():
         if isinstance(factor, Real):
             _refuse_beyond(name, float(factor) - 1)
+    if FREQUENCY in factors:
+        swinging = changed.with_frequency(factors[FREQUENCY])
+        if swinging is not None:
+            changed = swinging
+            del factors[FREQUENCY]
     return ScaledModes(changed, **factors) if factors else changed
 
 

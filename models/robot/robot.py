@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
+from numbers import Real
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -14,7 +17,7 @@ import numpy as np
 
 from quietarm.models.checks import finite, has_no, not_negative, positive, whole
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
-from quietarm.models.plant import Plant, content
+from quietarm.models.plant import Plant, content, parameter
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.dynamics import Dynamics
 from quietarm.models.robot.files import read_text
@@ -23,7 +26,16 @@ from quietarm.models.robot.mechanism import BEAM_END, Mechanism, build_mechanism
 from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
 from quietarm.models.robot.path import GeometricPath
 from quietarm.models.robot.robot_file import read_robot
-from quietarm.models.robot.tables import Tables, reach, tables_of
+from quietarm.models.robot.tables import (
+    FARTHEST,
+    PAYLOAD,
+    STIFFNESS,
+    VARIED,
+    Tables,
+    reach,
+    tables_of,
+    variations_of,
+)
 from quietarm.models.robot.urdf import Urdf, dynamics_of, read_urdf
 
 STANDARD_GRAVITY = 9.80665
@@ -164,6 +176,22 @@ class Robot:
         """The equations, with the springs as they were measured."""
         dynamics = Dynamics(self.unscaled)
         return dynamics if self.measured is None else as_measured(dynamics, self.measured)
+
+    def dynamics_with(self, stiffness: float, payload: float) -> Dynamics:
+        """The equations with so many times the stiffness of all springs, and the mass at the tip.
+
+        Dampers keep the damping ratio where the stiffness changes, and their values where the mass
+        does.
+        """
+        dynamics = self.dynamics
+        if payload != 1:
+            dynamics = Dynamics(self.mechanism.loaded((payload - 1) * self.payload))
+        return dynamics if stiffness == 1 else dynamics.stiffened(stiffness)
+
+    @property
+    def payload(self) -> float:
+        """Mass at the end of the beam [kg]."""
+        return 0.0 if self.beam is None else self.beam.tip_mass
 
     @cached_property
     def digest(self) -> str:
@@ -334,11 +362,15 @@ class RobotOnPath(Plant):
     The joint's angle is the place s on the path, from 0 to 1. W are deviations of the modes from
     the equilibrium under gravity, which moves with the path.
 
+    `stiffness` and `payload` are multiples of the robot's: of all its springs, and of the mass at
+    the end of its beam. The equilibrium changes with them. Between the multiples for which there
+    are tables the coefficients are polynomials in them; a frequency changes by the stiffness.
+
     Raises
     ------
     ValueError
         When the path has other joints than the robot, leaves the range of one, or a spring cannot
-        carry its load on it.
+        carry its load on it; when a multiple is beyond the tables.
     """
 
     name: ClassVar[str] = "robot"
@@ -346,8 +378,12 @@ class RobotOnPath(Plant):
 
     robot: Robot = content("what moves")  # noqa: RUF009
     path: GeometricPath = content("where its joints go")  # noqa: RUF009
+    stiffness: float = parameter(1.0, "-", "springs", "multiple of the robot's stiffness")
+    payload: float = parameter(1.0, "-", "tip_mass", "multiple of the robot's mass at the tip")
 
     def __post_init__(self) -> None:
+        super().__post_init__()
+        self._check_multiples()
         path = self.path
         names = self.robot.joints
         if path.joints and set(path.joints) != set(names):
@@ -388,13 +424,31 @@ class RobotOnPath(Plant):
         return self.robot.joints
 
     @property
+    def measured(self) -> dict[str, float]:
+        """The parameters that may have relative errors; of the payload where there is one."""
+        return {
+            name: value
+            for name, value in super().measured.items()
+            if name != PAYLOAD or self.robot.payload > 0
+        }
+
+    @property
     def tables(self) -> Tables:
-        """The coefficients of its equations."""
+        """The coefficients of its equations, with the robot's own stiffness and payload."""
         return tables_of(self.robot, self.path)
+
+    def with_frequency(self, factor: Expression) -> Plant:
+        """Springs by which natural frequencies are so many times as high; the sag is another."""
+        stiffness = self.stiffness * factor * factor
+        if isinstance(factor, Real):
+            return replace(self, stiffness=stiffness)
+        changed = copy.copy(self)
+        object.__setattr__(changed, STIFFNESS, stiffness)
+        return changed
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W'' by the motion on the path [m/s^2]."""
-        of = self._coefficients(joint, self.tables.modes)
+        of = self._coefficients(joint, "modes")
         square = joint.speed * joint.speed
         accelerations = list[Expression]()
         for i in range(self.modes):
@@ -437,7 +491,7 @@ class RobotOnPath(Plant):
 
     def torques(self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Sequence[Expression]:
         """Torque of every driven joint [N m, or N of a sliding one]."""
-        of = self._coefficients(path, self.tables.torques)
+        of = self._coefficients(path, "torques")
         square = path.speed * path.speed
         nothing = 0 * path.angle
         torques = list[Expression]()
@@ -461,23 +515,65 @@ class RobotOnPath(Plant):
 
     def tips_at(self, path: JointMotion, W: Modes) -> Sequence[Expression]:
         """Displacements of the tip from its place at rest, in its own frame [m]."""
-        rows = self.tables.at(path.angle).values(self.tables.tips)
+        rows = self._coefficients(path, "tips")["rows"]
         return [_sum(list(zip(row, W))) + 0 * path.angle for row in rows]
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
         """Their rates [m/s]."""
-        place = self.tables.at(path.angle)
-        rows = place.values(self.tables.tips)
-        slopes = place.values(self.tables.tip_rates)
+        of = self._coefficients(path, "tips")
+        rows = of["rows"]
+        slopes = of["slopes"]
         return [
             _sum(list(zip(slope, W))) * path.speed + _sum(list(zip(row, dW)))
             for row, slope in zip(rows, slopes)
         ]
 
-    def _coefficients(self, path: JointMotion, tables: Mapping[str, Array]) -> dict[str, Array]:
-        """All of a group at the place on the path, by one product."""
+    def _coefficients(self, path: JointMotion, group: str) -> dict[str, Array]:
+        """All of a group at the place on the path, by one product for each."""
         place = self.tables.at(path.angle)
-        return {name: place.values(table) for name, table in tables.items()}
+        coefficients = {
+            name: place.values(table) for name, table in self.tables.groups[group].items()
+        }
+        errors = self._errors
+        if not errors:
+            return coefficients
+        for powers, groups in variations_of(self.robot, self.path, tuple(errors)).items():
+            factor = _power(errors.values(), powers)
+            for name, table in groups[group].items():
+                change = place.values(table)
+                coefficients[name] = _added(coefficients[name], factor, change)
+        return coefficients
+
+    @property
+    def _errors(self) -> dict[str, Expression]:
+        """By which multiples are not 1, of those that may be another."""
+        multiples = {name: getattr(self, name) for name in VARIED}
+        return {
+            name: value - 1
+            for name, value in multiples.items()
+            if not (isinstance(value, Real) and value == 1)
+        }
+
+    def _check_multiples(self) -> None:
+        for name in VARIED:
+            multiple = getattr(self, name)
+            if not abs(multiple - 1) <= FARTHEST:
+                of_frequency = (
+                    f", frequencies from {math.sqrt(1 - FARTHEST):.2g} to "
+                    f"{math.sqrt(1 + FARTHEST):.3g} times"
+                    if name == STIFFNESS
+                    else ""
+                )
+                raise ValueError(
+                    f"{name} is {multiple:.4g} times the robot's; its tables reach from "
+                    f"{1 - FARTHEST:g} to {1 + FARTHEST:g} times{of_frequency}: give a smaller "
+                    "error, or change the robot"
+                )
+        if self.payload != 1 and not self.robot.payload > 0:
+            raise ValueError(
+                "the robot has no mass at the end of a beam, so payload is 1; give the beam a "
+                "tip_mass"
+            )
 
     def _check_ranges(self) -> None:
         """Refuse a path beyond a joint's range."""
@@ -497,6 +593,24 @@ def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:
     """Of products of two, without those that are nothing."""
     terms = [left * right for left, right in products if not (is_zero(left) or is_zero(right))]
     return sum(terms[1:], terms[0]) if terms else 0.0
+
+
+def _power(errors: Iterable[Expression], powers: Sequence[int]) -> Expression:
+    """The product of powers of errors."""
+    factors = [error for error, power in zip(errors, powers) for _ in range(power)]
+    product = factors[0]
+    for factor in factors[1:]:
+        product = product * factor
+    return product
+
+
+def _added(values: Array, factor: Expression, changes: Array) -> Array:
+    """Values and so many times their changes, entry by entry."""
+    added = values.copy()
+    for place, change in np.ndenumerate(changes):
+        if not is_zero(change):
+            added[place] = added[place] + factor * change
+    return added
 
 
 def _vector(name: str, value: Any) -> tuple[float, float, float]:
