@@ -152,6 +152,15 @@ class Plant(ABC):
         """Time derivatives of `tips_at` [`tip_unit`/s]; by default where the place has no part."""
         return self.tip_displacements(dW)
 
+    @property
+    def tip_lines(self) -> np.ndarray | None:
+        """Lines along which displacements count as residual, shape (lines, tips), unit vectors.
+
+        Each tip for itself where there are none (None, the default). A tip that moves in a plane or
+        in space has lines that are so many that none of its displacements is much longer.
+        """
+        return None
+
     def with_frequency(self, factor: Expression) -> Plant | None:
         """The plant with natural frequencies so many times as high.
 

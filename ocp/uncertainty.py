@@ -86,6 +86,11 @@ class ScaledModes(Plant):
         return self.plant.tip_speeds(path, W, dW)
 
     @property
+    def tip_lines(self) -> np.ndarray | None:
+        """Those of the plant."""
+        return self.plant.tip_lines
+
+    @property
     def joint_names(self) -> tuple[str, ...]:
         """Those of the plant."""
         return self.plant.joint_names

@@ -8,7 +8,8 @@ import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
+from itertools import product
 from numbers import Real
 from pathlib import Path
 from typing import Any, ClassVar
@@ -437,6 +438,11 @@ class RobotOnPath(Plant):
         """The coefficients of its equations, with the robot's own stiffness and payload."""
         return tables_of(self.robot, self.path)
 
+    @property
+    def tip_lines(self) -> Array | None:
+        """So many that a displacement of the tip is at most 5 % longer than along one of them."""
+        return lines_in(self.tables.tips.shape[2])
+
     def with_frequency(self, factor: Expression) -> Plant:
         """Springs by which natural frequencies are so many times as high; the sag is another."""
         stiffness = self.stiffness * factor * factor
@@ -593,6 +599,30 @@ def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:
     """Of products of two, without those that are nothing."""
     terms = [left * right for left, right in products if not (is_zero(left) or is_zero(right))]
     return sum(terms[1:], terms[0]) if terms else 0.0
+
+
+@lru_cache
+def lines_in(dimensions: int) -> Array:
+    """Unit vectors of a line, a plane or space, of which one is near any direction."""
+    if dimensions == 1:
+        return np.ones((1, 1))
+    if dimensions == 2:
+        angles = np.pi * np.arange(_LINES_OF_A_PLANE) / _LINES_OF_A_PLANE
+        return np.column_stack([np.cos(angles), np.sin(angles)])
+    entries = range(-_STEPS_IN_SPACE, _STEPS_IN_SPACE + 1)
+    vectors = {
+        vector
+        for vector in product(entries, repeat=dimensions)
+        if math.gcd(*vector) == 1 and next(filter(None, vector)) > 0
+    }
+    lines = np.array(sorted(vectors), float)
+    return lines / np.linalg.norm(lines, axis=1)[:, None]
+
+
+_LINES_OF_A_PLANE = 8
+"""They are 22.5 degrees apart: 1 / cos of half of that is 1.02."""
+_STEPS_IN_SPACE = 2
+"""Whole numbers of a vector: 49 lines, of which one is within 18 degrees of any direction."""
 
 
 def _power(errors: Iterable[Expression], powers: Sequence[int]) -> Expression:

@@ -1,11 +1,15 @@
 """Plans of robots with other flexibilities than a bar alone, against MuJoCo."""
 
+import dataclasses
+
+import numpy as np
 import pytest
 from mujoco_robots import FlexibleRobot, Truth, motion_of
-from robots import BAR, UR5_JOINTS, straight, urdf_of
+from robots import BAR, UR5_JOINTS, straight, ur5_with_bar, urdf_of
 
 import quietarm as qa
-from quietarm.models import Base
+from quietarm.models import Base, JointMotion
+from quietarm.ocp import FreeVibration, perturb_plant
 
 # 0.5 m high, it rocks at 10.3 and 10.7 Hz under the robot.
 PEDESTAL = Base(stiffness=(6e4, 6e4), damping=(5.0, 5.0), height=0.5)
@@ -50,3 +54,73 @@ def test_a_pedestal_and_a_bar_are_followed_by_four_modes():
     residual, energy, _ = truth.residual_and_energy(motion_of(plan), 1.0)
     assert residual <= 0.05e-3
     assert energy == pytest.approx(plan.energy, rel=1e-3)
+
+
+@pytest.mark.parametrize(("multiples", "tip_mass", "stiffer"), [
+    ({"stiffness": 0.9}, 1.0, 0.9),
+    pytest.param({"payload": 1.1}, 1.1, 1.0, marks=pytest.mark.slow),
+    pytest.param({"stiffness": 1.1, "payload": 0.9}, 0.9, 1.1, marks=pytest.mark.slow),
+])  # fmt: skip
+def test_multiples_are_other_robots(multiples, tip_mass, stiffer):
+    """A plant with other stiffness and payload moves as the robot that has them in its file."""
+    plant = ur5_with_bar().along(straight())
+    bar = BAR | {
+        "tip_mass": tip_mass * BAR["tip_mass"],
+        "youngs_modulus": stiffer * BAR["youngs_modulus"],
+    }
+    robot = qa.Robot(urdf=urdf_of("ur5_robot.urdf"), beam=qa.Beam(at="tool0", **bar))
+    changed, expected = (
+        qa.evaluate_coefficients(qa.PointToPoint(one, target=1.0, duration=1.0), [])
+        for one in (dataclasses.replace(plant, **multiples), robot.along(straight()))
+    )
+    assert changed.energy == pytest.approx(expected.energy, rel=1e-4)
+    # the damping ratio is that of the bar's own first mode, which changes with its mass
+    assert changed.residual == pytest.approx(expected.residual, rel=5e-3)
+
+
+def test_errors_of_the_frequency_change_the_sag():
+    """The torque that holds the robot at rest, and the modes in the middle of the move."""
+    plant = ur5_with_bar().along(straight())
+    stiffer = perturb_plant(plant, {"frequency": 0.05})
+    assert stiffer == dataclasses.replace(plant, stiffness=1.05**2)
+    assert "payload" in plant.measured
+
+
+def test_multiples_beyond_the_tables_are_refused():
+    plant = ur5_with_bar().along(straight())
+    with pytest.raises(ValueError, match=r"stiffness is 1\.5 times the robot's; its tables reach"):
+        dataclasses.replace(plant, stiffness=1.5)
+    with pytest.raises(ValueError, match=r"frequencies from 0\.84 to 1\.14 times"):
+        qa.PointToPoint(plant, 1.0, 1.0, uncertainty=qa.Uncertainty({"frequency": 0.2}))
+    without = dataclasses.replace(ur5_with_bar(), beam=None, base=PEDESTAL, tip=None)
+    assert "payload" not in without.along(straight()).measured
+    with pytest.raises(ValueError, match="no mass at the end of a beam"):
+        dataclasses.replace(without.along(straight()), payload=1.1)
+
+
+def test_the_residual_is_a_distance():
+    """In a plane of two directions, it is along the nearest of eight lines."""
+    plant = ur5_with_bar().along(straight())
+    vibration = FreeVibration(plant, 1.0, 1.0)
+    state = np.array([3e-3, 4e-3, 0.0, 0.0])
+    tips = plant.tips_at(JointMotion(1.0, 0.0, 0.0), state[:2])
+    away = np.hypot(*(float(tip) for tip in tips))
+    assert away / 1.02 <= vibration.peak(state)
+
+
+@pytest.mark.slow
+def test_a_robust_plan_keeps_its_residual_limit_in_mujoco():
+    """Errors of 5 % of the frequency, 1.2 mm: in MuJoCo at most 5 % more."""
+    task = qa.PointToPoint(
+        ur5_with_bar().along(straight()),
+        target=1.0,
+        duration=1.0,
+        uncertainty=qa.Uncertainty({"frequency": 0.05}),
+    )
+    plan = qa.plan_move(task, qa.CycloidPolynomial(8), residual_limit=1.2e-3)
+    for frequency in (0.95, 1.0, 1.05):
+        robot = FlexibleRobot(urdf_of("ur5_robot.urdf"))
+        hinges = robot.add_bar("tool0", **BAR)
+        truth = Truth(robot, UR5_JOINTS, BAR["damping"], hinges, softened=frequency**2)
+        residual, _, _ = truth.residual_and_energy(motion_of(plan), 1.0)
+        assert residual <= 1.26e-3
