@@ -14,7 +14,7 @@ from importlib import import_module
 from numbers import Real
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, Protocol, final
 
 import casadi as ca
 import numpy as np
@@ -41,6 +41,36 @@ def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
 def content(meaning: str) -> Any:
     """Declare a part of a plant that is no number, as a robot: a value that is saved with it."""
     return field(metadata={"content": True, "meaning": meaning})
+
+
+class FullEquations(Protocol):
+    """Equations of a plant without the reduction by which its motions are planned.
+
+    The state is the angles of `springs` [rad] and their rates. Motions along the path are those of
+    `Plant`; expressions are symbols of CasADi.
+    """
+
+    springs: int
+
+    def at_rest(self, place: float) -> Any:
+        """Angles at rest at a place of the path, an array."""
+        ...
+
+    def joints(self, path: JointMotion) -> Sequence[JointMotion]:
+        """Motion of every joint."""
+        ...
+
+    def accelerations(self, path: JointMotion, angles: Any, rates: Any) -> Any:
+        """Of the angles, a column."""
+        ...
+
+    def torques(self, path: JointMotion, angles: Any, rates: Any) -> Any:
+        """Of every joint [N m], a column."""
+        ...
+
+    def tip(self, path: JointMotion, angles: Any) -> Any:
+        """Where the tip is [m], a column."""
+        ...
 
 
 class Plant(ABC):
@@ -151,6 +181,14 @@ class Plant(ABC):
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
         """Time derivatives of `tips_at` [`tip_unit`/s]; by default where the place has no part."""
         return self.tip_displacements(dW)
+
+    @property
+    def in_full(self) -> FullEquations | None:
+        """The equations by which plans are verified where the plant's own are a reduction.
+
+        None, the default, where they are not.
+        """
+        return None
 
     @property
     def tip_lines(self) -> np.ndarray | None:

@@ -23,6 +23,7 @@ from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.dynamics import Dynamics
 from quietarm.models.robot.files import read_text
 from quietarm.models.robot.flexibility import Base, Measured, Spring
+from quietarm.models.robot.full import FullRobot
 from quietarm.models.robot.mechanism import BEAM_END, Mechanism, build_mechanism
 from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
 from quietarm.models.robot.path import GeometricPath
@@ -437,6 +438,11 @@ class RobotOnPath(Plant):
     def tables(self) -> Tables:
         """The coefficients of its equations, with the robot's own stiffness and payload."""
         return tables_of(self.robot, self.path)
+
+    @property
+    def in_full(self) -> FullRobot:
+        """The equations with all springs, without tables and modes."""
+        return FullRobot(self)
 
     @property
     def tip_lines(self) -> Array | None:
