@@ -5,7 +5,17 @@ import dataclasses
 import numpy as np
 import pytest
 from mujoco_robots import FlexibleRobot, Truth, motion_of
-from robots import BAR, UR5_JOINTS, straight, ur5_with_bar, urdf_of
+from robots import (
+    BAR,
+    PANDA_END,
+    PANDA_START,
+    STEEL_BAR,
+    UR5_JOINTS,
+    panda_with_bar,
+    straight,
+    ur5_with_bar,
+    urdf_of,
+)
 
 import quietarm as qa
 from quietarm.models import Base, JointMotion
@@ -21,9 +31,8 @@ def _on_pedestal(robot):
     return robot
 
 
-def _plan(robot, duration, path=None):
-    plant = robot.along(path or straight())
-    return qa.plan_move(qa.PointToPoint(plant, target=1.0, duration=duration))
+def _plan(robot, duration):
+    return qa.plan_move(qa.PointToPoint(robot.along(straight()), target=1.0, duration=duration))
 
 
 def test_a_robot_on_a_rocking_pedestal_arrives_still():
@@ -124,3 +133,28 @@ def test_a_robust_plan_keeps_its_residual_limit_in_mujoco():
         truth = Truth(robot, UR5_JOINTS, BAR["damping"], hinges, softened=frequency**2)
         residual, _, _ = truth.residual_and_energy(motion_of(plan), 1.0)
         assert residual <= 1.26e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("modes", "terms", "energy_agrees"), [
+    # those that are left out take part in the energy
+    (2, 6, 1e-3),
+    (4, 10, 1e-4),
+])  # fmt: skip
+def test_a_panda_with_elastic_joints_and_another_bar_arrives_still(modes, terms, energy_agrees):
+    """All seven axes bend, and a bar of steel: nineteen springs."""
+    robot = panda_with_bar(modes)
+    plant = robot.along(qa.GeometricPath.line(PANDA_START, PANDA_END))
+    task = qa.PointToPoint(plant, target=1.0, duration=1.2)
+    plan = qa.plan_move(task, qa.CycloidPolynomial(terms))
+    in_mujoco = FlexibleRobot(urdf_of("panda.urdf"))
+    hinges = in_mujoco.add_bar("panda_hand", **STEEL_BAR)
+    for joint, gear in robot.elastic_joints.items():
+        in_mujoco.add_gear(joint, gear.stiffness, gear.damping)
+    truth = Truth(in_mujoco, robot.joints, STEEL_BAR["damping"], hinges, held=robot.held)
+    residual, energy, _ = truth.residual_and_energy(motion_of(plan), 1.2)
+    assert residual <= 0.05e-3
+    assert energy == pytest.approx(plan.energy, rel=energy_agrees)
+    whole = plan.candidate.in_full
+    assert whole.energy == pytest.approx(energy, rel=5e-5)
+    assert whole.residual == pytest.approx(residual, rel=0.01, abs=1e-7)
