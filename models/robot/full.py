@@ -31,6 +31,7 @@ class FullRobot:
         self._path = plant.path.extended
         self._dynamics = plant.robot.dynamics_with(plant.stiffness, plant.payload)
         self._tip = plant.robot.tip_place
+        self._rubbing = plant.coulomb
         self.springs = self._dynamics.sprung
         """How many there are."""
 
@@ -63,7 +64,8 @@ class FullRobot:
     def torques(self, path: JointMotion, angles: ca.SX, rates: ca.SX) -> ca.SX:
         """Of the driven joints."""
         accelerations = self.accelerations(path, angles, rates)
-        return self._torques(path, angles, rates, accelerations)[: self._dynamics.driven]
+        torques = self._torques(path, angles, rates, accelerations)[: self._dynamics.driven]
+        return torques + ca.vertcat(*self._rubbing(self.joints(path)))
 
     def tip(self, path: JointMotion, angles: ca.SX) -> ca.SX:
         """Where the tip is, seen from the ground [m]."""

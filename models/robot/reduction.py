@@ -12,6 +12,7 @@ with coefficients of the modes and of the torques. They are derivatives of the i
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,7 +50,7 @@ class Reduction:
     """The coefficients of a robot on a path, exact at any place."""
 
     def __init__(
-        self, dynamics: Dynamics, tip: tuple[int, Frame], path: GeometricPath, modes: int
+        self, dynamics: Dynamics, tip: tuple[int, Frame], path: GeometricPath, modes: Sequence[int]
     ) -> None:
         self.dynamics = dynamics
         self._path = path
@@ -59,7 +60,7 @@ class Reduction:
         squares, shapes = modes_at(dynamics, q, self._sag_in_the_middle)
         self.all_frequencies = squares
         """Of all modes in the middle of the path [rad/s]."""
-        self.shapes = shapes[:, :modes]
+        self.shapes = shapes[:, list(modes)]
         self.directions = np.arange(3)
         rows = self._tip_rows(q, self._sag_in_the_middle)
         self.shapes = self.shapes * self._scales(rows)

@@ -12,8 +12,9 @@ from functools import cached_property, lru_cache
 from itertools import product
 from numbers import Real
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
+import casadi as ca
 import numpy as np
 
 from quietarm.models.checks import finite, has_no, not_negative, positive, whole
@@ -29,11 +30,14 @@ from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offse
 from quietarm.models.robot.path import GeometricPath
 from quietarm.models.robot.robot_file import read_robot
 from quietarm.models.robot.tables import (
+    EXCITED,
     FARTHEST,
+    MOST_MODES,
     PAYLOAD,
     STIFFNESS,
     VARIED,
     Tables,
+    modes_on,
     reach,
     tables_of,
     variations_of,
@@ -42,7 +46,6 @@ from quietarm.models.robot.urdf import Urdf, dynamics_of, read_urdf
 
 STANDARD_GRAVITY = 9.80665
 """[m/s^2], of the SI."""
-MOST_MODES = 12
 _OVER = 1e-9
 """By which a path may pass the range of a joint [rad or m]."""
 
@@ -78,8 +81,12 @@ class Robot:
         [m/s^2], as seen from the root link.
     rotor_inertia, friction : mapping of str to float, optional
         Of driven joints [kg m^2, N m s/rad], at the joint's side of its gear.
-    modes : int
-        How many modes are followed.
+    coulomb : mapping of str to float
+        Coulomb friction of driven joints [N m], against the speed; below 0.01 rad/s it is less, so
+        that it is smooth.
+    modes : int or "excited"
+        How many modes are followed, the slowest; or those of the slowest twelve that leave a
+        thousandth at least of what the most excited one leaves on the path.
     limits : mapping, optional
         Limits by quantity and joint, as {"speed": {"elbow_joint": 3.0}}.
     measured : Measured, optional
@@ -104,7 +111,8 @@ class Robot:
     gravity: tuple[float, float, float] = (0.0, 0.0, -STANDARD_GRAVITY)
     rotor_inertia: Mapping[str, float] = field(default_factory=dict)
     friction: Mapping[str, float] = field(default_factory=dict)
-    modes: int = 2
+    coulomb: Mapping[str, float] = field(default_factory=dict)
+    modes: int | Literal["excited"] = 2
     limits: Limits = field(default_factory=dict)
     measured: Measured | None = None
 
@@ -120,8 +128,15 @@ class Robot:
         self._check_names()
         self._set("rotor_inertia", self._numbers("rotor_inertia", self.rotor_inertia, not_negative))
         self._set("friction", self._numbers("friction", self.friction, not_negative))
+        self._set("coulomb", self._numbers("coulomb", self.coulomb, not_negative))
         self._set("gravity", _vector("gravity", self.gravity))
-        self._set("modes", whole("modes", self.modes, 1, MOST_MODES))
+        if self.modes != EXCITED:
+            if isinstance(self.modes, str):
+                raise ValueError(
+                    f"modes is {self.modes!r}; give a whole number, or {EXCITED} for those that "
+                    "the path excites"
+                )
+            self._set("modes", whole("modes", self.modes, 1, MOST_MODES))
         self._set("tip", self._tip())
         self._check_base()
         self._check_measured()
@@ -132,7 +147,7 @@ class Robot:
             raise ValueError(
                 "the robot has nothing that bends; give a beam, elastic_joints, springs or a base"
             )
-        if self.modes > sprung:
+        if self.modes != EXCITED and self.modes > sprung:
             raise ValueError(
                 f"modes is {self.modes}; the robot has {sprung} springs, give at most that"
             )
@@ -294,7 +309,7 @@ class Robot:
         for name in self.springs:
             if name in self.held:
                 raise ValueError(f"joint {name!r} is held and in springs; leave one of them out")
-        for entry in ("elastic_joints", "rotor_inertia", "friction"):
+        for entry in ("elastic_joints", "rotor_inertia", "friction", "coulomb"):
             for name in getattr(self, entry):
                 if name not in driven:
                     raise ValueError(
@@ -406,7 +421,7 @@ class RobotOnPath(Plant):
     @property
     def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
         """How many modal amplitudes it has."""
-        return self.robot.modes
+        return len(modes_on(self.robot, self.path))
 
     @property
     def label(self) -> str:
@@ -523,7 +538,12 @@ class RobotOnPath(Plant):
                 damping = _sum([(of["C"][i, j], path.speed)])
                 terms += [(stiffness, W[j]), (damping, dW[j]), (of["N"][i, j], ddW[j])]
             torques.append(_sum(terms) + nothing)
-        return torques
+        rubbing = self.coulomb(self.joints(path))
+        return [torque + friction for torque, friction in zip(torques, rubbing)]
+
+    def coulomb(self, joints: Sequence[JointMotion]) -> list[Expression]:
+        """Torque of Coulomb friction of every driven joint."""
+        return coulomb_torques(self.robot, joints)
 
     def tips_at(self, path: JointMotion, W: Modes) -> Sequence[Expression]:
         """Displacements of the tip from its place at rest, in its own frame [m]."""
@@ -605,6 +625,21 @@ def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:
     """Of products of two, without those that are nothing."""
     terms = [left * right for left, right in products if not (is_zero(left) or is_zero(right))]
     return sum(terms[1:], terms[0]) if terms else 0.0
+
+
+def coulomb_torques(robot: Robot, joints: Sequence[JointMotion]) -> list[Expression]:
+    """Coulomb friction of every driven joint by its speed [N m]; 0.0 where it has none."""
+    torques = list[Expression]()
+    for name, joint in zip(robot.joints, joints):
+        friction = robot.coulomb.get(name, 0.0)
+        speed = joint.speed
+        turning = 0.0 if friction == 0 else speed / ca.sqrt(speed * speed + _CREEP**2)
+        torques.append(friction * turning)
+    return torques
+
+
+_CREEP = 0.01
+"""Speed [rad/s or m/s] at which Coulomb friction is 1 / sqrt(2) of itself."""
 
 
 @lru_cache

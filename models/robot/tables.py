@@ -84,10 +84,71 @@ class Tables:
         return sum(int(np.count_nonzero(table)) for table in groups)
 
 
+EXCITED = "excited"
+"""In the place of a number of modes."""
+MOST_MODES = 12
+"""Of a robot: each of them is in every equation with each."""
+
+
+@dataclass(frozen=True)
+class Swing:
+    """A mode of a robot on a path.
+
+    Attributes
+    ----------
+    number : int
+        0 of the slowest.
+    frequency : float
+        In the middle of the path [rad/s].
+    leaves : float
+        Largest displacement of the tip that it leaves [m], if alone, after a plain cycloid that
+        takes two swings of the slowest mode; undamped, its phase on arrival as bad as can be.
+    """
+
+    number: int
+    frequency: float
+    leaves: float
+
+
+@lru_cache(maxsize=64)
+def swings_of(robot: Robot, path: GeometricPath) -> tuple[Swing, ...]:
+    """The slowest modes of a robot, twelve at most, and how a path excites each."""
+    count = min(MOST_MODES, len(robot.mechanism.sprung))
+    reduction = Reduction(robot.dynamics, robot.tip_place, path, range(count))
+    coefficients = reduction.at(np.linspace(0.0, 1.0, NODES))
+    forces = np.abs(coefficients.modes["a"]).max(axis=0)
+    displacements = np.linalg.norm(coefficients.tips, axis=1).max(axis=0)
+    frequencies = reduction.all_frequencies[:count]
+    duration = _SWINGS_OF_A_MOVE * math.tau / frequencies[0]
+    turning = math.tau / duration
+    amplitudes = 2 * forces * turning**2 / duration
+    amplitudes = amplitudes / (frequencies * np.abs(frequencies**2 - turning**2))
+    leaves = displacements * amplitudes
+    return tuple(
+        Swing(number, float(frequency), float(left))
+        for number, (frequency, left) in enumerate(zip(frequencies, leaves))
+    )
+
+
+_SWINGS_OF_A_MOVE = 2
+"""A move that is as short: shorter ones take much energy."""
+_EXCITED_SHARE = 1e-3
+"""Of what the most excited mode leaves: a mode that leaves less is not followed."""
+
+
+def modes_on(robot: Robot, path: GeometricPath) -> tuple[int, ...]:
+    """Numbers of the modes that are followed on a path: so many, or those that it excites."""
+    if robot.modes != EXCITED:
+        return tuple(range(int(robot.modes)))
+    swings = swings_of(robot, path)
+    least = _EXCITED_SHARE * max(swing.leaves for swing in swings)
+    return tuple(swing.number for swing in swings if swing.leaves >= least)
+
+
 @lru_cache(maxsize=16)
 def tables_of(robot: Robot, path: GeometricPath) -> Tables:
     """The tables of a robot on a path; ValueError where a spring cannot carry its load."""
-    reduction = Reduction(robot.dynamics, robot.tip_place, path, robot.modes)
+    reduction = Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
     layout = _Layout(reduction.at(np.array([0.5])))
 
     def columns(places: Array) -> Array:
@@ -138,7 +199,7 @@ def variations_of(
         By powers of the multiples' errors: the tables that are multiplied by these.
     """
     tables = tables_of(robot, path)
-    nominal = Reduction(robot.dynamics, robot.tip_place, path, robot.modes)
+    nominal = Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
     layout = _Layout(nominal.at(np.array([0.5])))
     multiples = dict.fromkeys(VARIED, 1.0)
     errors, powers = _design(len(names))

@@ -198,8 +198,8 @@ def _full_rows(plan: Plan) -> list[Row]:
     return [
         (
             "in full",
-            f"{figures.energy:.6g} J ({share:.0e} from F2) and {residual} left, by CVODES on the whole "
-            "equations, without modes and tables",
+            f"{figures.energy:.6g} J ({share:.0e} from F2) and {residual} left, by CVODES on the "
+            "whole equations, without modes and tables",
         )
     ]
 

@@ -7,8 +7,10 @@ import pytest
 from mujoco_robots import FlexibleRobot, Truth, motion_of
 from robots import (
     BAR,
+    END,
     PANDA_END,
     PANDA_START,
+    START,
     STEEL_BAR,
     UR5_JOINTS,
     panda_with_bar,
@@ -158,3 +160,19 @@ def test_a_panda_with_elastic_joints_and_another_bar_arrives_still(modes, terms,
     whole = plan.candidate.in_full
     assert whole.energy == pytest.approx(energy, rel=5e-5)
     assert whole.residual == pytest.approx(residual, rel=0.01, abs=1e-7)
+
+
+def test_coulomb_friction_takes_its_torque_times_the_way():
+    """A line on which a joint never turns back: friction times its way, but for where it creeps."""
+    plain = ur5_with_bar()
+    rough = dataclasses.replace(plain, coulomb={"elbow_joint": 0.5})
+    moves = [
+        qa.evaluate_coefficients(qa.PointToPoint(robot.along(straight()), 1.0, 1.0), [])
+        for robot in (plain, rough)
+    ]
+    way = abs(END - START)[UR5_JOINTS.index("elbow_joint")]
+    assert moves[1].motion.net_work - moves[0].motion.net_work == pytest.approx(0.5 * way, rel=0.01)
+    # the motors' friction does not reach the bar
+    assert moves[1].residual == pytest.approx(moves[0].residual, rel=1e-9)
+    # so do the whole equations say
+    assert moves[1].candidate.in_full.energy == pytest.approx(moves[1].energy, rel=1e-3)
