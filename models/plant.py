@@ -106,6 +106,9 @@ class Plant(ABC):
     """Unit of the tips' displacements: m, or rad where they turn, as the load of a shaft does."""
     small_deflection: ClassVar[float | None] = None
     """Largest tip displacement that the equations are made for; None where none is stated."""
+    steps_at_once: ClassVar[int] = 1
+    """A solver takes a multiple of so many steps: where equations take long to compile, moves that
+    last nearly as long share them."""
     path_range: ClassVar[tuple[float, float] | None] = None
     """Least and largest joint angle, or place on the path, that the equations are made for; None
     where they hold at any. A move must begin and end within it."""

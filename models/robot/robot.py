@@ -391,6 +391,7 @@ class RobotOnPath(Plant):
     """
 
     name: ClassVar[str] = "robot"
+    steps_at_once: ClassVar[int] = 16
     path_range: ClassVar[tuple[float, float] | None] = reach()
 
     robot: Robot = content("what moves")  # noqa: RUF009

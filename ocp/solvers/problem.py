@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -111,7 +112,8 @@ def first_steps(task: PointToPoint, profile: JointProfile) -> int:
     """Steps of the solver to begin with; ValueError where the move is too long for it."""
     fewest = _LIMITED_STEPS if task.limits else _LEAST_STEPS
     least = min(max(fewest, _STEPS_A_TERM * (profile.size - 2)), _LIMITED_STEPS)
-    steps = default_steps(task, least=least)
+    at_once = task.plant.steps_at_once
+    steps = at_once * math.ceil(default_steps(task, least=least) / at_once)
     if steps > MOST_SOLVER_STEPS:
         raise ValueError(
             f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
