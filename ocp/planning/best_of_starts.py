@@ -63,14 +63,20 @@ def best_of_starts(
 
 
 def solve_from_starts(
-    problem: Problem, starts: Sequence[Array], solver: Solver, *, quick: bool = False
+    problem: Problem,
+    starts: Sequence[Array],
+    solver: Solver,
+    *,
+    quick: bool = False,
+    thorough: bool = True,
 ) -> tuple[Solution, list[Solution]]:
     """The best solution from several starts, and all, the best first.
 
     Where none of them leads to a solution, motions of least peaks are tried as starts, then what
     stands in for the solver.
     InfeasibleTaskError says what would be feasible; SolverFailedError has another reason. A quick
-    solve ends with its starts, and says nothing of that.
+    solve ends with its starts, and says nothing of that; one that is not thorough has no stand-in,
+    and says nothing either.
     """
     tried, least = list[Solution](), dict[str, Solution]()
 
@@ -81,7 +87,7 @@ def solve_from_starts(
         if problem.scalarization.limits:
             least.update(least_peaks_of(problem, starts[:2], solver))
             yield solver, [one.coefficients for one in least.values()]
-        if (substitute := stand_in(solver)) is not None:
+        if thorough and (substitute := stand_in(solver)) is not None:
             yield substitute, starts[:2]
 
     for by, guesses in attempts():
@@ -94,7 +100,7 @@ def solve_from_starts(
         (one for one in tried if one.status.solved),
         key=lambda one: objective_of(one, problem.scalarization),
     )
-    if not solved and quick:
+    if not solved and (quick or not thorough):
         raise InfeasibleTaskError(f"no start was solved: {tried[0].reason}")
     if not solved:
         raise explain(problem, tried, least, solver)

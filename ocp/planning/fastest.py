@@ -207,7 +207,7 @@ def _narrow(search: _Search, tolerance: float) -> None:
             else:
                 low = middle
         below = (share * low for share in _SHORTER if share * low > least)
-        shorter = next((one for one in below if search.succeeds(one)), None)
+        shorter = next((one for one in below if search.succeeds(one, thorough=False)), None)
         if shorter is None:
             return
         low, high = least or shorter / _GROWTH, shorter
@@ -230,12 +230,12 @@ class _Search:
         self.best: Plan | None = None
         self.failed: dict[float, str] = {}
 
-    def succeeds(self, duration: float) -> bool:
-        """Whether there is a plan for a duration."""
+    def succeeds(self, duration: float, thorough: bool = True) -> bool:
+        """Whether there is a plan for a duration, by the setup's solver alone if not thorough."""
         task = replace(self.task, duration=duration)
         guess = None if self.best is None else self.best.coefficients
         try:
-            from_best = replace(self.setup, guess=guess)
+            from_best = replace(self.setup, guess=guess, thorough=thorough)
             plan = plan_along(task, self.profile, from_best, self.residual_limit)
         except SolverFailedError as error:
             self.failed[duration] = str(error)

@@ -197,7 +197,13 @@ def plan_from_starts(
     began = time.perf_counter()
     transcription = Transcription.of(task, profile, setup.steps)
     problem = Problem.of(transcription, residual_limit, setup.bound)
-    best, solved = solve_from_starts(problem, starts, setup.solver, quick=quick)
+    best, solved = solve_from_starts(
+        problem,
+        starts,
+        setup.solver,
+        quick=quick,
+        thorough=setup.thorough,
+    )
     certified = certify_one(problem, best, setup.solver)
     assert isinstance(certified.checked, Candidate)  # one alone is judged by CVODES
     solution = certified.solution
