@@ -14,7 +14,7 @@ from importlib import import_module
 from numbers import Real
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, Protocol, final
 
 import casadi as ca
 import numpy as np
@@ -41,6 +41,36 @@ def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
 def content(meaning: str) -> Any:
     """Declare a part of a plant that is no number, as a robot: a value that is saved with it."""
     return field(metadata={"content": True, "meaning": meaning})
+
+
+class FullEquations(Protocol):
+    """Equations of a plant without the reduction by which its motions are planned.
+
+    The state is the angles of `springs` [rad] and their rates. Motions along the path are those of
+    `Plant`; expressions are symbols of CasADi.
+    """
+
+    springs: int
+
+    def at_rest(self, place: float) -> Any:
+        """Angles at rest at a place of the path, an array."""
+        ...
+
+    def joints(self, path: JointMotion) -> Sequence[JointMotion]:
+        """Motion of every joint."""
+        ...
+
+    def accelerations(self, path: JointMotion, angles: Any, rates: Any) -> Any:
+        """Of the angles, a column."""
+        ...
+
+    def torques(self, path: JointMotion, angles: Any, rates: Any) -> Any:
+        """Of every joint [N m], a column."""
+        ...
+
+    def tip(self, path: JointMotion, angles: Any) -> Any:
+        """Where the tip is [m], a column."""
+        ...
 
 
 class Plant(ABC):
@@ -76,6 +106,9 @@ class Plant(ABC):
     """Unit of the tips' displacements: m, or rad where they turn, as the load of a shaft does."""
     small_deflection: ClassVar[float | None] = None
     """Largest tip displacement that the equations are made for; None where none is stated."""
+    steps_at_once: ClassVar[int] = 1
+    """A solver takes a multiple of so many steps: where equations take long to compile, moves that
+    last nearly as long share them."""
     path_range: ClassVar[tuple[float, float] | None] = None
     """Least and largest joint angle, or place on the path, that the equations are made for; None
     where they hold at any. A move must begin and end within it."""
@@ -160,6 +193,30 @@ class Plant(ABC):
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
         """Time derivatives of `tips_at` [`tip_unit`/s]; by default where the place has no part."""
         return self.tip_displacements(dW)
+
+    @property
+    def in_full(self) -> FullEquations | None:
+        """The equations by which plans are verified where the plant's own are a reduction.
+
+        None, the default, where they are not.
+        """
+        return None
+
+    @property
+    def tip_lines(self) -> np.ndarray | None:
+        """Lines along which displacements count as residual, shape (lines, tips), unit vectors.
+
+        Each tip for itself where there are none (None, the default). A tip that moves in a plane or
+        in space has lines that are so many that none of its displacements is much longer.
+        """
+        return None
+
+    def with_frequency(self, factor: Expression) -> Plant | None:
+        """The plant with natural frequencies so many times as high.
+
+        None, the default, where no more changes than the terms of the modes at rest.
+        """
+        return None
 
     @property
     def label(self) -> str:

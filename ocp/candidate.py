@@ -26,6 +26,7 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.cvodes import Integration, integrate, integrate_to
 from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
+from quietarm.ocp.simulation.full_dynamics import FullFigures, follow_in_full, times_after
 from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import PEAKS, Motion
 from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
@@ -172,6 +173,27 @@ class Candidate(Ranged):
     def _largest(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
         """Least and largest value of each row of samples."""
         return extremes(self._mesh.samples, rows)
+
+    @cached_property
+    def in_full(self) -> FullFigures | None:
+        """Figures by the whole equations of a plant whose own are a reduction; None of others.
+
+        They are computed by CVODES without the tables and modes of the plant. Errors of the damping
+        alone have no such equations.
+        """
+        plant = perturb_plant(self.task.plant, self.errors)
+        equations = plant.in_full
+        if equations is None:
+            return None
+        vibration = self._vibration
+        return follow_in_full(
+            equations,
+            self.path,
+            (self.task.start, self.task.target),
+            self._mesh.steps,
+            times_after(float(vibration.window), float(vibration.fastest)),
+            self.task.energy,
+        )
 
     @property
     def trajectory(self) -> Trajectory:

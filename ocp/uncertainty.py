@@ -88,6 +88,11 @@ class ScaledModes(Plant):
         return self.plant.tip_speeds(path, W, dW)
 
     @property
+    def tip_lines(self) -> np.ndarray | None:
+        """Those of the plant."""
+        return self.plant.tip_lines
+
+    @property
     def joint_names(self) -> tuple[str, ...]:
         """Those of the plant."""
         return self.plant.joint_names
@@ -125,6 +130,11 @@ def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     for name, factor in factors.items():
         if isinstance(factor, Real):
             _refuse_beyond(name, float(factor) - 1)
+    if FREQUENCY in factors:
+        swinging = changed.with_frequency(factors[FREQUENCY])
+        if swinging is not None:
+            changed = swinging
+            del factors[FREQUENCY]
     return ScaledModes(changed, **factors) if factors else changed
 
 

@@ -14,7 +14,7 @@ os.environ.setdefault("NUMBA_OPT", "0")
 
 from pages import blocks
 
-from quietarm.models import DualLinkManipulator, Plant
+from quietarm.models import DualLinkManipulator, Plant, known_plants
 
 # A shell lets what it starts in the background ignore Ctrl-C, which these tests send.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -50,7 +50,7 @@ def two_links():
 @pytest.fixture
 def _plants_of_this_test_are_forgotten(monkeypatch):
     """Plants that a test defines are known by name during that test only."""
-    monkeypatch.setattr(Plant, "_known", dict(Plant._known))
+    monkeypatch.setattr(Plant, "_known", known_plants())
 
 
 @pytest.fixture

@@ -89,6 +89,15 @@ class Mechanism:
             damping=np.sqrt(factor) * self.damping,
         )
 
+    def loaded(self, mass: float) -> Mechanism:
+        """The same with another mass at the end of the beam [kg]; a negative one takes it away."""
+        number, frame = self.links[BEAM_END]
+        body = self.bodies[number]
+        point = Inertia(mass).seen_from(frame)
+        bodies = list(self.bodies)
+        bodies[number] = replace(body, inertia=body.inertia + point)
+        return replace(self, bodies=bodies)
+
 
 class _Tree:
     """Bodies as they grow from the ground."""

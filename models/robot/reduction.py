@@ -11,6 +11,8 @@ with coefficients of the modes and of the torques. They are derivatives of the i
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -48,7 +50,7 @@ class Reduction:
     """The coefficients of a robot on a path, exact at any place."""
 
     def __init__(
-        self, dynamics: Dynamics, tip: tuple[int, Frame], path: GeometricPath, modes: int
+        self, dynamics: Dynamics, tip: tuple[int, Frame], path: GeometricPath, modes: Sequence[int]
     ) -> None:
         self.dynamics = dynamics
         self._path = path
@@ -58,12 +60,22 @@ class Reduction:
         squares, shapes = modes_at(dynamics, q, self._sag_in_the_middle)
         self.all_frequencies = squares
         """Of all modes in the middle of the path [rad/s]."""
-        self.shapes = shapes[:, :modes]
+        self.shapes = shapes[:, list(modes)]
         self.directions = np.arange(3)
         rows = self._tip_rows(q, self._sag_in_the_middle)
         self.shapes = self.shapes * self._scales(rows)
         rows = np.abs(self._tip_rows(q, self._sag_in_the_middle)).sum(axis=1)
         self.directions = np.flatnonzero(rows > _AXIAL * rows.max())
+
+    def of(self, dynamics: Dynamics) -> Reduction:
+        """Of other springs or masses, in the shapes of this one's modes."""
+        reduction = copy.copy(self)
+        reduction.dynamics = dynamics
+        reduction._sag_in_the_middle = sag_at(dynamics, self._path(MIDDLE))
+        if dynamics.mechanism.bodies is not self.dynamics.mechanism.bodies:
+            for name in _COMPILED:
+                vars(reduction).pop(name, None)
+        return reduction
 
     def at(self, places: Array) -> Coefficients:
         """All coefficients at these places of the path."""
@@ -208,5 +220,7 @@ class Reduction:
         return np.where(moves, signs / np.where(moves, largest, 1.0), 1 / angles)
 
 
+_COMPILED = ("_coefficients", "_second", "_tip_slopes")
+"""What is compiled from the equations of a dynamics."""
 _LEAST_OF_TIP = 1e-6
 """Displacement of the tip [m] by a mode of 1 rad, below which the mode does not move it."""

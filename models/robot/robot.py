@@ -2,35 +2,52 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
-from functools import cached_property
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cached_property, lru_cache
+from itertools import product
+from numbers import Real
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
+import casadi as ca
 import numpy as np
 
 from quietarm.models.checks import finite, has_no, not_negative, positive, whole
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
-from quietarm.models.plant import Plant, content
+from quietarm.models.plant import Plant, content, parameter
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.dynamics import Dynamics
 from quietarm.models.robot.files import read_text
 from quietarm.models.robot.flexibility import Base, Measured, Spring
+from quietarm.models.robot.full import FullRobot
 from quietarm.models.robot.mechanism import BEAM_END, Mechanism, build_mechanism
 from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
 from quietarm.models.robot.path import GeometricPath
 from quietarm.models.robot.robot_file import read_robot
 from quietarm.models.robot.stick_figure import stick_figure_of
-from quietarm.models.robot.tables import Tables, reach, tables_of
+from quietarm.models.robot.tables import (
+    EXCITED,
+    FARTHEST,
+    MOST_MODES,
+    PAYLOAD,
+    STIFFNESS,
+    VARIED,
+    Tables,
+    modes_on,
+    reach,
+    tables_of,
+    variations_of,
+)
 from quietarm.models.robot.urdf import Urdf, dynamics_of, read_urdf
 
 STANDARD_GRAVITY = 9.80665
 """[m/s^2], of the SI."""
-MOST_MODES = 12
 _OVER = 1e-9
 """By which a path may pass the range of a joint [rad or m]."""
 
@@ -66,8 +83,12 @@ class Robot:
         [m/s^2], as seen from the root link.
     rotor_inertia, friction : mapping of str to float, optional
         Of driven joints [kg m^2, N m s/rad], at the joint's side of its gear.
-    modes : int
-        How many modes are followed.
+    coulomb : mapping of str to float
+        Coulomb friction of driven joints [N m], against the speed; below 0.01 rad/s it is less, so
+        that it is smooth.
+    modes : int or "excited"
+        How many modes are followed, the slowest; or those of the slowest twelve that leave a
+        thousandth at least of what the most excited one leaves on the path.
     limits : mapping, optional
         Limits by quantity and joint, as {"speed": {"elbow_joint": 3.0}}.
     measured : Measured, optional
@@ -92,7 +113,8 @@ class Robot:
     gravity: tuple[float, float, float] = (0.0, 0.0, -STANDARD_GRAVITY)
     rotor_inertia: Mapping[str, float] = field(default_factory=dict)
     friction: Mapping[str, float] = field(default_factory=dict)
-    modes: int = 2
+    coulomb: Mapping[str, float] = field(default_factory=dict)
+    modes: int | Literal["excited"] = 2
     limits: Limits = field(default_factory=dict)
     measured: Measured | None = None
 
@@ -108,8 +130,15 @@ class Robot:
         self._check_names()
         self._set("rotor_inertia", self._numbers("rotor_inertia", self.rotor_inertia, not_negative))
         self._set("friction", self._numbers("friction", self.friction, not_negative))
+        self._set("coulomb", self._numbers("coulomb", self.coulomb, not_negative))
         self._set("gravity", _vector("gravity", self.gravity))
-        self._set("modes", whole("modes", self.modes, 1, MOST_MODES))
+        if self.modes != EXCITED:
+            if isinstance(self.modes, str):
+                raise ValueError(
+                    f"modes is {self.modes!r}; give a whole number, or {EXCITED} for those that "
+                    "the path excites"
+                )
+            self._set("modes", whole("modes", self.modes, 1, MOST_MODES))
         self._set("tip", self._tip())
         self._check_base()
         self._check_measured()
@@ -120,7 +149,7 @@ class Robot:
             raise ValueError(
                 "the robot has nothing that bends; give a beam, elastic_joints, springs or a base"
             )
-        if self.modes > sprung:
+        if self.modes != EXCITED and self.modes > sprung:
             raise ValueError(
                 f"modes is {self.modes}; the robot has {sprung} springs, give at most that"
             )
@@ -166,6 +195,22 @@ class Robot:
         """The equations, with the springs as they were measured."""
         dynamics = Dynamics(self.unscaled)
         return dynamics if self.measured is None else as_measured(dynamics, self.measured)
+
+    def dynamics_with(self, stiffness: float, payload: float) -> Dynamics:
+        """The equations with so many times the stiffness of all springs, and the mass at the tip.
+
+        Dampers keep the damping ratio where the stiffness changes, and their values where the mass
+        does.
+        """
+        dynamics = self.dynamics
+        if payload != 1:
+            dynamics = Dynamics(self.mechanism.loaded((payload - 1) * self.payload))
+        return dynamics if stiffness == 1 else dynamics.stiffened(stiffness)
+
+    @property
+    def payload(self) -> float:
+        """Mass at the end of the beam [kg]."""
+        return 0.0 if self.beam is None else self.beam.tip_mass
 
     @cached_property
     def digest(self) -> str:
@@ -266,7 +311,7 @@ class Robot:
         for name in self.springs:
             if name in self.held:
                 raise ValueError(f"joint {name!r} is held and in springs; leave one of them out")
-        for entry in ("elastic_joints", "rotor_inertia", "friction"):
+        for entry in ("elastic_joints", "rotor_inertia", "friction", "coulomb"):
             for name in getattr(self, entry):
                 if name not in driven:
                     raise ValueError(
@@ -336,21 +381,30 @@ class RobotOnPath(Plant):
     The joint's angle is the place s on the path, from 0 to 1. W are deviations of the modes from
     the equilibrium under gravity, which moves with the path.
 
+    `stiffness` and `payload` are multiples of the robot's: of all its springs, and of the mass at
+    the end of its beam. The equilibrium changes with them. Between the multiples for which there
+    are tables the coefficients are polynomials in them; a frequency changes by the stiffness.
+
     Raises
     ------
     ValueError
         When the path has other joints than the robot, leaves the range of one, or a spring cannot
-        carry its load on it.
+        carry its load on it; when a multiple is beyond the tables.
     """
 
     name: ClassVar[str] = "robot"
+    steps_at_once: ClassVar[int] = 16
     path_range: ClassVar[tuple[float, float] | None] = reach()
     in_space: ClassVar[bool] = True
 
     robot: Robot = content("what moves")  # noqa: RUF009
     path: GeometricPath = content("where its joints go")  # noqa: RUF009
+    stiffness: float = parameter(1.0, "-", "springs", "multiple of the robot's stiffness")
+    payload: float = parameter(1.0, "-", "tip_mass", "multiple of the robot's mass at the tip")
 
     def __post_init__(self) -> None:
+        super().__post_init__()
+        self._check_multiples()
         path = self.path
         names = self.robot.joints
         if path.joints and set(path.joints) != set(names):
@@ -371,7 +425,7 @@ class RobotOnPath(Plant):
     @property
     def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
         """How many modal amplitudes it has."""
-        return self.robot.modes
+        return len(modes_on(self.robot, self.path))
 
     @property
     def label(self) -> str:
@@ -391,13 +445,41 @@ class RobotOnPath(Plant):
         return self.robot.joints
 
     @property
+    def measured(self) -> dict[str, float]:
+        """The parameters that may have relative errors; of the payload where there is one."""
+        return {
+            name: value
+            for name, value in super().measured.items()
+            if name != PAYLOAD or self.robot.payload > 0
+        }
+
+    @property
     def tables(self) -> Tables:
-        """The coefficients of its equations."""
+        """The coefficients of its equations, with the robot's own stiffness and payload."""
         return tables_of(self.robot, self.path)
+
+    @property
+    def in_full(self) -> FullRobot:
+        """The equations with all springs, without tables and modes."""
+        return FullRobot(self)
+
+    @property
+    def tip_lines(self) -> Array | None:
+        """So many that a displacement of the tip is at most 5 % longer than along one of them."""
+        return lines_in(self.tables.tips.shape[2])
+
+    def with_frequency(self, factor: Expression) -> Plant:
+        """Springs by which natural frequencies are so many times as high; the sag is another."""
+        stiffness = self.stiffness * factor * factor
+        if isinstance(factor, Real):
+            return replace(self, stiffness=stiffness)
+        changed = copy.copy(self)
+        object.__setattr__(changed, STIFFNESS, stiffness)
+        return changed
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W'' by the motion on the path [m/s^2]."""
-        of = self._coefficients(joint, self.tables.modes)
+        of = self._coefficients(joint, "modes")
         square = joint.speed * joint.speed
         accelerations = list[Expression]()
         for i in range(self.modes):
@@ -440,7 +522,7 @@ class RobotOnPath(Plant):
 
     def torques(self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Sequence[Expression]:
         """Torque of every driven joint [N m, or N of a sliding one]."""
-        of = self._coefficients(path, self.tables.torques)
+        of = self._coefficients(path, "torques")
         square = path.speed * path.speed
         nothing = 0 * path.angle
         torques = list[Expression]()
@@ -460,11 +542,16 @@ class RobotOnPath(Plant):
                 damping = _sum([(of["C"][i, j], path.speed)])
                 terms += [(stiffness, W[j]), (damping, dW[j]), (of["N"][i, j], ddW[j])]
             torques.append(_sum(terms) + nothing)
-        return torques
+        rubbing = self.coulomb(self.joints(path))
+        return [torque + friction for torque, friction in zip(torques, rubbing)]
+
+    def coulomb(self, joints: Sequence[JointMotion]) -> list[Expression]:
+        """Torque of Coulomb friction of every driven joint."""
+        return coulomb_torques(self.robot, joints)
 
     def tips_at(self, path: JointMotion, W: Modes) -> Sequence[Expression]:
         """Displacements of the tip from its place at rest, in its own frame [m]."""
-        rows = self.tables.at(path.angle).values(self.tables.tips)
+        rows = self._coefficients(path, "tips")["rows"]
         return [_sum(list(zip(row, W))) + 0 * path.angle for row in rows]
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
@@ -473,18 +560,60 @@ class RobotOnPath(Plant):
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
         """Their rates [m/s]."""
-        place = self.tables.at(path.angle)
-        rows = place.values(self.tables.tips)
-        slopes = place.values(self.tables.tip_rates)
+        of = self._coefficients(path, "tips")
+        rows = of["rows"]
+        slopes = of["slopes"]
         return [
             _sum(list(zip(slope, W))) * path.speed + _sum(list(zip(row, dW)))
             for row, slope in zip(rows, slopes)
         ]
 
-    def _coefficients(self, path: JointMotion, tables: Mapping[str, Array]) -> dict[str, Array]:
-        """All of a group at the place on the path, by one product."""
+    def _coefficients(self, path: JointMotion, group: str) -> dict[str, Array]:
+        """All of a group at the place on the path, by one product for each."""
         place = self.tables.at(path.angle)
-        return {name: place.values(table) for name, table in tables.items()}
+        coefficients = {
+            name: place.values(table) for name, table in self.tables.groups[group].items()
+        }
+        errors = self._errors
+        if not errors:
+            return coefficients
+        for powers, groups in variations_of(self.robot, self.path, tuple(errors)).items():
+            factor = _power(errors.values(), powers)
+            for name, table in groups[group].items():
+                change = place.values(table)
+                coefficients[name] = _added(coefficients[name], factor, change)
+        return coefficients
+
+    @property
+    def _errors(self) -> dict[str, Expression]:
+        """By which multiples are not 1, of those that may be another."""
+        multiples = {name: getattr(self, name) for name in VARIED}
+        return {
+            name: value - 1
+            for name, value in multiples.items()
+            if not (isinstance(value, Real) and value == 1)
+        }
+
+    def _check_multiples(self) -> None:
+        for name in VARIED:
+            multiple = getattr(self, name)
+            if not abs(multiple - 1) <= FARTHEST:
+                of_frequency = (
+                    f", frequencies from {math.sqrt(1 - FARTHEST):.2g} to "
+                    f"{math.sqrt(1 + FARTHEST):.3g} times"
+                    if name == STIFFNESS
+                    else ""
+                )
+                raise ValueError(
+                    f"{name} is {multiple:.4g} times the robot's; its tables reach from "
+                    f"{1 - FARTHEST:g} to {1 + FARTHEST:g} times{of_frequency}: give a smaller "
+                    "error, or change the robot"
+                )
+        if self.payload != 1 and not self.robot.payload > 0:
+            raise ValueError(
+                "the robot has no mass at the end of a beam, so payload is 1; give the beam a "
+                "tip_mass"
+            )
 
     def _check_ranges(self) -> None:
         """Refuse a path beyond a joint's range."""
@@ -504,6 +633,63 @@ def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:
     """Of products of two, without those that are nothing."""
     terms = [left * right for left, right in products if not (is_zero(left) or is_zero(right))]
     return sum(terms[1:], terms[0]) if terms else 0.0
+
+
+def coulomb_torques(robot: Robot, joints: Sequence[JointMotion]) -> list[Expression]:
+    """Coulomb friction of every driven joint by its speed [N m]; 0.0 where it has none."""
+    torques = list[Expression]()
+    for name, joint in zip(robot.joints, joints):
+        friction = robot.coulomb.get(name, 0.0)
+        speed = joint.speed
+        turning = 0.0 if friction == 0 else speed / ca.sqrt(speed * speed + _CREEP**2)
+        torques.append(friction * turning)
+    return torques
+
+
+_CREEP = 0.01
+"""Speed [rad/s or m/s] at which Coulomb friction is 1 / sqrt(2) of itself."""
+
+
+@lru_cache
+def lines_in(dimensions: int) -> Array:
+    """Unit vectors of a line, a plane or space, of which one is near any direction."""
+    if dimensions == 1:
+        return np.ones((1, 1))
+    if dimensions == 2:
+        angles = np.pi * np.arange(_LINES_OF_A_PLANE) / _LINES_OF_A_PLANE
+        return np.column_stack([np.cos(angles), np.sin(angles)])
+    entries = range(-_STEPS_IN_SPACE, _STEPS_IN_SPACE + 1)
+    vectors = {
+        vector
+        for vector in product(entries, repeat=dimensions)
+        if math.gcd(*vector) == 1 and next(filter(None, vector)) > 0
+    }
+    lines = np.array(sorted(vectors), float)
+    return lines / np.linalg.norm(lines, axis=1)[:, None]
+
+
+_LINES_OF_A_PLANE = 8
+"""They are 22.5 degrees apart: 1 / cos of half of that is 1.02."""
+_STEPS_IN_SPACE = 2
+"""Whole numbers of a vector: 49 lines, of which one is within 18 degrees of any direction."""
+
+
+def _power(errors: Iterable[Expression], powers: Sequence[int]) -> Expression:
+    """The product of powers of errors."""
+    factors = [error for error, power in zip(errors, powers) for _ in range(power)]
+    product = factors[0]
+    for factor in factors[1:]:
+        product = product * factor
+    return product
+
+
+def _added(values: Array, factor: Expression, changes: Array) -> Array:
+    """Values and so many times their changes, entry by entry."""
+    added = values.copy()
+    for place, change in np.ndenumerate(changes):
+        if not is_zero(change):
+            added[place] = added[place] + factor * change
+    return added
 
 
 def _vector(name: str, value: Any) -> tuple[float, float, float]:

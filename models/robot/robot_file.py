@@ -47,6 +47,7 @@ def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "gravity": partial(_several, unit="m/s^2"),
         "rotor_inertia": partial(_by_joint, read=_quantity("kg m^2")),
         "friction": partial(_by_joint, read=_quantity("N m s/rad")),
+        "coulomb": partial(_by_joint, read=_quantity("N m")),
         "modes": lambda entry, _: entry,
         "limits": lambda entry, _: entry,
         "measured": _measured,

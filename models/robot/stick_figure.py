@@ -15,6 +15,7 @@ from quietarm.models.robot.frames import Frame
 from quietarm.models.robot.mechanism import BEAM_END, GROUND
 from quietarm.models.robot.modes import sag_at
 from quietarm.models.robot.reduction import Reduction
+from quietarm.models.robot.tables import modes_on
 
 if TYPE_CHECKING:
     from quietarm.models.robot.robot import RobotOnPath
@@ -47,7 +48,8 @@ class StickFigure:
         self._driven = robot.mechanism.driven
         self._tip = robot.tip_place
         self._has_beam = robot.beam is not None and robot.tip == BEAM_END
-        reduction = Reduction(robot.dynamics, robot.tip_place, plant.path, robot.modes)
+        modes = modes_on(robot, plant.path)
+        reduction = Reduction(robot.dynamics, robot.tip_place, plant.path, modes)
         self._shapes = reduction.shapes
         self._plant = plant
         self._origins_of = self._function()

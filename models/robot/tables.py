@@ -12,7 +12,15 @@ import numpy as np
 
 from quietarm.models.joint_motion import Array, Expression
 from quietarm.models.robot.path import BEYOND, GeometricPath
-from quietarm.models.robot.piecewise import NoFitError, Piecewise, Place, fit
+from quietarm.models.robot.piecewise import (
+    NODES,
+    NoFitError,
+    Piecewise,
+    Place,
+    cut,
+    fit,
+    interpolate,
+)
 from quietarm.models.robot.reduction import FORCING, OF_MODES, OF_TORQUES, Coefficients, Reduction
 
 if TYPE_CHECKING:
@@ -20,6 +28,15 @@ if TYPE_CHECKING:
 
 ACCURACY = 1e-9
 """Largest error of a table, as a share of what the coefficient can matter."""
+STIFFNESS = "stiffness"
+PAYLOAD = "payload"
+VARIED = (STIFFNESS, PAYLOAD)
+"""Multiples of a robot's, which a plant may have and its tables know."""
+FARTHEST = 0.3
+"""By which a multiple may be another than 1: there polynomials of fourth degree miss 2e-4 of what
+the sag changes."""
+ACCURACY_OF_CHANGES = 1e-7
+"""As `ACCURACY`, of what the farthest multiple changes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,16 +69,86 @@ class Tables:
         return Place(self.knots, place, terms)
 
     @property
+    def groups(self) -> dict[str, dict[str, Array]]:
+        """Of the modes, the torques, and the tips' rows and their slopes."""
+        return {
+            "modes": self.modes,
+            "torques": self.torques,
+            "tips": {"rows": self.tips, "slopes": self.tip_rates},
+        }
+
+    @property
     def size(self) -> int:
         """How many numbers they hold."""
         groups = [*self.modes.values(), *self.torques.values(), self.tips]
         return sum(int(np.count_nonzero(table)) for table in groups)
 
 
+EXCITED = "excited"
+"""In the place of a number of modes."""
+MOST_MODES = 12
+"""Of a robot: each of them is in every equation with each."""
+
+
+@dataclass(frozen=True)
+class Swing:
+    """A mode of a robot on a path.
+
+    Attributes
+    ----------
+    number : int
+        0 of the slowest.
+    frequency : float
+        In the middle of the path [rad/s].
+    leaves : float
+        Largest displacement of the tip that it leaves [m], if alone, after a plain cycloid that
+        takes two swings of the slowest mode; undamped, its phase on arrival as bad as can be.
+    """
+
+    number: int
+    frequency: float
+    leaves: float
+
+
+@lru_cache(maxsize=64)
+def swings_of(robot: Robot, path: GeometricPath) -> tuple[Swing, ...]:
+    """The slowest modes of a robot, twelve at most, and how a path excites each."""
+    count = min(MOST_MODES, len(robot.mechanism.sprung))
+    reduction = Reduction(robot.dynamics, robot.tip_place, path, range(count))
+    coefficients = reduction.at(np.linspace(0.0, 1.0, NODES))
+    forces = np.abs(coefficients.modes["a"]).max(axis=0)
+    displacements = np.linalg.norm(coefficients.tips, axis=1).max(axis=0)
+    frequencies = reduction.all_frequencies[:count]
+    duration = _SWINGS_OF_A_MOVE * math.tau / frequencies[0]
+    turning = math.tau / duration
+    amplitudes = 2 * forces * turning**2 / duration
+    amplitudes = amplitudes / (frequencies * np.abs(frequencies**2 - turning**2))
+    leaves = displacements * amplitudes
+    return tuple(
+        Swing(number, float(frequency), float(left))
+        for number, (frequency, left) in enumerate(zip(frequencies, leaves))
+    )
+
+
+_SWINGS_OF_A_MOVE = 2
+"""A move that is as short: shorter ones take much energy."""
+_EXCITED_SHARE = 1e-3
+"""Of what the most excited mode leaves: a mode that leaves less is not followed."""
+
+
+def modes_on(robot: Robot, path: GeometricPath) -> tuple[int, ...]:
+    """Numbers of the modes that are followed on a path: so many, or those that it excites."""
+    if robot.modes != EXCITED:
+        return tuple(range(int(robot.modes)))
+    swings = swings_of(robot, path)
+    least = _EXCITED_SHARE * max(swing.leaves for swing in swings)
+    return tuple(swing.number for swing in swings if swing.leaves >= least)
+
+
 @lru_cache(maxsize=16)
 def tables_of(robot: Robot, path: GeometricPath) -> Tables:
     """The tables of a robot on a path; ValueError where a spring cannot carry its load."""
-    reduction = Reduction(robot.dynamics, robot.tip_place, path, robot.modes)
+    reduction = Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
     layout = _Layout(reduction.at(np.array([0.5])))
 
     def columns(places: Array) -> Array:
@@ -78,18 +165,95 @@ def tables_of(robot: Robot, path: GeometricPath) -> Tables:
     positions = path.extended.on(found.knots)
     terms = max(found.coefficients.shape[1], positions.coefficients.shape[1])
     derivatives = [positions, *(positions.derivative(order) for order in (1, 2, 3))]
-    tips = Piecewise(found.knots, by_name["tips"].reshape(*found.coefficients.shape[:2], -1))
     return Tables(
         knots=found.knots,
         modes={name: _filled(by_name[f"modes {name}"], terms) for name in OF_MODES},
         torques={name: _filled(by_name[f"torques {name}"], terms) for name in OF_TORQUES},
         tips=_filled(by_name["tips"], terms),
-        tip_rates=_filled(
-            tips.derivative().coefficients.reshape(len(found.knots) - 1, -1, *layout.tips), terms
-        ),
+        tip_rates=_filled(_slopes(found.knots, by_name["tips"]), terms),
         path=[_filled(order.coefficients, terms) for order in derivatives],
         frequencies=reduction.all_frequencies,
     )
+
+
+Groups = dict[str, dict[str, Array]]
+"""Tables by group and entry, as of `Tables.groups`."""
+
+
+@lru_cache(maxsize=16)
+def variations_of(
+    robot: Robot, path: GeometricPath, names: tuple[str, ...]
+) -> dict[tuple[int, ...], Groups]:
+    """What is added to the tables where multiples of `VARIED` are not 1.
+
+    Parameters
+    ----------
+    robot, path
+        Of the tables.
+    names : tuple of str
+        Which multiples are varied.
+
+    Returns
+    -------
+    dict
+        By powers of the multiples' errors: the tables that are multiplied by these.
+    """
+    tables = tables_of(robot, path)
+    nominal = Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
+    layout = _Layout(nominal.at(np.array([0.5])))
+    multiples = dict.fromkeys(VARIED, 1.0)
+    errors, powers = _design(len(names))
+    varied = [
+        nominal.of(robot.dynamics_with(**(multiples | dict(zip(names, 1 + FARTHEST * error)))))
+        for error in errors
+    ]
+    monomials = np.prod(errors[:, None, :] ** np.array(powers), axis=2)
+
+    def terms_of(places: Array) -> Array:
+        """Places -> the factors of all monomials, side by side."""
+        before = layout.columns(nominal.at(places))
+        changes = np.array([layout.columns(reduction.at(places)) - before for reduction in varied])
+        factors = np.linalg.solve(monomials, changes.reshape(len(varied), -1))
+        by_place = factors.reshape(changes.shape).swapaxes(0, 1)
+        return by_place.reshape(len(places), -1)
+
+    scales = layout.scales(layout.columns(nominal.at(np.linspace(0.0, 1.0, NODES))))
+    fitted = cut(
+        interpolate(terms_of, tables.knots, NODES),
+        np.tile(ACCURACY_OF_CHANGES * scales, len(powers)),
+    )
+    terms = max(fitted.shape[1], len(tables.tips[0]))
+    variations = dict[tuple[int, ...], Groups]()
+    for power, part in zip(powers, np.split(fitted, len(powers), axis=2)):
+        by_name = layout.split(part / FARTHEST ** sum(power))
+        variations[power] = {
+            "modes": {name: _filled(by_name[f"modes {name}"], terms) for name in OF_MODES},
+            "torques": {name: _filled(by_name[f"torques {name}"], terms) for name in OF_TORQUES},
+            "tips": {
+                "rows": _filled(by_name["tips"], terms),
+                "slopes": _filled(_slopes(tables.knots, by_name["tips"]), terms),
+            },
+        }
+    return variations
+
+
+def _design(count: int) -> tuple[Array, list[tuple[int, ...]]]:
+    """Errors of so many multiples, shares of the farthest, and as many powers of them."""
+    alone = [0.5, 1.0, -0.5, -1.0]
+    if count == 1:
+        return np.array(alone)[:, None], [(power,) for power in range(1, 5)]
+    errors = [(error, 0.0) for error in alone] + [(0.0, error) for error in alone]
+    errors += [(first, second) for first in (-1.0, 1.0) for second in (-1.0, 1.0)]
+    powers = [(power, 0) for power in range(1, 5)] + [(0, power) for power in range(1, 5)]
+    powers += [(1, 1), (1, 2), (2, 1), (2, 2)]
+    return np.array(errors), powers
+
+
+def _slopes(knots: Array, tips: Array) -> Array:
+    """Derivatives of the tips' rows by the place, shape (pieces, terms, directions, modes)."""
+    rows = Piecewise(knots, tips.reshape(*tips.shape[:2], -1))
+    slopes = rows.derivative().coefficients
+    return slopes.reshape(len(slopes), -1, *tips.shape[2:])
 
 
 def reach() -> tuple[float, float]:

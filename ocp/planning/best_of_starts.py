@@ -76,14 +76,20 @@ def _lowest(solutions: Sequence[Solution], scalarization: Scalarization) -> Solu
 
 
 def solve_from_starts(
-    problem: NonlinearProgram, starts: Sequence[Array], solver: Solver, *, quick: bool = False
+    problem: NonlinearProgram,
+    starts: Sequence[Array],
+    solver: Solver,
+    *,
+    quick: bool = False,
+    thorough: bool = True,
 ) -> tuple[Solution, list[Solution]]:
     """The best solution from several starts, and all, the best first.
 
     Where none of them leads to a solution, motions of least peaks are tried as starts, then what
     stands in for the solver.
     InfeasibleTaskError says what would be feasible; SolverFailedError has another reason. A quick
-    solve ends with its starts, and says nothing of that.
+    solve ends with its starts, and says nothing of that; one that is not thorough has no stand-in,
+    and says nothing either.
     """
     tried: list[Solution] = []
     least: dict[str, Solution] = {}
@@ -95,7 +101,7 @@ def solve_from_starts(
         if problem.scalarization.limits:
             least.update(least_peaks_of(problem, starts[:2], solver))
             yield solver, [solution.coefficients for solution in least.values()]
-        substitute = stand_in(solver)
+        substitute = stand_in(solver) if thorough else None
         if substitute is not None:
             yield substitute, starts[:2]
 
@@ -107,7 +113,7 @@ def solve_from_starts(
         if any(solution.status.solved for solution in tried):
             break
     solved = [solution for solution in tried if solution.status.solved]
-    if not solved and quick:
+    if not solved and (quick or not thorough):
         raise InfeasibleTaskError(f"no start was solved: {tried[0].reason}")
     if not solved:
         raise explain(problem, tried, least, solver)

@@ -211,7 +211,9 @@ def _narrow(tried: _Tried, tolerance: float, shares: tuple[float, ...] = (0.97, 
             else:
                 low = middle
         below = (share * low for share in shares if share * low > least)
-        shorter = next((duration for duration in below if tried.succeeds(duration)), None)
+        shorter = next(
+            (duration for duration in below if tried.succeeds(duration, thorough=False)), None
+        )
         if shorter is None:
             return
         low = least or shorter / _GROWTH
@@ -226,12 +228,14 @@ class _Tried:
         self.best: Plan | None = None
         self.failed: dict[float, str] = {}
 
-    def succeeds(self, duration: float) -> bool:
-        """Whether there is a plan for a duration."""
+    def succeeds(self, duration: float, thorough: bool = True) -> bool:
+        """Whether there is a plan for a duration, by the solver alone if not thorough."""
         task = replace(self.request.task, duration=duration)
         guess = None if self.best is None else self.best.coefficients
+        request = self.request.on(task)
+        request = replace(request, setup=replace(request.setup, thorough=thorough))
         try:
-            self.best = plan_along(self.request.on(task).along(self.request.profile, guess))
+            self.best = plan_along(request.along(self.request.profile, guess))
         except SolverFailedError as error:
             self.failed[duration] = str(error)
             return False

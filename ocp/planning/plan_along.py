@@ -179,7 +179,13 @@ def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Pla
     began = time.perf_counter()
     setup = request.setup
     problem = request.problem()
-    best, solved = solve_from_starts(problem, starts, setup.solver, quick=request.quick)
+    best, solved = solve_from_starts(
+        problem,
+        starts,
+        setup.solver,
+        quick=request.quick,
+        thorough=setup.thorough,
+    )
     certified = certify_one(problem, best, setup.solver)
     assert isinstance(certified.checked, Candidate)  # a single motion is judged by CVODES
     solution = certified.solution

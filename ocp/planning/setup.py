@@ -32,6 +32,9 @@ class Setup:
         Of the discretisation; None where the task chooses them.
     guess : tuple of float or None
         Coefficients of the first start, in place of the plain cycloid.
+    thorough : bool
+        Whether, where no start is solved, another solver stands in, and an error says which limit,
+        if wider, would do: that takes a solve for each.
 
     Raises
     ------
@@ -45,6 +48,7 @@ class Setup:
     seed: int = 0
     steps: int | None = None
     guess: tuple[float, ...] | None = None
+    thorough: bool = True
 
     def __post_init__(self) -> None:
         instance("solver", self.solver, Solver)

@@ -40,7 +40,7 @@ class FreeVibration:
     matrix : ndarray, shape (2 * modes, 2 * modes)
         Derivative of a state by the state [1/s].
     tips : ndarray, shape (tips, 2 * modes)
-        Tip displacements [m] by the state.
+        Tip displacements [m] by the state; along the plant's `tip_lines`, where it has some.
     fastest : ndarray, shape ()
         Largest angular frequency [rad/s].
 
@@ -65,6 +65,8 @@ class FreeVibration:
         units = np.eye(modes).tolist()
         by_mode = [list(plant.tips_at(at_rest, unit)) for unit in units]
         of_tips[:, :, :modes] = _stacked(by_mode, len(angles)).transpose(0, 2, 1)
+        if plant.tip_lines is not None:
+            of_tips = plant.tip_lines @ of_tips
         single = np.ndim(angle) == 0
         self.matrix, self.tips = (of_rates[0], of_tips[0]) if single else (of_rates, of_tips)
         self._eigenvalues = np.linalg.eigvals(self.matrix).astype(complex)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -113,7 +114,9 @@ def first_steps(task: PointToPoint, profile: JointProfile) -> int:
     # 80, since these hold only at the nodes.
     fewest = 80 if task.limits else 48
     of_profile = 8 * (profile.size - 2)
-    steps = default_steps(task, least=min(max(fewest, of_profile), 80))
+    least = min(max(fewest, of_profile), 80)
+    at_once = task.plant.steps_at_once
+    steps = at_once * math.ceil(default_steps(task, least=least) / at_once)
     if steps > MOST_SOLVER_STEPS:
         raise ValueError(
             f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "

@@ -72,6 +72,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
         *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
         ("status", plan.status.text),
         _verified_row(plan),
+        *_full_rows(plan),
         ("time", f"{plan.record.seconds:.2f} s"),
     ]
 
@@ -191,6 +192,22 @@ def _verified_row(plan: Plan) -> Row:
         f"the figures are by CVODES; {check.steps} fixed steps differ by {differ} in residual, "
         f"where {AGREEMENT:g} of each is agreement; give {remedy}"
     )
+
+
+def _full_rows(plan: Plan) -> list[Row]:
+    """What the whole equations say of a motion whose plant is a reduction of them."""
+    figures = plan.candidate.in_full
+    if figures is None:
+        return []
+    share = abs(figures.energy / plan.energy - 1)
+    residual = tip_words(figures.residual, plan.task.plant.tip_unit)
+    return [
+        (
+            "in full",
+            f"{figures.energy:.6g} J ({share:.0e} from F2) and {residual} left, by CVODES on the "
+            "whole equations, without modes and tables",
+        )
+    ]
 
 
 def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import tau
 
 import numpy as np
@@ -9,6 +10,8 @@ import numpy as np
 from quietarm.models import GeometricPath, Robot
 from quietarm.models.joint_motion import joint_unit
 from quietarm.models.robot.modes import modes_at, sag_at
+from quietarm.models.robot.reduction import MIDDLE
+from quietarm.models.robot.tables import modes_on, swings_of
 from quietarm.models.robot.urdf import PRISMATIC
 from quietarm.ocp.limits import QUANTITIES
 
@@ -68,7 +71,7 @@ def _joint_rows(robot: Robot) -> list[Row]:
     if others:
         positions = (f"{name} at {robot.held.get(name, 0.0):.4g}" for name in others)
         rows.append(("held", ", ".join(positions)))
-    for entry, unit in (("rotor_inertia", "kg m^2"), ("friction", "N m s/rad")):
+    for entry, unit in (("rotor_inertia", "kg m^2"), ("friction", "N m s/rad"), ("coulomb", "N m")):
         values = getattr(robot, entry)
         listed = ", ".join(f"{name} {value:.4g}" for name, value in values.items())
         words = f"{listed} {unit}" if listed else "none: give it, as the URDF has none"
@@ -109,18 +112,39 @@ def _limit_rows(robot: Robot) -> list[Row]:
 def _path_rows(robot: Robot, path: GeometricPath) -> list[Row]:
     """Modes and sag along a path, in the words of its ends."""
     slides = [robot.description.joints[name].kind == PRISMATIC for name in robot.joints]
+    numbers = modes_on(robot, path)
     rows = list[Row]()
     for place in _PLACES:
         q = path(place)
         p = sag_at(robot.dynamics, q)
         squares, _ = modes_at(robot.dynamics, q, p)
-        shown = [f"{value / tau:.3g}" for value in squares[: robot.modes + _MORE]]
-        followed = ", ".join(shown[: robot.modes])
-        left = f" (left out: {', '.join(shown[robot.modes :])} ...)" if shown[robot.modes :] else ""
+        hertz = [f"{value / tau:.3g}" for value in squares[: max(numbers) + 1 + _MORE]]
+        followed = ", ".join(hertz[number] for number in numbers)
+        others = [value for number, value in enumerate(hertz) if number not in numbers]
+        left = f" (left out: {', '.join(others)} ...)" if others else ""
         sag = 1e3 * float(np.linalg.norm(robot.sag(q)))
         positions = ", ".join(
             f"{round(x, 9):.4g}" if slide else f"{round(np.degrees(x), 6):.4g}deg"
             for x, slide in zip(q, slides)
         )
         rows.append((f"at {positions}", f"modes {followed} Hz{left}, sag {sag:.3g} mm"))
-    return rows
+    return [*rows, *_left_out_rows(robot, path, numbers)]
+
+
+def _left_out_rows(robot: Robot, path: GeometricPath, numbers: Sequence[int]) -> list[Row]:
+    """What the modes that are not followed leave after a plain cycloid, the largest first."""
+    swings = [swing for swing in swings_of(robot, path) if swing.number not in numbers]
+    swings = sorted(swings, key=lambda swing: -swing.leaves)[:_MORE]
+    if not swings:
+        return []
+    duration = 2 * tau / robot.frequencies(path(MIDDLE))[0]
+    words = ", ".join(
+        f"{swing.frequency / tau:.3g} Hz {1e3 * swing.leaves:.2g} mm" for swing in swings
+    )
+    return [
+        (
+            "left out",
+            f"leave after a plain cycloid of {duration:.3g} s at most {words}; "
+            "follow them by more modes, or by modes: excited",
+        )
+    ]

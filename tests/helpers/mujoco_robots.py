@@ -14,6 +14,8 @@ from scipy.integrate import solve_ivp
 GRAVITY = (0.0, 0.0, -9.80665)
 # MuJoCo has no moving body without a mass; that of a hinge is 1e-5 of the bar's.
 HINGE = {"mass": 1e-5, "moments": (1e-9, 1e-9, 1e-9)}
+# Of a joint that moves a part of the robot, and not a hinge alone [kg m^2].
+LEAST_INERTIA = 1e-6
 
 
 @dataclass
@@ -110,14 +112,28 @@ class FlexibleRobot:
         axis = element.find("axis").get("xyz")
         self.add_joint(f"gear_{joint}", f"motor_{joint}", link, (0, 0, 0), axis, stiffness, damping)
 
-    def add_base(self, root, stiffness, damping, height):
+    def add_base(self, stiffness, damping, height):
         """Two sprung joints below the root link."""
+        root = self._rename_root("foot")
         self.add_link("ground", 1.0, (0, 0, 0), (1.0, 1.0, 1.0))
         self.add_link("rocker", HINGE["mass"], (0, 0, 0), HINGE["moments"])
         self.add_link("pedestal", HINGE["mass"], (0, 0, 0), HINGE["moments"])
         self.add_joint("rock_x", "ground", "rocker", (0, 0, -height), "1 0 0", stiffness, damping)
         self.add_joint("rock_y", "rocker", "pedestal", (0, 0, 0), "0 1 0", stiffness, damping)
         self.add_joint("on_top", "pedestal", root, (0, 0, height))
+
+    def _rename_root(self, name):
+        """The root link by another name: MuJoCo takes one that is called `world` as the ground."""
+        children = {joint.find("child").get("link") for joint in self.root.findall("joint")}
+        roots = [link for link in self.root.findall("link") if link.get("name") not in children]
+        (root,) = roots
+        before = root.get("name")
+        root.set("name", name)
+        for joint in self.root.findall("joint"):
+            parent = joint.find("parent")
+            if parent.get("link") == before:
+                parent.set("link", name)
+        return name
 
 
 class Truth:
@@ -143,6 +159,8 @@ class Truth:
         self.stiffness = softened * self.stiffness
         self.body = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, robot.tip[0])
         self.along = np.array([0.0, 0.0, robot.tip[1]])
+        inertias = np.diag(self._dynamics(np.zeros(self.model.nv), np.zeros(self.model.nv))[0])
+        assert inertias.min() > LEAST_INERTIA, "a joint carries nothing"
 
     def residual_and_energy(self, motion, duration, window=1.0):
         """Largest displacement of the tip after arrival [m], energy [J], torques' peaks [N m]."""

@@ -40,3 +40,28 @@ def ur5_with_bar(**changes):
 def straight():
     """The path of the UR5 in the tests."""
     return qa.GeometricPath.line(START, END)
+
+
+# Of steel, 0.6 m of 10 mm by 6 mm, with 0.4 kg at its end.
+STEEL_BAR = {
+    "length": 0.6, "width": 0.01, "height": 0.006, "youngs_modulus": 210e9, "density": 7850.0,
+    "tip_mass": 0.4, "damping": 0.004,
+}  # fmt: skip
+PANDA_START = np.array([-0.6, -0.5, 0.2, -2.0, 0.1, 1.6, 0.4])
+PANDA_END = np.array([0.6, 0.1, -0.1, -1.5, -0.2, 1.9, 0.8])
+# Of harmonic drives of its size [N m/rad].
+PANDA_GEARS = (3e4, 3e4, 2e4, 2e4, 8e3, 8e3, 8e3)
+
+
+@lru_cache
+def panda_with_bar(modes=2):
+    """The Panda, whose gears bend and whose hand carries the bar of steel."""
+    joints = [f"panda_joint{number}" for number in range(1, 8)]
+    return qa.Robot(
+        urdf=urdf_of("panda.urdf"),
+        joints=joints,
+        held={"panda_finger_joint1": 0.01, "panda_finger_joint2": 0.01},
+        beam=qa.Beam(at="panda_hand", **STEEL_BAR),
+        elastic_joints={joint: (gear, 5.0) for joint, gear in zip(joints, PANDA_GEARS)},
+        modes=modes,
+    )

@@ -1,5 +1,6 @@
 """Robots from a URDF and from a file: what is read, and what is refused."""
 
+import dataclasses
 import json
 import math
 import pickle
@@ -10,6 +11,7 @@ from robots import BAR, END, START, UR5_JOINTS, ur5_with_bar, urdf_of
 
 import quietarm as qa
 from quietarm.models import Base, Spring
+from quietarm.models.robot.tables import modes_on, swings_of
 
 FILE = """
 urdf: {urdf}
@@ -202,3 +204,30 @@ def test_a_robots_content_is_plain():
     from dataclasses import asdict
 
     assert json.loads(json.dumps(asdict(ur5_with_bar())))["beam"]["length"] == 0.8
+
+
+def test_modes_that_the_path_excites_are_followed():
+    """Of a robot with a bar on a pedestal: those of the bar and of the pedestal, none faster."""
+    robot = dataclasses.replace(
+        ur5_with_bar(), base=Base((6e4, 6e4), (5.0, 5.0), 0.5), modes="excited"
+    )
+    path = qa.GeometricPath.line(START, END)
+    swings = swings_of(robot, path)
+    numbers = modes_on(robot, path)
+    largest = max(swing.leaves for swing in swings)
+    assert numbers == tuple(swing.number for swing in swings if swing.leaves >= 1e-3 * largest)
+    assert numbers == (0, 1, 2, 3)
+    assert robot.along(path).modes == len(numbers) < len(swings)
+    with pytest.raises(ValueError, match="modes is 'all'; give a whole number, or excited"):
+        dataclasses.replace(robot, modes="all")
+
+
+def test_what_a_left_out_mode_leaves_is_what_the_cycloid_leaves():
+    """The bound, undamped and at the worst phase, is above what a plain cycloid leaves alone."""
+    robot = dataclasses.replace(ur5_with_bar(), modes=1)
+    path = qa.GeometricPath.line(START, END)
+    (slowest, *_) = swings_of(robot, path)
+    duration = 2 * math.tau / slowest.frequency
+    task = qa.PointToPoint(robot.along(path), target=1.0, duration=1.1 * duration)
+    left = qa.evaluate_coefficients(task, []).residual
+    assert 0.1 * slowest.leaves < left < 1.5 * slowest.leaves

@@ -41,7 +41,7 @@ def _values(tables, table):
 def test_tables_are_the_equations_between_their_nodes(path):
     """Within 1e-9 of the largest value of each coefficient, or of what matters beside it."""
     robot = ur5_with_bar()
-    exact = Reduction(robot.dynamics, robot.tip_place, path, 2).at(BETWEEN)
+    exact = Reduction(robot.dynamics, robot.tip_place, path, range(2)).at(BETWEEN)
     tables = tables_of(robot, path)
     push = np.abs(exact.modes["a"]).max()
     force = np.abs(exact.torques["g"]).max()

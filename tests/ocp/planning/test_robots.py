@@ -177,3 +177,18 @@ def test_a_plan_whose_robot_was_changed_by_hand_gives_other_figures(plan, tmp_pa
     changed = qa.Plan.load(file)
     again = qa.evaluate_coefficients(changed.task, changed.coefficients, profile=changed.profile)
     assert again.residual > 1e-3
+
+
+def test_the_whole_equations_say_what_mujoco_says(plan, cycloid):
+    """The judge uses neither tables nor modes, and shares no code with MuJoCo."""
+    for motion in (plan, cycloid):
+        residual, energy, torques = _measured(motion)
+        figures = motion.candidate.in_full
+        assert figures.energy == pytest.approx(energy, rel=2e-5)
+        assert figures.residual == pytest.approx(residual, rel=5e-3, abs=1e-6)
+        assert figures.peak_torques == pytest.approx(torques, rel=1e-3)
+
+
+def test_plants_that_are_no_reduction_have_no_other_equations():
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), target=1.0, duration=1.0)
+    assert qa.evaluate_coefficients(task, []).candidate.in_full is None

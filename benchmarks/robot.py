@@ -1,0 +1,284 @@
+"""Robots along a path, in MuJoCo: what a plan takes and leaves, beside what others do.
+
+    pip install "quietarm[robot]" mujoco example-robot-data ruckig
+    python benchmarks/robot.py [table] [figures] [--only 2 8]
+
+`table` moves the UR5 with its bar by a plan and by five rivals. `figures` measures what robots are
+held to, one line each: what is asked for, what is found, the processor's seconds. MuJoCo integrates
+every hinge of what bends, nonlinear; it shares no code with quietarm.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Callable, Iterator
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "helpers"))
+
+from mujoco_robots import FlexibleRobot, Truth, motion_of
+from robots import (
+    BAR,
+    END,
+    PANDA_END,
+    PANDA_START,
+    START,
+    STEEL_BAR,
+    UR5_JOINTS,
+    panda_with_bar,
+    straight,
+    ur5_with_bar,
+    urdf_of,
+)
+
+import quietarm as qa
+from quietarm.models import Base, JointMotion, RobotOnPath
+
+Array = NDArray[np.float64]
+Motion = Callable[[float], tuple[Array, Array, Array]]
+DURATION = 1.0
+PEDESTAL = Base(stiffness=(6e4, 6e4), damping=(5.0, 5.0), height=0.5)
+FASTEST = {
+    "torque_limit": dict(zip(UR5_JOINTS, (150.0, 150.0, 150.0, 28.0, 28.0, 28.0))),
+    "speed_limit": dict(zip(UR5_JOINTS, (3.15, 3.15, 3.15, 3.2, 3.2, 3.2))),
+    "acceleration_limit": dict.fromkeys(UR5_JOINTS, 12.0),
+    "jerk_limit": dict.fromkeys(UR5_JOINTS, 250.0),
+}
+LIMITED = {
+    "torque_limit": dict(zip(UR5_JOINTS, (16.0, 44.0, 18.5, 5.0, 5.0, 5.0))),
+    "speed_limit": dict.fromkeys(UR5_JOINTS, 3.0),
+    "acceleration_limit": dict.fromkeys(UR5_JOINTS, 14.0),
+    "jerk_limit": dict.fromkeys(UR5_JOINTS, 300.0),
+}
+
+
+def move(**entries: object) -> qa.PointToPoint:
+    """The move of the UR5 with its bar."""
+    plant = ur5_with_bar().along(straight())
+    return qa.PointToPoint(plant, **({"target": 1.0, "duration": DURATION} | entries))
+
+
+@lru_cache
+def planned() -> qa.Plan:
+    """The plan of that move."""
+    return qa.plan_move(move())
+
+
+def truth_of(stiffness: float = 1.0) -> Truth:
+    """The UR5 with its bar in MuJoCo, with so many times its stiffness."""
+    robot = FlexibleRobot(urdf_of("ur5_robot.urdf"))
+    hinges = robot.add_bar("tool0", **BAR)
+    return Truth(robot, UR5_JOINTS, BAR["damping"], hinges, softened=stiffness)
+
+
+def measured(plan: qa.Plan, truth: Truth) -> tuple[float, float, Array]:
+    """Residual [mm], energy [J] and peaks of the torques [N m]."""
+    residual, energy, torques = truth.residual_and_energy(motion_of(plan), plan.task.duration)
+    return 1e3 * residual, energy, torques
+
+
+def on_the_line(place_of: Callable[[float], tuple[float, float, float]]) -> Motion:
+    """Joints by the place on the straight path, its speed and acceleration."""
+    way = END - START
+
+    def motion(at: float) -> tuple[Array, Array, Array]:
+        place, speed, acceleration = place_of(at)
+        return START + place * way, speed * way, acceleration * way
+
+    return motion
+
+
+def quintic(at: float) -> tuple[float, float, float]:
+    """The polynomial of fifth degree from rest to rest."""
+    x = at / DURATION
+    return (
+        x**3 * (10 - 15 * x + 6 * x**2),
+        30 * x**2 * (1 - x) ** 2 / DURATION,
+        60 * x * (1 - x) * (1 - 2 * x) / DURATION**2,
+    )
+
+
+def ruckig_places() -> Callable[[float], tuple[float, float, float]]:
+    """Ruckig in the same time: phase-synchronised joints are one joint along the line."""
+    from ruckig import InputParameter, Ruckig, Trajectory
+
+    longest = float(np.abs(END - START).max())
+    request = InputParameter(1)
+    trajectory = Trajectory(1)
+    request.current_position = [0.0]
+    request.target_position = [1.0]
+    request.max_velocity = [3.14 / longest]
+    request.max_acceleration = [10.0 / longest]
+    request.max_jerk = [150.0 / longest]
+    request.minimum_duration = DURATION
+    Ruckig(1).calculate(request, trajectory)
+    return lambda at: tuple(entry[0] for entry in trajectory.at_time(min(at, DURATION)))
+
+
+def table() -> None:
+    """Energy and residual of the plan and its rivals, in MuJoCo."""
+    task = move()
+    cycloid = qa.evaluate_coefficients(task, [])
+    motions = {
+        "plan": motion_of(planned()),
+        "cycloid": motion_of(cycloid),
+        "quintic": on_the_line(quintic),
+        "ruckig, phase-synchronised": on_the_line(ruckig_places()),
+    }
+    for shaper in ("zv", "zvd"):
+        profile = qa.shaped_cycloid(task, shaper)
+        shaped = qa.evaluate_coefficients(task, [], profile=profile)
+        motions[f"{shaper.upper()} on the cycloid"] = motion_of(shaped)
+    truth = truth_of()
+    print("| UR5 with a bar, 1 s, in MuJoCo | energy [J] | residual [mm] |")
+    print("|---|---:|---:|")
+    for name, motion in motions.items():
+        residual, energy, _ = truth.residual_and_energy(motion, DURATION)
+        print(f"| {name} | {energy:.3f} | {1e3 * residual:.3g} |", flush=True)
+    print(f"claimed of the plan: {planned().energy:.4f} J, {1e3 * planned().residual:.2g} mm")
+
+
+class Frozen(RobotOnPath):
+    """A robot whose modes are those of its arrival everywhere."""
+
+    name = "frozen-robot"
+
+    def modal_accelerations(self, joint: JointMotion, W: list, dW: list) -> list:
+        """As at the end of the path."""
+        return super().modal_accelerations(joint._replace(angle=1.0 + 0.0 * joint.angle), W, dW)
+
+
+def figure_2() -> str:
+    residual, energy, _ = measured(planned(), truth_of())
+    whole = planned().candidate.in_full
+    return (
+        f"33.287 J within 1e-4, 0.05 mm: {planned().energy:.4f} J; MuJoCo {energy:.4f} J and "
+        f"{residual:.3f} mm; CVODES in full {whole.energy:.4f} J and {1e3 * whole.residual:.3f} mm"
+    )
+
+
+def figure_3() -> str:
+    plant = Frozen(robot=ur5_with_bar(), path=straight())
+    wrong = qa.plan_move(qa.PointToPoint(plant, target=1.0, duration=DURATION))
+    residual, _, _ = measured(wrong, truth_of())
+    return f"modes frozen at arrival leave at least 20 mm: {residual:.1f} mm"
+
+
+def figure_5() -> str:
+    plan = qa.plan_move(move(**LIMITED))
+    residual, _, torques = measured(plan, truth_of())
+    shares = torques / np.array([*LIMITED["torque_limit"].values()])
+    return (
+        f"limits by joint, 38.0 J, peaks within 1.001: {plan.energy:.2f} J, {shares.max():.4f}, "
+        f"{residual:.3f} mm"
+    )
+
+
+def figure_6() -> str:
+    fastest = qa.fastest_move(move(**FASTEST), qa.CycloidPolynomial(12))
+    residual, _, _ = measured(fastest.plan, truth_of())
+    return f"fastest with 12 terms, 0.79 s: {fastest.duration:.4f} s, {residual:.3f} mm"
+
+
+def figure_7() -> str:
+    robot = qa.Robot(urdf=urdf_of("ur5_robot.urdf"), base=PEDESTAL, tip="wrist_3_link")
+    plan = qa.plan_move(qa.PointToPoint(robot.along(straight()), target=1.0, duration=0.8))
+    in_mujoco = FlexibleRobot(urdf_of("ur5_robot.urdf"), tip=("wrist_3_link", 0.0))
+    in_mujoco.add_base(PEDESTAL.stiffness[0], PEDESTAL.damping[0], PEDESTAL.height)
+    residual, _, _ = measured(plan, Truth(in_mujoco, UR5_JOINTS))
+    return f"rocking pedestal, 0.001 mm: {residual:.6f} mm"
+
+
+def figure_8() -> str:
+    task = move(uncertainty=qa.Uncertainty({"frequency": 0.05}))
+    plan = qa.plan_move(task, qa.CycloidPolynomial(8), residual_limit=1.2e-3)
+    worst = max(measured(plan, truth_of(share**2))[0] for share in (0.95, 1.0, 1.05))
+    return f"frequency +-5 %, 1.2 mm, at most 1.26 mm: {worst:.3f} mm, {plan.energy:.2f} J"
+
+
+def figure_9() -> str:
+    begin = time.process_time()
+    fresh = ur5_with_bar.__wrapped__(gravity=(0.0, 0.0, -9.8066))
+    _ = qa.plan_move(qa.PointToPoint(fresh.along(straight()), target=1.0, duration=DURATION))
+    first = time.process_time() - begin
+    robot = _second_plans(fresh.along(straight()))
+    beam = _second_plans(qa.FlexibleBeam(mode_count=2))
+    words = ", ".join(
+        f"of {duration} duration {mine:.2f} s and {theirs:.2f} s, {mine / theirs:.2f} times"
+        for duration, mine, theirs in zip(("another", "the same"), robot, beam)
+    )
+    return (
+        f"first plan 8 s, second three times that of a beam of two modes on one joint: {first:.2f} "
+        f"s; {words}"
+    )
+
+
+def _second_plans(plant: qa.Plant) -> list[float]:
+    """The processor's seconds of a plan after another: of another duration, and the same again."""
+    seconds = list[float]()
+    for duration in (DURATION, 1.02 * DURATION, 1.02 * DURATION):
+        begin = time.process_time()
+        qa.plan_move(qa.PointToPoint(plant, target=1.0, duration=duration))
+        seconds.append(time.process_time() - begin)
+    return seconds[1:]
+
+
+def figure_10() -> str:
+    robot = panda_with_bar(modes=4)
+    plant = robot.along(qa.GeometricPath.line(PANDA_START, PANDA_END))
+    task = qa.PointToPoint(plant, target=1.0, duration=1.2)
+    plan = qa.plan_move(task, qa.CycloidPolynomial(10))
+    in_mujoco = FlexibleRobot(urdf_of("panda.urdf"))
+    hinges = in_mujoco.add_bar("panda_hand", **STEEL_BAR)
+    for joint, gear in robot.elastic_joints.items():
+        in_mujoco.add_gear(joint, gear.stiffness, gear.damping)
+    truth = Truth(in_mujoco, robot.joints, STEEL_BAR["damping"], hinges, held=robot.held)
+    residual, energy, _ = measured(plan, truth)
+    return (
+        f"Panda, elastic joints on all axes, 0.05 mm: {residual:.4f} mm, {plan.energy:.4f} J; "
+        f"MuJoCo {energy:.4f} J"
+    )
+
+
+FIGURES = {
+    2: figure_2,
+    3: figure_3,
+    5: figure_5,
+    6: figure_6,
+    7: figure_7,
+    8: figure_8,
+    9: figure_9,
+    10: figure_10,
+}
+"""By their numbers. 1 and 4 are tests: tests/ocp/test_golden_answers.py, tests/ocp/planning."""
+
+
+def lines(numbers: list[int]) -> Iterator[str]:
+    """A line for each figure, as it is measured."""
+    for number in numbers:
+        begin = time.process_time()
+        words = FIGURES[number]()
+        yield f"{number:2d}  {words}  [{time.process_time() - begin:.1f} s]"
+
+
+def main() -> None:
+    """Print what is named, or both."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("what", nargs="*", choices=["table", "figures"], default=[])
+    parser.add_argument("--only", nargs="+", type=int, choices=FIGURES, default=list(FIGURES))
+    options = parser.parse_args()
+    if not options.what or "table" in options.what:
+        table()
+    if not options.what or "figures" in options.what:
+        for line in lines(options.only):
+            print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main()

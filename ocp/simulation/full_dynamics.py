@@ -1,0 +1,204 @@
+"""The judge of a plant whose equations are a reduction: CVODES on the whole equations.
+
+A robot's plans are made with a few modes and with tables of its path. Here every spring moves, by
+the equations themselves, and neither modes nor tables are used.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from quietarm.models import JointMotion
+from quietarm.models.compiled import Compiled
+from quietarm.models.plant import FullEquations
+from quietarm.ocp.energy import Energy
+from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.profiles.free_motion import PiecewiseMotion
+from quietarm.ocp.sample import Sample
+from quietarm.ocp.simulation.collocation import NODES
+from quietarm.ocp.simulation.mesh import Mesh
+from quietarm.ocp.simulation.objective import spent
+
+Array = NDArray[np.float64]
+
+
+class FullFigures(NamedTuple):
+    """F2 [J], F1 as a distance [m], and the peak torque of every joint [N m]."""
+
+    energy: float
+    residual: float
+    peak_torques: Array
+
+
+def follow_in_full(
+    equations: FullEquations,
+    motion: PiecewiseMotion,
+    ends: tuple[float, float],
+    steps: int,
+    window: Array,
+    energy: Energy,
+) -> FullFigures:
+    """Follow a motion by the whole equations.
+
+    Parameters
+    ----------
+    equations : FullEquations
+        Of the plant.
+    motion : PiecewiseMotion
+        The move.
+    ends : (float, float)
+        Start and target; at the start the springs are at rest.
+    steps : int
+        Of the quadrature, on every piece.
+    window : ndarray
+        Times after arrival at which the tip is looked at [s], 0 the first.
+    energy : Energy
+        F2.
+
+    Raises
+    ------
+    SolverFailedError
+        When CVODES cannot follow the motion.
+    """
+    mesh = Mesh(steps)
+    start, target = ends
+    rest = equations.at_rest(target)
+    state = np.concatenate([equations.at_rest(start), np.zeros(equations.springs)])
+    numbers = motion.arguments.shape[0]
+    given = ca.SX.sym("given", numbers)
+    fraction = ca.SX.sym("fraction")
+    law = motion.law(ca.vertsplit(given), fraction, jerk=False)
+    along = _followed(equations, law, given, fraction, given[-1], mesh.samples)
+    outputs = Compiled(lambda: _torques_and_speeds(equations, law, given, fraction), silent=True)
+    work = 0.0
+    peaks = list[Array]()
+    try:
+        for column in motion.arguments.T:
+            (states,) = along(state, column)
+            state = states[:, -1]
+            torques, speeds = _at(outputs, states, column, mesh.samples)
+            peaks.append(np.abs(torques).max(axis=1))
+            nodes = [
+                _sample(torques[:, 1 + node : -1 : NODES], speeds[:, 1 + node : -1 : NODES])
+                for node in range(NODES)
+            ]
+            lengths = ca.DM(column[-1] * mesh.lengths).T
+            work += float(ca.sum1(spent(energy, nodes, lengths)))
+        still = JointMotion(given[0], 0.0, 0.0)
+        after = _followed(
+            equations, still, given[0], fraction, ca.SX(window[-1]), window / window[-1]
+        )
+        (later,) = after(state, [target])
+    except RuntimeError as error:
+        raise SolverFailedError(f"CVODES could not follow this motion{motion.remedy}") from error
+    tip = Compiled(lambda: _tip(equations), silent=True)
+    angles = np.column_stack([rest, later[: equations.springs]])
+    places = _tip_places(tip, target, angles)
+    away = np.linalg.norm(places[1:] - places[0], axis=1)
+    return FullFigures(work, float(away.max()), np.max(peaks, axis=0))
+
+
+def _followed(
+    equations: FullEquations,
+    path: JointMotion,
+    given: ca.SX,
+    fraction: ca.SX,
+    duration: ca.SX,
+    fractions: Array,
+) -> Compiled:
+    """(state, given) -> states at these fractions of a motion, a column each."""
+
+    def build() -> ca.Function:
+        count = equations.springs
+        state = ca.SX.sym("state", 2 * count)
+        angles = state[:count]
+        rates = state[count:]
+        accelerations = equations.accelerations(path, angles, rates)
+        problem = {
+            "t": fraction,
+            "x": state,
+            "p": given,
+            "ode": duration * ca.vertcat(rates, accelerations),
+        }
+        times = fractions[1:].tolist()
+        run = ca.integrator("full", "cvodes", problem, 0.0, times, CVODES)
+        before = ca.MX.sym("before", 2 * count)
+        parameters = ca.MX.sym("given", given.numel())
+        states = ca.horzcat(before, run(x0=before, p=parameters)["xf"])
+        return ca.Function("states", [before, parameters], [states])
+
+    return Compiled(build, silent=True)
+
+
+CVODES = {
+    "linear_multistep_method": "bdf",  # hinges of a beam are damped within some steps
+    "reltol": 1e-9,
+    "abstol": 1e-11,
+    "max_num_steps": 1_000_000,
+}
+"""Options: energies are then within 1e-7 of those by tolerances of a hundredth."""
+
+
+def _torques_and_speeds(
+    equations: FullEquations, path: JointMotion, given: ca.SX, fraction: ca.SX
+) -> ca.Function:
+    """(state, given, fraction) -> torques and speeds of the joints, in a column."""
+    count = equations.springs
+    state = ca.SX.sym("state", 2 * count)
+    torques = equations.torques(path, state[:count], state[count:])
+    speeds = ca.vertcat(*(joint.speed for joint in equations.joints(path)))
+    outputs = [ca.densify(ca.vertcat(torques, speeds))]
+    return ca.Function("outputs", [state, given, fraction], outputs, {"cse": True})
+
+
+def _at(outputs: Compiled, states: Array, given: Array, fractions: Array) -> tuple[Array, Array]:
+    """Torques and speeds of the joints at every sample, shape (joints, samples)."""
+    columns = [
+        outputs(state, given, fraction)[0].ravel() for state, fraction in zip(states.T, fractions)
+    ]
+    torques, speeds = np.split(np.array(columns).T, 2)
+    return torques, speeds
+
+
+def _sample(torques: Array, speeds: Array) -> Sample:
+    """The nodes of all steps, as far as the energy reads them."""
+    still = JointMotion(ca.DM(0.0), ca.DM(0.0), ca.DM(0.0))
+    joints = [JointMotion(0.0, ca.DM(row).T, 0.0) for row in speeds]
+    return Sample(
+        path=still,
+        joints=joints,
+        W=[],
+        dW=[],
+        ddW=[],
+        tips=[],
+        tip_speeds=[],
+        torques=[ca.DM(row).T for row in torques],
+    )
+
+
+def _tip(equations: FullEquations) -> ca.Function:
+    """(place, angles of the springs) -> where the tip is."""
+    place = ca.SX.sym("place")
+    angles = ca.SX.sym("angles", equations.springs)
+    origin = equations.tip(JointMotion(place, 0.0, 0.0), angles)
+    return ca.Function("tip", [place, angles], [ca.densify(origin)], {"cse": True})
+
+
+def _tip_places(tip: Compiled, place: float, angles: Array) -> Array:
+    """Of many states with the joints at rest, shape (states, 3)."""
+    return np.array([tip(place, column)[0].ravel() for column in angles.T])
+
+
+def times_after(window: float, fastest: float) -> Array:
+    """Times after arrival [s] so near that they miss a ten-thousandth of a peak at most."""
+    samples = math.ceil(window * fastest / _RADIANS_A_SAMPLE) + 1
+    return np.linspace(0.0, window, samples)
+
+
+_RADIANS_A_SAMPLE = 0.03
+"""Phase of the fastest mode that is planned with between two of them."""
