@@ -57,10 +57,14 @@ class Scale:
         return {name: self.score(points, indicator) for name, indicator in INDICATORS.items()}
 
     def score(self, points: Array, indicator: Indicator) -> float:
-        """An indicator of points, shape (n, 2), residual [m] and energy [J]."""
+        """An indicator of points, shape (n, 2), residual [m] and energy [J].
+
+        Of those that no other dominates: motions between points may be dominated, which would count
+        in a mean over them.
+        """
         if not len(points):
             return indicator.of_nothing
-        return indicator.of(self.scaled(points), self)
+        return indicator.of(moocore.filter_dominated(self.scaled(points)), self)
 
 
 class Reference(Scale):
@@ -121,7 +125,7 @@ class Indicator:
     meaning : str
         In a sentence of a report, after the label.
     of : callable
-        From the points, scaled, shape (n, 2), and their `Scale`.
+        From the points that no other dominates, scaled, shape (n, 2), and their `Scale`.
     form : str
         Format of its digits in tables of comparisons.
     """

@@ -24,7 +24,7 @@ class History(NamedTuple):
     Attributes
     ----------
     missing : ndarray, shape (marks,)
-        Share of the reference front's hypervolume.
+        Share of the reference front's hypervolume, or another indicator; NaN where it is not known.
     seconds, evaluations : ndarray, shape (marks,)
         Processor time [s] of the search; candidates simulated, NaN where they are not its cost.
     """
@@ -40,7 +40,7 @@ class History(NamedTuple):
     @property
     def improving(self) -> History:
         """The marks at which less is missing than at any before, and the last, where it ended."""
-        best = np.minimum.accumulate(np.append(np.inf, self.missing))[:-1]
+        best = np.fmin.accumulate(np.append(np.inf, self.missing))[:-1]
         improving = self.missing < best
         improving[-1] = True
         return History(*(column[improving] for column in self))
@@ -49,11 +49,11 @@ class History(NamedTuple):
 def hits(histories: Iterable[History], targets: Sequence[float], by: str = "seconds") -> Array:
     """Where each run first missed no more than each target, shape (runs, targets).
 
-    Infinite where it never did.
+    Infinite where it never did; a mark without a value reaches none.
     """
     rows = list[Array]()
     for history in histories:
-        lowest = np.minimum.accumulate(history.missing)
+        lowest = np.fmin.accumulate(np.append(np.inf, history.missing))[1:]
         first = np.searchsorted(-lowest, -np.array(targets))
         rows.append(np.append(history.cost(by), np.inf)[first])
     return np.array(rows)

@@ -12,6 +12,7 @@ from quietarm.studies.bench.results import Results
 from quietarm.studies.bench.running_times import (
     History,
     expected_running_time,
+    hits,
     read_histories,
     running_times,
 )
@@ -71,3 +72,11 @@ def test_a_run_that_gets_worse_keeps_its_best():
         assert expected_running_time([one], 0.2)[0] == 2.0
         assert expected_running_time([one, one], 0.2, "evaluations") == (20.0, 20.0, 20.0)
         assert np.isinf(expected_running_time([one], 0.1)[0])
+
+
+def test_a_mark_without_a_value_reaches_no_target():
+    """As before a run's first point, or of an indicator that an earlier file does not state."""
+    missing = np.array([np.nan, 0.5, np.nan, 0.1])
+    history = History(missing, np.arange(1.0, 5.0), np.arange(10.0, 50, 10))
+    assert hits([history], [0.5, 0.2, 0.05]).tolist() == [[2.0, 4.0, np.inf]]
+    assert history.improving.missing.tolist() == [0.5, 0.1]
