@@ -45,10 +45,10 @@ def _no_text(value: Any) -> Any:
 
 def positive(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
     """A positive finite number as a float."""
-    number = finite(name, value, unit, most, why)
+    number = finite(name, value, unit)
     if number <= 0:
         raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
-    return number
+    return finite(name, number, unit, most, why)
 
 
 def not_negative(name: str, value: Any, unit: str = "") -> float:

@@ -104,7 +104,7 @@ class Given:
 
     def read_solver(self) -> Solver:
         """The solver that was typed, with its options: the one place where commands make it."""
-        return SOLVERS[self.solver]()
+        return SOLVERS[self.solver](tolerance=self.tolerance)
 
     def read_profile(self, task: PointToPoint) -> JointProfile:
         """The joint profile; hours of solves from all starts, for all points, are refused."""

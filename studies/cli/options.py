@@ -17,6 +17,7 @@ from quietarm.models import load_plant_file
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
+from quietarm.ocp.solvers.solver import Solver
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.quantities import (
@@ -26,7 +27,7 @@ from quietarm.studies.cli.quantities import (
     parse_state,
     parse_workers,
 )
-from quietarm.studies.cli.types import INPUT, SETTING, TIME, Named, Parsed
+from quietarm.studies.cli.types import INPUT, SETTING, SHARE, TIME, Named, Parsed
 from quietarm.studies.reading.profiles import POLYNOMIAL, families
 from quietarm.studies.report.progress import count, working
 from quietarm.studies.report.saving import STDOUT
@@ -165,6 +166,9 @@ STARTS = option("--starts", default=4, help="Starts of the solver.")
 SOLVER = (
     option("--solver", type=Named("solver", SOLVERS), default=next(iter(SOLVERS)),
            help="Sequential quadratic programs (quietarm's own, fast), or IPOPT."),
+    option("--tolerance", type=SHARE, default=f"{Solver.tolerance:g}",
+           help="Share of the least energy that the solver may leave, of every solve; limits and "
+           "rest on arrival are kept as exactly as ever."),
 )  # fmt: skip
 """What describes a solver: a command with these has `Given.read_solver`."""
 SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "

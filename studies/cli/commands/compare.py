@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from rich.console import Console
 
 from quietarm.studies.cli.files import REPORT_OPTION, finish
 from quietarm.studies.cli.given import Given
-from quietarm.studies.cli.options import ERROR, busy, command, option
+from quietarm.studies.cli.options import ERROR, SOLVER, busy, command, option
 from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.types import INPUT, NAMES
 from quietarm.studies.compare.judged_motions import SAMPLES
@@ -20,8 +21,12 @@ from quietarm.studies.report import Report
 from quietarm.studies.report.terminal import print_lines
 
 if TYPE_CHECKING:
-    from quietarm.ocp import Front, Plan
+    from quietarm.ocp import Front, Plan, Solver
     from quietarm.studies.compare.front_comparison import Comparison
+
+
+_OF_FLOOR = [param.name or "" for param in SOLVER]
+"""Options of what solves here: the floor beneath fronts."""
 
 
 @command(
@@ -33,7 +38,7 @@ if TYPE_CHECKING:
            help="Fronts: measure IGD+ and additive epsilon against this one."),
     option("--free-motion/--no-free-motion", "free", default=True,
            help="Fronts: find the best free motion as well."),
-    REPORT_OPTION,
+    *SOLVER, REPORT_OPTION,
 )  # fmt: skip
 def compare(given: Given) -> None:
     """Compare fronts of one task, or plans of one move.
@@ -58,10 +63,12 @@ def compare(given: Given) -> None:
         plans = {name: answer for name, answer in answers.items() if isinstance(answer, Plan)}
         fronts = {name: answer for name, answer in answers.items() if isinstance(answer, Front)}
         if plans:
-            given.refuse(["reference", "free"], "is for fronts")
+            given.refuse(["reference", "free", *_OF_FLOOR], "is for fronts")
             report = _of_plans(given, plans)
         else:
             given.refuse(["baselines", "errors", "samples"], "is for plans")
+            if not given.free:
+                given.refuse(_OF_FLOOR, "is for the free motion, which --no-free-motion leaves out")
             report = _of_fronts(given, fronts)
     finish(report.files(*given.output), report)
 
@@ -94,7 +101,8 @@ def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
     reference = None if given.reference is None else load_front(given.reference)
     comparisons = compare_by_task(fronts, reference, str(given.reference))
     if given.free:
-        comparisons = list(map(_with_floor, comparisons))
+        solver = given.read_solver()
+        comparisons = list(map(partial(_with_floor, solver=solver), comparisons))
     of_paper = [
         paper_points(comparison.task, {run.front.profile.size for run in comparison.runs})
         for comparison in comparisons
@@ -102,12 +110,12 @@ def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
     return fronts_report(comparisons, of_paper, without_checksum(map(Path, fronts)))
 
 
-def _with_floor(comparison: Comparison) -> Comparison:
+def _with_floor(comparison: Comparison, solver: Solver) -> Comparison:
     """With the least energy over all joint motions; without where none is found."""
     from quietarm.ocp import QuietarmError, energy_floor
 
     try:
-        return replace(comparison, floor=energy_floor(comparison.task).energy)
+        return replace(comparison, floor=energy_floor(comparison.task, solver=solver).energy)
     except QuietarmError as error:
         print_lines(Console(stderr=True), f"no free motion: {error}")
         return comparison
