@@ -9,7 +9,11 @@ from quietarm.ocp.floor.program import FloorProgram
 from quietarm.ocp.solvers import ipopt, sqp
 
 TOLERANCE = 3e-7
-EXPECTED = {"sqp": TOLERANCE, "ipopt": TOLERANCE, "floor": FloorProgram.larger_tolerance * TOLERANCE}
+EXPECTED = {
+    "sqp": TOLERANCE,
+    "ipopt": TOLERANCE,
+    "floor": FloorProgram.larger_tolerance * TOLERANCE,
+}
 COARSE = "single-link --duration 0.8 --terms 2"
 
 
@@ -35,6 +39,7 @@ def seen(monkeypatch):
     return by_solver
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("line", "status", "solvers"),
     [
