@@ -171,8 +171,8 @@ def read_urdf(text: str) -> Urdf:
         raise ValueError("the URDF has a closed loop beside its tree; give a tree alone")
     if len(urdf.moving) > _MOST_MOVING:
         raise ValueError(
-            f"the URDF has {len(urdf.moving)} joints that move; give at most {_MOST_MOVING}, others "
-            "as fixed ones"
+            f"the URDF has {len(urdf.moving)} joints that move; give at most {_MOST_MOVING}, "
+            "others as fixed ones"
         )
     return urdf
 
