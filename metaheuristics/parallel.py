@@ -166,11 +166,15 @@ def _threads_of(scheduler: str) -> int:
         return thread.submit(asyncio.run, ask_in_time()).result()
 
 
-@contextmanager
-def _connect(scheduler: str) -> Iterator[Any]:
-    """A client of a dask scheduler that has workers."""
+def reach(workers: int | str) -> None:
+    """Find out whether a scheduler answers and has workers; ValueError with a remedy if not.
+
+    Of a number of processes there is nothing to find out.
+    """
+    if not isinstance(workers, str):
+        return
+    scheduler = workers
     try:
-        from distributed import Client
         from distributed.comm.addressing import get_address_host_port
     except ImportError:
         raise ValueError(f"a scheduler needs dask; {install('cluster')}") from None
@@ -191,6 +195,14 @@ def _connect(scheduler: str) -> Iterator[Any]:
             f"the scheduler at {scheduler} has no workers; start some with `dask worker "
             f"{scheduler}`"
         )
+
+
+@contextmanager
+def _connect(scheduler: str) -> Iterator[Any]:
+    """A client of a dask scheduler that has workers."""
+    reach(scheduler)
+    from distributed import Client
+
     client = Client(scheduler, timeout=_ANSWER_SECONDS, set_as_default=False)
     try:
         yield client

@@ -263,6 +263,11 @@ class TorqueSpeedLine:
                 f"torque-speed line is {self.points!r}; give pairs of a {words} and a speed, as "
                 "[(1.5, 0), (0.8, 20)]"
             ) from None
+        most_points = 50  # each is two limits at every node
+        if len(pairs) > most_points:
+            raise ValueError(
+                f"torque-speed line has {len(pairs)} points; give at most {most_points}"
+            )
         unit, unit_of_speed = (joint_unit(unit, self.joint) for unit in ("N m", "rad/s"))
         points = tuple(
             (not_negative(f"{words} of the line", torque, unit),

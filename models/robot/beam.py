@@ -72,12 +72,12 @@ class Beam:
     def __post_init__(self) -> None:
         if not isinstance(self.at, str) or not self.at:
             raise ValueError(f"at of the beam is {self.at!r}; give the name of a link")
-        object.__setattr__(self, "length", positive("length of the beam", self.length, "m"))
+        object.__setattr__(self, "length", _size("length of the beam", self.length, "m"))
         for name, unit in _OF_MATERIAL.items():
             value = getattr(self, name)
             if value is not None:
                 words = f"{name.replace('_', ' ')} of the beam"
-                object.__setattr__(self, name, positive(words, value, unit))
+                object.__setattr__(self, name, _size(words, value, unit))
         section = (self.width, self.height)
         by_section = (*section, self.youngs_modulus)
         if self.bending_stiffness is None:
@@ -99,6 +99,8 @@ class Beam:
         if self.mass_per_length is not None and self.density is not None:
             raise ValueError("the beam has density and mass_per_length; give one of them")
         tip_mass = not_negative("tip_mass of the beam", self.tip_mass, "kg")
+        if tip_mass > 0:
+            tip_mass = _size("tip_mass of the beam", tip_mass, "kg")
         object.__setattr__(self, "tip_mass", tip_mass)
         damping = not_negative("damping of the beam", self.damping)
         if damping >= 1:
@@ -216,6 +218,16 @@ _OF_MATERIAL = {
 }  # fmt: skip
 
 
+def _size(words: str, value: float, unit: str) -> float:
+    """A positive number whose powers and products stay numbers."""
+    least = 1e-12
+    most = 1e15
+    number = positive(words, value, unit, most)
+    if number < least:
+        raise ValueError(f"{words} is {number:g} {unit}; give at least {least:g}")
+    return number
+
+
 def _pair(stiffness: float | Sequence[float]) -> tuple[float, float]:
     """Bending stiffness along x and along y, of one number for both or of two."""
     values = (stiffness, stiffness) if isinstance(stiffness, int | float) else tuple(stiffness)
@@ -224,7 +236,5 @@ def _pair(stiffness: float | Sequence[float]) -> tuple[float, float]:
             f"bending_stiffness of the beam has {len(values)} numbers; give one, or two, along x "
             "and along y"
         )
-    along_x, along_y = (
-        positive("bending_stiffness of the beam", value, "N m^2") for value in values
-    )
+    along_x, along_y = (_size("bending_stiffness of the beam", value, "N m^2") for value in values)
     return (along_x, along_y)

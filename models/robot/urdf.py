@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ElementTree
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -26,6 +27,12 @@ _KINDS = {
 _READ = ("link", "joint", "inertial", "origin", "mass", "inertia", "parent", "child", "axis",
          "limit", "mimic")  # fmt: skip
 """Elements that the dynamics need; all others, as shapes for pictures, are left out."""
+_MOST_LINKS = 1000
+"""Humanoids with their hands have some two hundred."""
+_MOST_MOVING = 100
+"""Joints, whose equations are written in two seconds."""
+_LARGEST = 1e9
+"""Of a mass, a moment or a place, in SI units: squares and products stay numbers."""
 _COMMENT = re.compile("<!--.*?-->", re.DOTALL)
 _XACRO = re.compile(r"<xacro:|\$\{")
 
@@ -117,7 +124,12 @@ def dynamics_of(text: str) -> str:
     for element in root.iter():
         element.text = None
         element.tail = None
-    return ElementTree.tostring(root, encoding="unicode")
+    try:
+        return ElementTree.tostring(root, encoding="unicode")
+    except RecursionError:
+        raise ValueError(
+            "the URDF is nested too deeply; give links and joints beside each other"
+        ) from None
 
 
 @lru_cache(maxsize=32)
@@ -133,6 +145,8 @@ def read_urdf(text: str) -> Urdf:
     links = {_name(element): _inertia(element) for element in root.findall("link")}
     if not links:
         raise ValueError("the URDF has no links; give one of a robot, with its links' inertias")
+    if len(links) > _MOST_LINKS:
+        raise ValueError(f"the URDF has {len(links)} links; give at most {_MOST_LINKS}")
     joints = {_name(element): _joint(element) for element in root.findall("joint")}
     for joint in joints.values():
         for link in (joint.parent, joint.child):
@@ -141,12 +155,12 @@ def read_urdf(text: str) -> Urdf:
                     f"joint {joint.name!r} of the URDF joins {link!r}, which is no link of it; "
                     "add the link, or mend its name"
                 )
-    children = [joint.child for joint in joints.values()]
-    for child in children:
-        if children.count(child) > 1:
+    children = Counter(joint.child for joint in joints.values())
+    for child, count in children.items():
+        if count > 1:
             raise ValueError(
-                f"link {child!r} of the URDF hangs on {children.count(child)} joints, a closed "
-                "loop; give a tree, with the loop cut open"
+                f"link {child!r} of the URDF hangs on {count} joints, a closed loop; give a tree, "
+                "with the loop cut open"
             )
     roots = [link for link in links if link not in children]
     if len(roots) != 1:
@@ -155,6 +169,11 @@ def read_urdf(text: str) -> Urdf:
     urdf = Urdf(root.get("name") or "robot", links, joints, roots[0])
     if len(list(urdf.outwards())) != len(joints):
         raise ValueError("the URDF has a closed loop beside its tree; give a tree alone")
+    if len(urdf.moving) > _MOST_MOVING:
+        raise ValueError(
+            f"the URDF has {len(urdf.moving)} joints that move; give at most {_MOST_MOVING}, "
+            "others as fixed ones"
+        )
     return urdf
 
 
@@ -189,9 +208,9 @@ def _inertia(link: ElementTree.Element) -> Inertia:
         return Inertia()
     what = f"link {_name(link)!r} of the URDF"
     frame = _origin(inertial, what)
-    mass = _number(inertial.find("mass"), "value", f"mass of {what}", None)
+    mass = _number(inertial.find("mass"), "value", f"mass of {what}", None, _LARGEST)
     entries = {
-        entry: _number(inertial.find("inertia"), entry, f"{entry} of {what}", 0.0)
+        entry: _number(inertial.find("inertia"), entry, f"{entry} of {what}", 0.0, _LARGEST)
         for entry in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
     }
     moments = np.array([
@@ -259,7 +278,11 @@ def _origin(element: ElementTree.Element, what: str) -> Frame:
 
 
 def _number(
-    element: ElementTree.Element | None, entry: str, what: str, otherwise: float | None
+    element: ElementTree.Element | None,
+    entry: str,
+    what: str,
+    otherwise: float | None,
+    largest: float = math.inf,
 ) -> float:
     text = None if element is None else element.get(entry)
     if text is None and otherwise is not None:
@@ -270,6 +293,8 @@ def _number(
         number = math.nan
     if not math.isfinite(number):
         raise ValueError(f"{what} is {text!r}; give a number")
+    if abs(number) > largest:
+        raise ValueError(f"{what} is {number:g}; give at most {largest:g}")
     return number
 
 
@@ -281,4 +306,6 @@ def _numbers(element: ElementTree.Element | None, entry: str, what: str, otherwi
         numbers = np.zeros(0)
     if len(numbers) != 3 or not np.all(np.isfinite(numbers)):
         raise ValueError(f"{what} is {text!r}; give three numbers")
+    if np.abs(numbers).max() > _LARGEST:
+        raise ValueError(f"{what} is {text!r}; give numbers of at most {_LARGEST:g}")
     return numbers

@@ -303,9 +303,11 @@ def parse_rate(text: str) -> float:
     factor = 1000.0 if number.endswith("k") else 1.0
     with suppress(ValueError):
         rate = factor * float(number.removesuffix("k"))
-        if 0 < rate < math.inf:
+        if 1e-6 <= rate <= 1e12:  # from one in a fortnight to the fastest of oscilloscopes
             return rate
-    raise ValueError(f"{text!r} is no rate; give the samples per second, as 1000 or 1kHz")
+    raise ValueError(
+        f"{text!r} is no rate from 1e-6 to 1e12; give the samples per second, as 1000 or 1kHz"
+    )
 
 
 def parse_coefficients(text: str) -> list[float]:

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
+from quietarm.metaheuristics.parallel import LostWorkersError, reach, side_by_side
 from quietarm.models.interrupts import note_interrupts
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint, QuietarmError, Solver, Sqp
@@ -93,6 +93,8 @@ def sweep(
     )
     settings = PlanSettings.of(residual_limit, bound, solver)
     profile = choose_profile(task) if profile is None else profile
+    if not Path(path).exists():
+        reach(workers)  # before anything is written
     store = Store.of(
         Path(path),
         Definition(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import stat
 import tempfile
 import warnings
 from collections.abc import Iterator, Mapping
@@ -266,6 +267,7 @@ def _open(path: Path) -> xarray.Dataset:
     xr = _xarray()
     if not path.exists():
         raise FileFormatError(f"{path}: there is no such dataset; sweep it, or give another name")
+    _check_files(path)
     if _stated_format(path) != _FORMAT:
         raise FileFormatError(f"{path} is no dataset of a sweep; give another name")
     _read_descriptions(path)
@@ -274,6 +276,25 @@ def _open(path: Path) -> xarray.Dataset:
             "ignore"
         )  # of what was changed, which `Store` finds and tells in a line
         return xr.open_dataset(path, engine="zarr", consolidated=False, cache=False)
+
+
+def _check_files(path: Path) -> None:
+    """Refuse what zarr would read without an end: pipes, devices, and files of any size."""
+    most_bytes = 10**9
+    for folder, _, names in os.walk(path):
+        for name in names:
+            file = Path(folder, name)
+            with suppress(OSError):  # gone again, or a link that leads nowhere: zarr tells it
+                facts = file.stat()
+                if not stat.S_ISREG(facts.st_mode):
+                    raise FileFormatError(
+                        f"{file} is no ordinary file; remove the dataset and sweep it again"
+                    )
+                if facts.st_size > most_bytes:
+                    raise FileFormatError(
+                        f"{file} has {facts.st_size / 1e6:.0f} MB; a file of a dataset has at most "
+                        f"{most_bytes / 1e6:.0f} MB: remove it and sweep it again"
+                    )
 
 
 def _stated_format(path: Path) -> object:

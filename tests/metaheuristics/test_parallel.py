@@ -13,6 +13,7 @@ import pytest
 
 from quietarm.metaheuristics import parallel
 from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
+from quietarm.studies.cli.application import main
 
 GUARD = 120
 """Seconds after which what does not come has hung, on any machine."""
@@ -124,3 +125,16 @@ def test_a_scheduler_that_is_none_is_told_in_a_line(monkeypatch):
             with pytest.raises(ValueError, match=rf"^no scheduler answers at .*{reason}") as told:
                 next(side_by_side(abs, [1, 2], workers=address))
             assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize("line", [
+    "sweep single-link --target 0.1:0.3:0.1 --duration 1 --output new.zarr",
+    "bench single-link-30deg-0.8s --runs 1 --evaluations 200 --output new",
+])  # fmt: skip
+def test_nothing_is_written_where_no_scheduler_answers(tmp_path, monkeypatch, capsys, line):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as ended:
+        main([*line.split(), "--scheduler", "foo://127.0.0.1:1"])
+    assert ended.value.code == 2
+    assert "quietarm: no scheduler answers at foo://127.0.0.1:1" in capsys.readouterr().err
+    assert not [*tmp_path.iterdir()]

@@ -74,3 +74,9 @@ def test_limits_of_one_direction_and_of_the_speed():
 def test_bounds_that_are_none_are_refused(given, words):
     with pytest.raises(ValueError, match=words):
         qa.PointToPoint(qa.ArmOnFlexibleLink(), 1.0, 0.8, **given)
+
+
+def test_a_line_of_torque_by_speed_has_a_bounded_number_of_points():
+    points = [(1.0 - 1e-7 * speed**2, speed) for speed in range(5000)]
+    with pytest.raises(ValueError, match="torque-speed line has 5000 points; give at most 50"):
+        qa.PointToPoint(qa.SingleLinkManipulator(), 0.5, 0.8, torque_speed=points)

@@ -60,6 +60,7 @@ def bench(given: Given) -> None:
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics import LostJobsError, finished_jobs, run_jobs
+    from quietarm.metaheuristics.parallel import reach
     from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
     from quietarm.studies.bench.page import reported_runs
     from quietarm.studies.bench.planned_jobs import (
@@ -95,6 +96,9 @@ def bench(given: Given) -> None:
         say_power_of(planned),
         *there,
     )
+    workers = given.scheduler or given.workers
+    if len(finished) < len(jobs):
+        reach(workers)  # before anything is written
     write_references(problems, given.output)
     trouble = None
     with counting(len(jobs), "jobs") as progress:
@@ -102,7 +106,7 @@ def bench(given: Given) -> None:
             fronts = run_jobs(
                 jobs,
                 given.output,
-                workers=given.scheduler or given.workers,
+                workers=workers,
                 part=given.part,
                 report=lambda job, front, done, total: progress(done, total),
                 finished=finished,

@@ -61,6 +61,7 @@ def sweep(given: Given) -> None:
       quietarm sweep flexible-beam --set tip_mass=0,100g,200g --target 60deg \\
           --duration 600ms:1s:20ms --torque-limit 1.5 --output payload.zarr --output payload.png
     """  # noqa: D301  # \b is click's: do not rewrap
+    from quietarm.metaheuristics.parallel import reach
     from quietarm.studies.report.sweeps import cells_along, sweep_rows
     from quietarm.studies.sweep.definition import Definition, PlanSettings
     from quietarm.studies.sweep.run import run_sweep
@@ -83,6 +84,9 @@ def sweep(given: Given) -> None:
     residual_limit = given.read_residual_limit(grid.task.plant)
     settings = PlanSettings.of(residual_limit, given.bound, given.read_solver())
     definition = Definition(grid, profile, settings, given.front or 0, given.margin)
+    workers = given.scheduler or given.workers
+    if not datasets[0].exists():
+        reach(workers)  # before anything is written
     store = Store.of(datasets[0], definition)
     missing = len(store.missing(given.part))
     trouble = None
@@ -90,7 +94,6 @@ def sweep(given: Given) -> None:
         store.check()
     try:
         with counting(missing, "chunks") as report:
-            workers = given.scheduler or given.workers
             run_sweep(store, given.part, workers=workers, report=report)
     except KeyboardInterrupt:
         done = missing - len(store.missing(given.part))

@@ -133,6 +133,13 @@ def test_a_robot_is_the_same_in_another_process():
     ("measured: {frequency: 3Hz, at: [0, 0]}\n", "measured has 2 positions and the robot 6 joints"),
     ("gravity: [0, 9.81]\n", "gravity has 2 numbers; give three"),
     ("a: [\n", "is no valid YAML"),
+    ("tip: 2026-13-45\n", "has a value that is none: month must be in 1..12; mend it"),
+    ("tip: !!timestamp soon\n", "has a value that is none"),
+    ("tip: !!bool perhaps\n", "has a value that is none"),
+    ("base: &a {stiffness: *a}\n", "repeats its aliases to over 1000000 entries"),
+    ("a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n"
+     + "".join(f"a{k}: &a{k} [{', '.join([f'*a{k - 1}'.replace('a-1', 'a')] * 10)}]\n"
+               for k in range(8)), "repeats its aliases to over 1000000 entries"),
     ("!!python/object/apply:os.system ['true']\n", "is no valid YAML"),
 ])  # fmt: skip
 def test_what_a_file_may_not_say(tmp_path, more, words):
@@ -206,6 +213,7 @@ def test_a_robots_content_is_plain():
     assert json.loads(json.dumps(asdict(ur5_with_bar())))["beam"]["length"] == 0.8
 
 
+<<<<<<< HEAD
 def test_modes_that_the_path_excites_are_followed():
     """Of a robot with a bar on a pedestal: those of the bar and of the pedestal, none faster."""
     robot = dataclasses.replace(
@@ -231,3 +239,34 @@ def test_what_a_left_out_mode_leaves_is_what_the_cycloid_leaves():
     task = qa.PointToPoint(robot.along(path), target=1.0, duration=1.1 * duration)
     left = qa.evaluate_coefficients(task, []).residual
     assert 0.1 * slowest.leaves < left < 1.5 * slowest.leaves
+=======
+@pytest.mark.parametrize("value", [1e300, 1e-300, math.inf, math.nan])
+@pytest.mark.parametrize("name", ["length", "width", "youngs_modulus", "density", "tip_mass"])
+def test_a_beam_of_no_size_is_refused(name, value):
+    with pytest.raises(ValueError, match=f"{name.replace('_', '.')} of the beam is .*; give "):
+        qa.Beam(at="lower", **{**BAR, name: value})
+
+
+def _chain(count, kind):
+    """So many links, each on the one before it."""
+    links = "".join(f'<link name="l{k}">{LINK}</link>' for k in range(count))
+    joints = "".join(
+        f'<joint name="j{k}" type="{kind}"><parent link="l{k - 1}"/><child link="l{k}"/></joint>'
+        for k in range(1, count)
+    )
+    return f'<robot name="chain">{links}{joints}</robot>'
+
+
+@pytest.mark.parametrize(("urdf", "words"), [
+    (_chain(30_000, "fixed"), "has 30000 links; give at most 1000"),
+    (_chain(200, "revolute"), "has 199 joints that move; give at most 100, others as fixed ones"),
+    ('<robot name="deep">' + '<link name="a">' * 20_000 + "</link>" * 20_000 + "</robot>",
+     "is nested too deeply"),
+    (URDF.replace('<mass value="1"/>', '<mass value="1e300"/>'), "is 1e.300; give at most 1e.09"),
+    (URDF.replace('ixx="0.1"', 'ixx="1e200"'), "ixx of link .* is 1e.200; give at most 1e.09"),
+    (URDF.replace('xyz="0.5 0 0"', 'xyz="1e200 0 0"'), "origin of .* give numbers of at most 1e."),
+])  # fmt: skip
+def test_a_urdf_of_no_robot_is_refused_with_the_bound(urdf, words):
+    with pytest.raises(ValueError, match=words):
+        qa.Robot(urdf=urdf, elastic_joints=GEARS)
+>>>>>>> hostile

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import shutil
 import subprocess
 
@@ -175,3 +176,26 @@ def test_nothing_is_said_of_what_zarr_leaves_unfinished(copied):
     assert (ended.returncode, ended.stderr.count("\n")) == (2, 1)
     assert f"{path} is damaged, changed or of another version" in ended.stderr
     assert "remove the dataset and sweep it again" in ended.stderr
+
+
+@pytest.mark.parametrize("name", ["zarr.json", "energy/zarr.json", "coefficients/c/0/0/0"])
+@pytest.mark.parametrize("kind", ["pipe", "device", "huge"])
+def test_a_dataset_whose_files_never_end_is_not_read(copied, call, name, kind):
+    file = copied / name
+    file.unlink()
+    if kind == "pipe":
+        os.mkfifo(file)
+    elif kind == "device":
+        file.symlink_to("/dev/zero")
+    else:
+        file.touch()
+        os.truncate(file, 10**11)
+    words = "has 100000 MB; a file of a dataset has at most" if kind == "huge" else "no ordinary"
+    for line in (
+        f"plan --from {copied} --target 40deg --duration 0.9",
+        f"export {copied} --output moves.c",
+        f"explore {copied} --no-browser",
+    ):
+        status, out, err = call(line)
+        assert (status, out, err.count("\n")) == (2, "", 1), line
+        assert words in err
