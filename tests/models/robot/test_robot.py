@@ -213,7 +213,6 @@ def test_a_robots_content_is_plain():
     assert json.loads(json.dumps(asdict(ur5_with_bar())))["beam"]["length"] == 0.8
 
 
-<<<<<<< HEAD
 def test_modes_that_the_path_excites_are_followed():
     """Of a robot with a bar on a pedestal: those of the bar and of the pedestal, none faster."""
     robot = dataclasses.replace(
@@ -239,7 +238,8 @@ def test_what_a_left_out_mode_leaves_is_what_the_cycloid_leaves():
     task = qa.PointToPoint(robot.along(path), target=1.0, duration=1.1 * duration)
     left = qa.evaluate_coefficients(task, []).residual
     assert 0.1 * slowest.leaves < left < 1.5 * slowest.leaves
-=======
+
+
 @pytest.mark.parametrize("value", [1e300, 1e-300, math.inf, math.nan])
 @pytest.mark.parametrize("name", ["length", "width", "youngs_modulus", "density", "tip_mass"])
 def test_a_beam_of_no_size_is_refused(name, value):
@@ -269,4 +269,3 @@ def _chain(count, kind):
 def test_a_urdf_of_no_robot_is_refused_with_the_bound(urdf, words):
     with pytest.raises(ValueError, match=words):
         qa.Robot(urdf=urdf, elastic_joints=GEARS)
->>>>>>> hostile
