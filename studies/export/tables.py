@@ -149,7 +149,8 @@ def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
 def ros_text(plan: Plan, rate: float, joint: str) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, of all joints.
 
-    A single joint has the name that is given, several those of the plant.
+    A single joint has the name that is given, several those of the plant. ValueError where a name
+    has letters that YAML cannot hold, as those of control.
     """
     motion = plan.sampled(times_of(plan, rate))
     orders = [
@@ -162,6 +163,9 @@ def ros_text(plan: Plan, rate: float, joint: str) -> str:
     ]
     joint_names = plan.task.plant.joint_names
     names = (joint,) if len(joint_names) == 1 else joint_names
+    for name in names:
+        if not name.isprintable():
+            raise ValueError(f"joint is {name!r}; give a name of letters, as shoulder_pan_joint")
     quoted = ["'" + name.replace("'", "''") + "'" for name in names]  # as YAML reads it back
     texts = templates(keep_trailing_newline=True)
     return texts.get_template("export/templates/move.yaml").render(joints=quoted, points=points)
