@@ -10,7 +10,13 @@ Here is what most people need; the stub beside this file lists it. The rest has 
 are rooms of `qa.studies`. Each is imported with the first of its names that is asked for.
 """
 
+from pathlib import Path
+
 import lazy_loader
+
+_FOLDER = Path(__file__).parent
+if not (_FOLDER / "ocp").is_dir():  # in a checkout without the links of an editable installation
+    __path__.append(str(_FOLDER.parent))
 
 __version__ = "2.0.0.dev0"
 

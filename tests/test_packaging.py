@@ -87,18 +87,22 @@ def vars_of(module_name: str) -> dict[str, object]:
     return {name: getattr(module, name) for name in dir(module)}
 
 
-def test_an_editor_finds_and_completes_names():
+def test_an_editor_finds_and_completes_names(tmp_path):
+    """From a project of its own, by what is installed."""
     environment = jedi.InterpreterEnvironment()
+    project = jedi.Project(tmp_path)
+
+    def script(source):
+        return jedi.Script(source, environment=environment, project=project)
+
     source = "import quietarm as qa\nqa.plan_mo"
-    completions = jedi.Script(source, environment=environment).complete()
+    completions = script(source).complete()
     assert "plan_move" in [completion.name for completion in completions]
     source = "import quietarm as qa\nqa.plan_move"
-    (definition,) = jedi.Script(source, environment=environment).goto(
-        follow_imports=True, follow_builtin_imports=True
-    )
+    (definition,) = script(source).goto(follow_imports=True, follow_builtin_imports=True)
     assert definition.full_name == "quietarm.ocp.planning.plan_move.plan_move"
     source = "from quietarm.ocp.limits import Lim"
-    completions = jedi.Script(source, environment=environment).complete()
+    completions = script(source).complete()
     assert "Limit" in [completion.name for completion in completions]
 
 
