@@ -28,6 +28,7 @@ from robots import (
     END,
     PANDA_END,
     PANDA_START,
+    PEDESTAL,
     START,
     STEEL_BAR,
     UR5_JOINTS,
@@ -38,12 +39,11 @@ from robots import (
 )
 
 import quietarm as qa
-from quietarm.models import Base, JointMotion, RobotOnPath
+from quietarm.models import JointMotion, RobotOnPath
 
 Array = NDArray[np.float64]
 Motion = Callable[[float], tuple[Array, Array, Array]]
 DURATION = 1.0
-PEDESTAL = Base(stiffness=(6e4, 6e4), damping=(5.0, 5.0), height=0.5)
 FASTEST = {
     "torque_limit": dict(zip(UR5_JOINTS, (150.0, 150.0, 150.0, 28.0, 28.0, 28.0))),
     "speed_limit": dict(zip(UR5_JOINTS, (3.15, 3.15, 3.15, 3.2, 3.2, 3.2))),

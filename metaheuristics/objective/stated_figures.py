@@ -91,15 +91,8 @@ def _evaluated_again(front: Front, table: Array) -> Iterator[tuple[int, Array, A
     count = len(table)
     if not count:
         return
-    places = np.unique(
-        np.linspace(
-            0,
-            count - 1,
-            min(count, sample),
-        )
-        .round()
-        .astype(int)
-    )
+    spread = np.linspace(0, count - 1, min(count, sample))
+    places = np.unique(spread.round().astype(int))
     with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused
         evaluation = Evaluator(front.task, front.profile)(table[places])
         figures = objectives_of(evaluation)

@@ -76,11 +76,8 @@ class RecordedFunction(MoveFunction):
                 f"{self.upper[column]:.4g}; clip candidates to the function's lower and upper"
             )
         remaining = self.budget - self.archive.evaluations
-        afforded = np.clip(
-            table,
-            self.lower,
-            self.upper,
-        )[: int(min(remaining, len(table)))]
+        count = int(min(remaining, len(table)))
+        afforded = np.clip(table[:count], self.lower, self.upper)
         objectives, violations = super().__call__(afforded)
         failed = (objectives >= UNUSABLE).any(axis=1)
         broken = (violations > 0).any(axis=1)

@@ -26,8 +26,6 @@ _PLACES = 21
 """Of a path, at which it is seen whether it is straight."""
 _STRAIGHT = 1e-9
 """Curvature of a straight path, as a share of its slope."""
-_LEAST_SHARE = 0.02
-"""Share of the duration that a shaper has to leave for the motion that it shapes."""
 
 
 def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:

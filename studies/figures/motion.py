@@ -160,7 +160,12 @@ def _which(plant: Plant, quantity: str, curve: int) -> str:
     of_joints = quantity in QUANTITIES and QUANTITIES[quantity].of_joints
     if len(joints) > 1 and (of_joints or quantity == "angle"):
         return f", {joints[curve]}"
-    return f", tip {curve + 1}" if curve else ""
+    return _which_tip(plant, curve) if curve else ""
+
+
+def _which_tip(plant: Plant, curve: int) -> str:
+    """Which of several tips, or in which direction a tip moves that moves in space."""
+    return f", {'tip' if plant.tip_lines is None else 'direction'} {curve + 1}"
 
 
 def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
@@ -201,7 +206,6 @@ def motion_figure(
     ValueError
         As `draw_quantity`.
     """
-    # of a title, for each column of panels
     lines = lines_of(motions)
     if quantities is None:
         limited = {limit.name for line in lines for limit in line.plan.task.limits}
@@ -260,7 +264,7 @@ def _figure_of_joints(
     for (quantity, curve), ax in zip(below, last):
         _draw(lines, quantity, ax, curve).grid(alpha=0.25)
         if sum(name == quantity for name, _ in below) > 1:
-            ax.set_title(f"{ax.get_title(loc='left')}, tip {curve + 1}", **TITLE)
+            ax.set_title(ax.get_title(loc="left") + _which_tip(task.plant, curve), **TITLE)
         ax.tick_params(labelbottom=True)
     spare += last[len(below) :]
     for ax in spare:

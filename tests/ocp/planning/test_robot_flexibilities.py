@@ -10,6 +10,7 @@ from robots import (
     END,
     PANDA_END,
     PANDA_START,
+    PEDESTAL,
     START,
     STEEL_BAR,
     UR5_JOINTS,
@@ -20,11 +21,8 @@ from robots import (
 )
 
 import quietarm as qa
-from quietarm.models import Base, JointMotion
+from quietarm.models import JointMotion
 from quietarm.ocp import FreeVibration, perturb_plant
-
-# 0.5 m high, it rocks at 10.3 and 10.7 Hz under the robot.
-PEDESTAL = Base(stiffness=(6e4, 6e4), damping=(5.0, 5.0), height=0.5)
 
 
 def _on_pedestal(robot):

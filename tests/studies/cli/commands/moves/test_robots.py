@@ -37,7 +37,7 @@ def test_a_plan_of_a_robot_and_its_files(call):
     code, out, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 {outputs}")
     assert code == 0
     assert "ur5 (6 joints; beam at tool0), along its path in 1 s" in out
-    assert "at rest (below 0.001 mm) at the worst of 2 tips" in out
+    assert "at rest (below 0.001 mm) at the tip within 1 s" in out
     plan = qa.Plan.load("move.json")
     path = plan.task.plant.path
     assert path(1.0) == pytest.approx(np.radians([80, -57, 69, -75, -69, 34]))
