@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from quietarm.studies.figures.axes import new_figure
 from quietarm.studies.figures.looks import BLUE, GREY, RED
 from quietarm.studies.identify import Identified, Part, Recording
-from quietarm.studies.identify.diagnosis import spectrum_of
+from quietarm.studies.identify.fits.diagnosis import spectrum_of
 from quietarm.studies.identify.identification import curve_of
 from quietarm.studies.report.words import span_words
 

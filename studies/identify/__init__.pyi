@@ -4,4 +4,4 @@ from .machine import Identified as Identified
 from .machine import Part as Part
 from .prediction import Prediction as Prediction
 from .prediction import predict as predict
-from .recording import Recording as Recording
+from .signals.recording import Recording as Recording

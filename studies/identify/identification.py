@@ -14,7 +14,9 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
 from quietarm.studies.identify.combine import Combined, combine
-from quietarm.studies.identify.frequencies import doubt_units, find_frequencies
+from quietarm.studies.identify.fits.part_fitter import PartFitter
+from quietarm.studies.identify.fits.swing_model import SwingModel
+from quietarm.studies.identify.fits.whole_recording import fit_whole, sensitivities
 from quietarm.studies.identify.machine import (
     Identified,
     Part,
@@ -23,13 +25,11 @@ from quietarm.studies.identify.machine import (
     is_frequency,
     is_modal,
 )
-from quietarm.studies.identify.mending import without_glitches
-from quietarm.studies.identify.part_fitter import PartFitter
-from quietarm.studies.identify.recording import Recording
-from quietarm.studies.identify.recording_parts import NO_SWING, fit_parts
-from quietarm.studies.identify.ring_downs import moves
-from quietarm.studies.identify.swing_model import SwingModel
-from quietarm.studies.identify.whole_recording import fit_whole, sensitivities
+from quietarm.studies.identify.signals.mending import without_glitches
+from quietarm.studies.identify.signals.recording import Recording
+from quietarm.studies.identify.swings.frequencies import doubt_units, find_frequencies
+from quietarm.studies.identify.swings.recording_parts import NO_SWING, fit_parts
+from quietarm.studies.identify.swings.ring_downs import moves
 
 Array = NDArray[np.float64]
 

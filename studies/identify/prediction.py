@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from quietarm.models import Plant
 from quietarm.ocp.checks import takes
-from quietarm.studies.identify.frequencies import find_frequencies
+from quietarm.studies.identify.fits.part_fitter import PartFitter
+from quietarm.studies.identify.fits.swing_model import SwingModel
 from quietarm.studies.identify.machine import Part, is_modal, values_of
-from quietarm.studies.identify.mending import without_glitches
-from quietarm.studies.identify.part_fitter import PartFitter
-from quietarm.studies.identify.recording import Recording
-from quietarm.studies.identify.recording_parts import fit_parts
-from quietarm.studies.identify.swing_model import SwingModel
+from quietarm.studies.identify.signals.mending import without_glitches
+from quietarm.studies.identify.signals.recording import Recording
+from quietarm.studies.identify.swings.frequencies import find_frequencies
+from quietarm.studies.identify.swings.recording_parts import fit_parts
 
 Array = NDArray[np.float64]
 

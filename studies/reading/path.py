@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.profiles.free_motion import FreeMotion
-from quietarm.studies.identify.recording import MOST_ANGLE
+from quietarm.studies.identify.signals.recording import MOST_ANGLE
 from quietarm.studies.reading.table import read_table
 
 Array = NDArray[np.float64]

@@ -494,9 +494,9 @@ def test_the_peaks_of_an_encoder_are_not_saturated(counts):
 @pytest.mark.parametrize("acceleration", [False, True])
 @pytest.mark.parametrize("plant", [qa.FlexibleBeam(mode_count=2), qa.DualLinkManipulator()])
 def test_filters_of_the_acceleration_are_the_collocation_of_the_plans(plant, acceleration):
-    from quietarm.studies.identify.columns import Driven, Forced
-    from quietarm.studies.identify.joint_spline import smooth
-    from quietarm.studies.identify.response import Response
+    from quietarm.studies.identify.fits.columns import Driven, Forced
+    from quietarm.studies.identify.fits.response import Response
+    from quietarm.studies.identify.signals.joint_spline import smooth
 
     names = [name for name in plant.measured if name.startswith(("omega", "zeta"))]
     kinds = ["acceleration" if acceleration else "tip"] * plant.tips

@@ -10,7 +10,7 @@ from typing import NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.stamps import mended
+from quietarm.studies.identify.signals.stamps import mended
 
 Array = NDArray[np.float64]
 

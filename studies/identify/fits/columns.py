@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS
-from quietarm.studies.identify.recording import Recording
-from quietarm.studies.identify.recursion import decaying_sums
-from quietarm.studies.identify.response import Response
+from quietarm.studies.identify.fits.response import Response
+from quietarm.studies.identify.signals.recording import Recording
+from quietarm.studies.identify.signals.recursion import decaying_sums
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.recording import Recording, noise_of
+from quietarm.studies.identify.signals.recording import Recording, noise_of
 
 Array = NDArray[np.float64]
 WINDOW = 3.0

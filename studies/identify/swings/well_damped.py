@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
-from quietarm.studies.identify.running import running_mean
+from quietarm.studies.identify.signals.recording import LEAST_ROWS, Recording, noise_of
+from quietarm.studies.identify.signals.running import running_mean
 
 Array = NDArray[np.float64]
 _REST = 0.1

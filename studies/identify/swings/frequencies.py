@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models.joint_motion import ROTARY
-from quietarm.studies.identify.envelope import envelope, evenly
-from quietarm.studies.identify.recording import LEAST_ROWS, Recording
-from quietarm.studies.identify.ring_downs import rests
-from quietarm.studies.identify.spectra import highest_peaks, spectrogram
+from quietarm.studies.identify.signals.envelope import envelope, evenly
+from quietarm.studies.identify.signals.recording import LEAST_ROWS, Recording
+from quietarm.studies.identify.signals.spectra import highest_peaks, spectrogram
+from quietarm.studies.identify.swings.ring_downs import rests
 
 Array = NDArray[np.float64]
 FASTEST = 500.0

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY
-from quietarm.studies.identify.columns import Columns, Driven, Forced, FreeDecay
-from quietarm.studies.identify.diagnosis import doubt_of, saturated
-from quietarm.studies.identify.fitting import Fit, fit
-from quietarm.studies.identify.joint_spline import smooth
+from quietarm.studies.identify.fits.columns import Columns, Driven, Forced, FreeDecay
+from quietarm.studies.identify.fits.diagnosis import doubt_of, saturated
+from quietarm.studies.identify.fits.fitting import Fit, fit
+from quietarm.studies.identify.fits.response import response_of
+from quietarm.studies.identify.fits.swing_model import SwingModel
 from quietarm.studies.identify.machine import Part, bounds_of, is_frequency, is_modal, values_of
-from quietarm.studies.identify.recording import Recording, noise_of
-from quietarm.studies.identify.response import response_of
-from quietarm.studies.identify.swing_model import SwingModel
+from quietarm.studies.identify.signals.joint_spline import smooth
+from quietarm.studies.identify.signals.recording import Recording, noise_of
 
 Array = NDArray[np.float64]
 SAMPLES = 64

@@ -7,9 +7,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.columns import Columns
-from quietarm.studies.identify.least_squares import least_squares
-from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.fits.columns import Columns
+from quietarm.studies.identify.fits.least_squares import least_squares
+from quietarm.studies.identify.signals.recording import Recording
 
 Array = NDArray[np.float64]
 

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.columns import Columns, parts
-from quietarm.studies.identify.envelope import phasor
-from quietarm.studies.identify.fitting import Fit, fit
-from quietarm.studies.identify.recording import Recording, noise_of
-from quietarm.studies.identify.swing_model import SwingModel
+from quietarm.studies.identify.fits.columns import Columns, parts
+from quietarm.studies.identify.fits.fitting import Fit, fit
+from quietarm.studies.identify.fits.swing_model import SwingModel
+from quietarm.studies.identify.signals.envelope import phasor
+from quietarm.studies.identify.signals.recording import Recording, noise_of
 
 Array = NDArray[np.float64]
 

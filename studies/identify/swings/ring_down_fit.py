@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from quietarm.studies.identify.diagnosis import exceeds, saturated
-from quietarm.studies.identify.fitting import Fit
+from quietarm.studies.identify.fits.diagnosis import exceeds, saturated
+from quietarm.studies.identify.fits.fitting import Fit
+from quietarm.studies.identify.fits.part_fitter import FEW_SAMPLES, PartFitter
 from quietarm.studies.identify.machine import Part
-from quietarm.studies.identify.part_fitter import FEW_SAMPLES, PartFitter
-from quietarm.studies.identify.recording import LEAST_ROWS
-from quietarm.studies.identify.ring_downs import moves, standing
+from quietarm.studies.identify.signals.recording import LEAST_ROWS
+from quietarm.studies.identify.swings.ring_downs import moves, standing
 
 Fitted = tuple[Part, Fit]
 

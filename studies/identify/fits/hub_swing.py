@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from quietarm.studies.identify.columns import FreeDecay
+from quietarm.studies.identify.fits.columns import FreeDecay
+from quietarm.studies.identify.fits.part_fitter import PartFitter
+from quietarm.studies.identify.fits.whole_recording import fit_whole
 from quietarm.studies.identify.machine import Part
-from quietarm.studies.identify.part_fitter import PartFitter
-from quietarm.studies.identify.recording import noise_of
-from quietarm.studies.identify.whole_recording import fit_whole
+from quietarm.studies.identify.signals.recording import noise_of
 
 
 def with_hub(fitter: PartFitter, parts: Sequence[Part], rows: slice) -> list[Part]:

@@ -10,15 +10,15 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.amplitudes import spread_of
-from quietarm.studies.identify.close_modes import CloseModes, find_close_modes
-from quietarm.studies.identify.diagnosis import saturated
-from quietarm.studies.identify.fitting import Fit
+from quietarm.studies.identify.fits.diagnosis import saturated
+from quietarm.studies.identify.fits.fitting import Fit
+from quietarm.studies.identify.fits.part_fitter import PartFitter
 from quietarm.studies.identify.machine import Part
-from quietarm.studies.identify.modulation import changes_along
-from quietarm.studies.identify.part_fitter import PartFitter
-from quietarm.studies.identify.recording import LEAST_ROWS
-from quietarm.studies.identify.ring_downs import moves
+from quietarm.studies.identify.signals.recording import LEAST_ROWS
+from quietarm.studies.identify.swings.amplitudes import spread_of
+from quietarm.studies.identify.swings.close_modes import CloseModes, find_close_modes
+from quietarm.studies.identify.swings.modulation import changes_along
+from quietarm.studies.identify.swings.ring_downs import moves
 
 Array = NDArray[np.float64]
 Spread = dict[str, tuple[float, float]]

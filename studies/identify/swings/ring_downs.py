@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.envelope import WINDOW, Envelope, envelope
-from quietarm.studies.identify.recording import LEAST_ROWS, Recording, noise_of
-from quietarm.studies.identify.running import running_maximum, running_minimum
+from quietarm.studies.identify.signals.envelope import WINDOW, Envelope, envelope
+from quietarm.studies.identify.signals.recording import LEAST_ROWS, Recording, noise_of
+from quietarm.studies.identify.signals.running import running_maximum, running_minimum
 
 Array = NDArray[np.float64]
 LEAST_PERIODS = 2.0

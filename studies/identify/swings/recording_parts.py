@@ -7,25 +7,25 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.hub_swing import with_hub
+from quietarm.studies.identify.fits.hub_swing import with_hub
+from quietarm.studies.identify.fits.part_fitter import PartFitter
+from quietarm.studies.identify.fits.whole_recording import wide_range
 from quietarm.studies.identify.machine import Part
-from quietarm.studies.identify.part_fitter import PartFitter
-from quietarm.studies.identify.recording import LEAST_ROWS
-from quietarm.studies.identify.ring_down_fit import fit_ring_down
-from quietarm.studies.identify.ring_downs import (
+from quietarm.studies.identify.signals.recording import LEAST_ROWS
+from quietarm.studies.identify.swings.ring_down_fit import fit_ring_down
+from quietarm.studies.identify.swings.ring_downs import (
     LEAST_PERIODS,
     find_ring_downs,
     find_swings,
     moves,
 )
-from quietarm.studies.identify.swing_changes import (
+from quietarm.studies.identify.swings.swing_changes import (
     fit_close_modes,
     has_changes,
     with_both,
     with_changes,
 )
-from quietarm.studies.identify.well_damped import find_well_damped
-from quietarm.studies.identify.whole_recording import wide_range
+from quietarm.studies.identify.swings.well_damped import find_well_damped
 
 Array = NDArray[np.float64]
 Spans = Sequence[tuple[float, float]]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.least_squares import bounded_step, least_squares, variances_of
-from quietarm.studies.identify.swing_model import SwingModel
+from quietarm.studies.identify.fits.least_squares import bounded_step, least_squares, variances_of
+from quietarm.studies.identify.fits.swing_model import SwingModel
 
 Array = NDArray[np.float64]
 Bounds = tuple[Array, Array]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.fitting import Fit, deviation_of, power_near
-from quietarm.studies.identify.least_squares import least_squares
+from quietarm.studies.identify.fits.fitting import Fit, deviation_of, power_near
+from quietarm.studies.identify.fits.least_squares import least_squares
 
 Array = NDArray[np.float64]
 

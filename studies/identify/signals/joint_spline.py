@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.signals.recording import Recording
 
 Array = NDArray[np.float64]
 DEGREE = 5

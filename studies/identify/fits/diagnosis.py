@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.recording import noise_of, resolution_of
-from quietarm.studies.identify.running import running_median
+from quietarm.studies.identify.signals.recording import noise_of, resolution_of
+from quietarm.studies.identify.signals.running import running_median
 
 Array = NDArray[np.float64]
 _STANDS_OUT = 14.0

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.studies.identify.fits.part_fitter import FEW_SAMPLES, PartFitter
 from quietarm.studies.identify.machine import Part
-from quietarm.studies.identify.part_fitter import FEW_SAMPLES, PartFitter
 
 Array = NDArray[np.float64]
 

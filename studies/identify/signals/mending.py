@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.studies.identify.recording import Recording, noise_of
-from quietarm.studies.identify.running import running_maximum
+from quietarm.studies.identify.signals.recording import Recording, noise_of
+from quietarm.studies.identify.signals.running import running_maximum
 
 Array = NDArray[np.float64]
 

@@ -1,0 +1,1 @@
+"""Recordings as arrays: times, glitches, noise, envelopes and spectra."""

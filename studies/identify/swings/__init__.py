@@ -1,0 +1,1 @@
+"""The parts of a recording that swing freely: where they are, and how they change."""
