@@ -5,6 +5,7 @@ import os
 import shlex
 import signal
 import subprocess
+import threading
 
 import numpy as np
 import pytest
@@ -23,12 +24,19 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.studies.cli import main
+from quietarm.studies.report import progress
 
 
 @pytest.fixture(scope="module", autouse=True)
 def _coarse_floors():
     with coarse_floors():
         yield
+
+
+@pytest.fixture(autouse=True)
+def _a_machine_as_slow_as_you_like(monkeypatch):
+    """No word that a command is still at work: how long it takes is the machine's."""
+    monkeypatch.setattr(progress, "SILENT_SECONDS", threading.TIMEOUT_MAX)
 
 
 @pytest.fixture
