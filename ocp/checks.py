@@ -211,12 +211,36 @@ def printable(text: str) -> str:
 
 
 def known(family: type[T]) -> dict[str, type[T]]:
-    """The subclasses that have a name of their own, by it, those of the user's own files too."""
+    """The subclasses that have a name of their own, by it, those of the user's own files too.
+
+    A class of the user's may be defined again, as in a notebook's cell; ValueError where it takes
+    the name of one of quietarm's.
+    """
     classes: dict[str, type[T]] = {}
-    for kind in family.__subclasses__():
+    for kind in _descendants(family):
         name = vars(kind).get("name")
-        classes |= ({name: kind} if isinstance(name, str) else {}) | known(kind)
+        if not isinstance(name, str):
+            continue
+        if name in classes and _ships(classes[name]) and not _ships(kind):
+            raise ValueError(
+                f"name {name!r} of {kind.__name__} is that of quietarm's "
+                f"{classes[name].__name__}; give {kind.__name__} another"
+            )
+        classes[name] = kind
     return classes
+
+
+def _descendants(family: type[T]) -> list[type[T]]:
+    """All subclasses; quietarm's own first, else in the order of their definitions."""
+    descendants: list[type[T]] = []
+    for kind in family.__subclasses__():
+        descendants += [kind, *_descendants(kind)]
+    return sorted(descendants, key=lambda kind: not _ships(kind))
+
+
+def _ships(kind: type[Any]) -> bool:
+    """Whether a class comes with quietarm."""
+    return kind.__module__.startswith("quietarm.")
 
 
 NotNegative = Annotated[float, Meta(ge=0)]

@@ -1,7 +1,10 @@
 """What counts as energy: against SciPy, closed forms and differences, the same in every answer."""
 
 import math
+import subprocess
+import sys
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -168,3 +171,25 @@ def test_an_energy_that_is_wrong_is_refused_when_it_is_asked_for(members, told):
     energy = dataclass(frozen=True)(type("Wrong", (qa.Energy,), {"name": "wrong", **members}))()
     with pytest.raises(ValueError, match=told):
         qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8, energy=energy)
+
+
+PLAN_OF_BEFORE = Path(__file__).parents[1] / "fixtures" / "2026-11-27-plans" / "plan.json"
+TAKES_A_NAME = f"""
+from dataclasses import dataclass
+import quietarm as qa
+
+@dataclass(frozen=True)
+class Mine(qa.Energy):
+    name = "copper"
+
+qa.Plan.load({str(PLAN_OF_BEFORE)!r})
+"""
+
+
+def test_an_energy_with_the_name_of_a_shipped_one_is_refused():
+    # in a process of its own: the class would stay known
+    command = [sys.executable, "-c", TAKES_A_NAME]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (
+        "name 'copper' of Mine is that of quietarm's CopperLoss; give Mine another" in ended.stderr
+    )
