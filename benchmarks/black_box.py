@@ -29,11 +29,12 @@ import pandas as pd
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
-from results_page import BUDGET, SEEDS, differences
+from results_page import BUDGET, SEEDS
 from scipy.stats import mannwhitneyu
 
 import quietarm as qa
 from quietarm.metaheuristics import PRESETS, NamedProblem, problem_of
+from quietarm.metaheuristics.algorithms.differences import slsqp
 from quietarm.metaheuristics.score import CORNER, within
 from quietarm.ocp import symbolic_rollout
 from quietarm.ocp.front.points import LEVELS
