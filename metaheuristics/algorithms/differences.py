@@ -62,6 +62,7 @@ class Differences:
 
     def _rows(self, candidates: Array) -> Array:
         objectives, violations = self._function(candidates)
+        self.objectives = objectives.shape[1]
         return np.hstack([objectives, violations])
 
 
@@ -100,8 +101,9 @@ def _least_energy(
 
     Both residuals are infinite where there is no limit.
     """
-    count = len(function.objectives)
-    energy_scale = 1.0 / max(abs(differences.values(start)[1]), 1e-12)
+    values = differences.values(start)
+    energy_scale = 1.0 / max(abs(values[1]), 1e-12)
+    first = differences.objectives
     constraints = list[dict[str, Any]]()
     if np.isfinite(limit):
         constraints.append(
@@ -111,12 +113,12 @@ def _least_energy(
                 "jac": lambda x: -differences.slopes(x)[0] / reach,
             }
         )
-    if function.constraints:
+    if len(values) > first:
         constraints.append(
             {
                 "type": "ineq",
-                "fun": lambda x: -differences.values(x)[count:],
-                "jac": lambda x: -differences.slopes(x)[count:],
+                "fun": lambda x: -differences.values(x)[first:],
+                "jac": lambda x: -differences.slopes(x)[first:],
             }
         )
     result = minimize(
