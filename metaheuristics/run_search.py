@@ -132,6 +132,10 @@ def search(
         chosen, stated = _of_preset(preset, task, population, evaluations, settings)
         size = preset.evaluations(stated["population"], 1)
         usual = preset.generations
+        if preset.is_function and start is not None:
+            raise ValueError(
+                f"{method} begins where its seed says; leave the front to start from out"
+            )
         if preset.is_function and evaluations is None:  # it knows no generations
             evaluations = preset.generations if generations is None else generations
             generations = None
