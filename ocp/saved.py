@@ -136,6 +136,11 @@ def typed(document: Any, kind: type[T]) -> T:
     return value
 
 
+def as_loaded(value: T) -> T:
+    """A value as its file would load: a window of 1 is one of 1.0 s."""
+    return msgspec.convert(plain(value), type(value), dec_hook=_known_here)
+
+
 def _unknown(document: Any, known: Any) -> set[str]:
     """Entries of a document, at any depth, that what is known does not have."""
     match document, known:
@@ -312,7 +317,7 @@ def _indented(document: Any, margin: str = "\n") -> str:
                 f"{json.dumps(name)}: {_indented(entry, inner)}" for name, entry in document.items()
             )
             return f"{{{inner}{f',{inner}'.join(entries)}{margin}}}"
-        case list() if document and not all(type(entry) in _LEAVES for entry in document):
+        case list() if not _LEAVES.issuperset(map(type, document)):
             entries = (_indented(entry, inner) for entry in document)
             return f"[{inner}{f',{inner}'.join(entries)}{margin}]"
     return _ENCODER.encode(document)

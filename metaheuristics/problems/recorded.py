@@ -88,11 +88,7 @@ class RecordedFunction(MoveFunction):
                 f"{self.upper[column]:.4g}; clip candidates to the function's lower and upper"
             )
         self._end_if_idle(len(table))
-        count = int(min(remaining, len(table)))
-        afforded = np.clip(table[:count], self.lower, self.upper)
-        blocks = [self._record(afforded[i : i + BLOCK]) for i in range(0, max(count, 1), BLOCK)]
-        if count < len(table):
-            raise BudgetSpentError
+        blocks = [self._record(table[i : i + BLOCK]) for i in range(0, len(table) or 1, BLOCK)]
         objectives, violations = map(np.concatenate, zip(*blocks))
         return objectives, violations
 
@@ -104,14 +100,19 @@ class RecordedFunction(MoveFunction):
             raise BudgetSpentError
 
     def _record(self, table: Array) -> tuple[Array, Array]:
-        """Evaluate candidates that are afforded, and keep them."""
-        objectives, violations = super().__call__(table)
+        """Evaluate the candidates that are afforded, and keep them."""
+        remaining = self.budget - self.archive.evaluations
+        count = int(min(remaining, len(table)))
+        afforded = np.clip(table[:count], self.lower, self.upper)
+        objectives, violations = super().__call__(afforded)
         failed = (objectives >= UNUSABLE).any(axis=1)
         broken = (violations > 0).any(axis=1)
         self.failed += int(failed.sum())
         self.infeasible += int((broken & ~failed).sum())
-        if len(table):
-            self.archive.add(table, objectives, np.logical_not(failed | broken))
+        if len(afforded):
+            self.archive.add(afforded, objectives, np.logical_not(failed | broken))
+        if len(afforded) < len(table):
+            raise BudgetSpentError
         return objectives, violations
 
     def charge(self, evaluations: int) -> None:
