@@ -18,6 +18,7 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
 from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.record import number_of_points, number_of_starts
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
 from quietarm.ocp.solvers.solver import NAME, OPTIONS, Solver
 from quietarm.ocp.solvers.sqp import Sqp
@@ -79,18 +80,9 @@ def gradient_front(
 ) -> Front:
     """The front of a method of `GRADIENT`, with its cost as its only mark."""
     name, _, solver_name = method.partition(":")
-    find, size = _FRONTS[name]
+    find, _ = _FRONTS[name]
+    check_settings(method, settings)
     options, method_settings = split_solver_options(settings)
-    for setting in method_settings:
-        if setting != size:
-            raise ValueError(
-                has_no(
-                    method,
-                    "setting",
-                    setting,
-                    [size, *SOLVER_OPTIONS],
-                )
-            )
     solver = solver_with(options, solver_name)
     before = COST.copy()
     began = time.thread_time()
@@ -103,6 +95,18 @@ def gradient_front(
         **method_settings,
     )
     return _with_cost(front.restated(method=method), before, began)
+
+
+def check_settings(method: str, settings: Mapping[str, Any]) -> None:
+    """Refuse settings that a method of `GRADIENT` does not have, or that are out of range."""
+    options, method_settings = split_solver_options(settings)
+    checks = {"points": number_of_points, "starts": number_of_starts}
+    _, size = _FRONTS[method.partition(":")[0]]
+    for name, value in method_settings.items():
+        if name != size:
+            raise ValueError(has_no(method, "setting", name, [size, *SOLVER_OPTIONS]))
+        checks[name](value)
+    solver_with(options)
 
 
 def split_solver_options(

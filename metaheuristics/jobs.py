@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from pickle import PicklingError
-from types import CodeType, FunctionType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any
 
 from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
 from quietarm.metaheuristics.gradient import (
     GRADIENT,
+    check_settings,
     gradient_front,
     polished,
     solver_with,
@@ -21,18 +19,23 @@ from quietarm.metaheuristics.gradient import (
 )
 from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
-from quietarm.metaheuristics.problems.recorded import BudgetSpentError
 from quietarm.metaheuristics.run_files import check_run, sealed
 from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
+from quietarm.metaheuristics.user_method import (
+    Method,
+    check_method,
+    digest_of,
+    is_of_pymoo,
+    method_name,
+    run_method,
+    why_not_sent,
+)
 from quietarm.ocp import FileFormatError, Front, QuietarmError
 from quietarm.ocp.checks import unknown, whole
 from quietarm.ocp.record import Setting
 
-if TYPE_CHECKING:
-    from pymoo.core.algorithm import Algorithm
-
-Method: TypeAlias = "str | Algorithm | Callable[..., Any]"
 POLISH = "+polish"
+DIED = "its worker died twice"
 _rehearsed: set[tuple[NamedProblem, str]] = set()
 
 
@@ -44,11 +47,13 @@ class Job:
     ----------
     problem : NamedProblem
         The problem, or the name of one of `PROBLEMS`.
-    method : str, pymoo Algorithm or callable
+    method : str, pymoo Algorithm, AskTell or callable
         A search of `PRESETS`, alone or polished by the gradient (``"nsga2+polish"``); a method
         of `GRADIENT`, as ``"epsilon"`` or ``"weighted:ipopt"``; an algorithm of pymoo that was not
-        run yet; or your own function, called with the problem's recorded function, seed and
-        budget, of whose candidates the first `budget` count.
+        run yet; your own object with ``setup(function, seed)``, ``ask()`` and ``tell(candidates,
+        objectives, violations)``, which is copied for each job; or your own function, called with
+        the problem's recorded function, seed and budget. Of their candidates the first `budget`
+        count.
     seed : int
         Seed of the random numbers.
     budget : int, optional
@@ -107,7 +112,7 @@ class Job:
 
         Its ``settings`` name the problem. A ``checksum`` says that the file is as it was written.
         """
-        digest = _digest_of(self.method)
+        digest = digest_of(self.method)
         self.problem.reference()  # refuses a third objective before anything is done
         if (self.problem, self.label) not in _rehearsed:
             self._find(rehearse=True)
@@ -154,10 +159,9 @@ class Job:
                 options, settings = split_solver_options(settings)
             size = PRESETS[method].evaluations(population or PRESETS[method].population, 1)
         budget = min(budget, rehearsal * size) if rehearse else budget
-        if _is_function(method):
+        if not (isinstance(method, str) or is_of_pymoo(method)):
             function = problem.recorded(budget)
-            with suppress(BudgetSpentError):
-                method(function, self.seed, budget)
+            run_method(method, function, self.seed, budget)
             return function.front(self.label, self.seed)
         front = search(
             problem.task,
@@ -170,60 +174,12 @@ class Job:
         return polished(front, solver_with(options)) if polish else front
 
 
-def method_name(method: Method) -> str:
-    """What a method is called."""
-    if isinstance(method, str):
-        return method
-    return getattr(method, "__name__", type(method).__name__)
-
-
-def _digest_of(method: Method) -> str:
-    """A digest of one's own method, by which runs of an older one are known; empty for a name.
-
-    Of a function its code, defaults and what it encloses, not what it calls; else all that the
-    object holds.
-    """
-    if isinstance(method, str):
-        return ""
-    import joblib  # not at the top: it takes long to load
-
-    digest = hashlib.sha256()
-    contents = method
-
-    def add(code: CodeType) -> None:
-        digest.update(code.co_code + repr(code.co_names).encode())
-        for constant in code.co_consts:
-            if isinstance(constant, CodeType):
-                add(constant)
-            elif isinstance(constant, frozenset):  # in any order
-                digest.update(repr(sorted(map(repr, constant))).encode())
-            else:
-                digest.update(repr(constant).encode())
-
-    if isinstance(method, FunctionType):
-        add(method.__code__)
-        enclosed = [cell.cell_contents for cell in method.__closure__ or ()]
-        contents = method.__defaults__, method.__kwdefaults__, enclosed
-    with suppress(
-        PicklingError,
-        AttributeError,
-        TypeError,
-    ):  # it may hold what cannot be pickled
-        digest.update(str(joblib.hash(contents)).encode())
-    return digest.hexdigest()[:12]
-
-
-def _is_function(method: Method) -> bool:
-    """Whether it is one's own function, not an algorithm of pymoo."""
-    return callable(method) and not hasattr(method, "infill")
-
-
 def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting]) -> int | None:
     """The evaluations of a method; ValueError where method, settings and budget do not fit."""
     if isinstance(method, str) and method in GRADIENT:
         if budget is not None:
             raise ValueError(f"{method} ends by itself; leave its budget out")
-        solver_with(split_solver_options(settings)[0])  # refuses what is out of range
+        check_settings(method, settings)
         return None
     if isinstance(method, str):
         search_name = method.removesuffix(POLISH)
@@ -246,24 +202,37 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
         if budget is None:
             return preset.evaluations(population, preset.generations)
         preset.refuse_less_than_one(budget, population)
-    elif budget is None:
+        return whole("budget", budget, 1, MOST_EVALUATIONS)
+    check_method(method)
+    if budget is None:
         raise ValueError(f"give a budget for {method_name(method)}, in evaluations")
-    elif settings:
+    if settings:
         raise ValueError(f"{method_name(method)} takes no settings here; set it before you give it")
     return whole("budget", budget, 1, MOST_EVALUATIONS)
 
 
 class LostJobsError(QuietarmError):
-    """Some jobs failed, or their workers died; `fronts` has those that are done."""
+    """Some jobs failed, or their workers died.
+
+    Attributes
+    ----------
+    failures : mapping of str to str
+        Why, by the name of the job.
+    fronts : mapping of Job to Front
+        Those that are done.
+    """
 
     def __init__(self, failures: Mapping[str, str], fronts: Mapping[Job, Front]) -> None:
+        self.failures = failures
         self.fronts = fronts
         name, why = next(iter(failures.items()))
         more = len(failures) - 1
         done = "1 job is" if len(fronts) == 1 else f"{len(fronts)} jobs are"
+        died = DIED in failures.values()
+        remedy = ", with fewer workers where memory ran short" if died else ""
         super().__init__(
             f"{name}: {why}{f'; and {more} more' if more else ''}; {done} done, run "
-            "the others again, with fewer workers where memory ran short"
+            f"the others again{remedy}"
         )
 
 
@@ -325,20 +294,34 @@ def run_jobs(
     mine = [job for job in jobs[index - 1 :: parts] if job not in done]
     total = len(mine)
     count = 0
-    for _ in range(2):  # once again what a killed worker left
-        missing = [job for job in mine if job not in done and job.name not in failures]
-        for job, outcome in _outcomes(missing, Path(folder), workers):
+    if workers != 1:
+        reasons = {job.name: why_not_sent(job.method) for job in mine}
+        failures |= {name: reason for name, reason in reasons.items() if reason}
+
+    def run(tried: Sequence[Job], apart: bool = False) -> None:
+        nonlocal count
+        for job, outcome in _outcomes(tried, Path(folder), workers, apart):
             if isinstance(outcome, Front):
                 done[job] = outcome
                 count += 1
                 report(job, outcome, count, total)
             else:
                 failures[job.name] = outcome
-    failures |= {
-        job.name: "its worker died twice"
-        for job in mine
-        if job not in done and job.name not in failures
-    }
+
+    def missing() -> list[Job]:
+        return [job for job in mine if job not in done and job.name not in failures]
+
+    run(missing())
+    while remaining := missing():  # a worker was killed, and what it left is tried again
+        if isinstance(workers, str):
+            run(remaining)
+            failures |= {job.name: DIED for job in missing()}
+            break
+        # whose worker died is among those that were handed out; alone it takes no other with it
+        for job in remaining[: 2 * workers]:
+            run([job], apart=True)
+            failures |= {job.name: DIED} if job in missing() else {}
+        run(missing())
     ordered = {job: done[job] for job in jobs if job in done}
     if failures:
         raise LostJobsError(failures, ordered)
@@ -366,7 +349,7 @@ def _load(job: Job, path: Path) -> Front:
     same = (front.task, front.profile, front.record.bound)
     if same != (problem.task, problem.profile, problem.bound):
         raise ValueError(f"{path} is of another problem than {problem.name}; give another folder")
-    if front.record.settings.get("digest", "") != _digest_of(job.method):
+    if front.record.settings.get("digest", "") != digest_of(job.method):
         raise ValueError(f"{path} is by {job.label} as it was before; give another folder")
     now = search_versions()
     for name in ("quietarm", "pymoo"):
@@ -389,11 +372,11 @@ def _refuse_twice(jobs: Sequence[Job]) -> None:
         seen.add(job.name)
 
 
-def _outcomes(jobs: Sequence[Job], folder: Path, workers: int | str) -> Any:
+def _outcomes(jobs: Sequence[Job], folder: Path, workers: int | str, apart: bool = False) -> Any:
     """Each job with its front, or why there is none, as they end; fewer where a worker dies."""
     by_name = {job.name: job for job in jobs}  # a job from a worker has a copy of its function
     with suppress(LostWorkersError):
-        for name, outcome in side_by_side(_run, jobs, workers):
+        for name, outcome in side_by_side(_run, jobs, workers, apart=apart):
             if isinstance(outcome, Front):
                 path = folder / f"{name}.json"
                 path.parent.mkdir(parents=True, exist_ok=True)
@@ -405,5 +388,15 @@ def _run(job: Job) -> tuple[str, Front | str]:
     """A job in a worker; what is wrong with it is an outcome and ends no other job."""
     try:
         return job.name, job.run()
-    except (QuietarmError, ValueError, ArithmeticError) as error:
-        return job.name, str(error)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # of any kind: a user's own lines, which may also exit
+        return job.name, _reason(error)
+
+
+def _reason(error: BaseException) -> str:
+    """Why there is no front, in one line."""
+    text = " ".join(str(error).split())
+    if isinstance(error, QuietarmError | ValueError) and text:
+        return text
+    return f"{type(error).__name__}{': ' if text else ''}{text}"

@@ -29,22 +29,27 @@ class LostWorkersError(QuietarmError):
 
 
 def side_by_side(
-    function: Callable[[Any], Any], items: Sequence[Any], workers: int | str = 1
+    function: Callable[[Any], Any],
+    items: Sequence[Any],
+    workers: int | str = 1,
+    *,
+    apart: bool = False,
 ) -> Iterator[Any]:
     """What a function gives for each item, as they end.
 
-    In this process with one worker, else in so many of joblib's, of one thread each; or in those of
-    the dask scheduler whose address stands in place of a number. ValueError where no scheduler
-    answers, LostWorkersError where a worker dies.
+    In this process with one worker, unless all is to be `apart` from it, else in so many of
+    joblib's, of one thread each; or in those of the dask scheduler whose address stands in place of
+    a number. ValueError where no scheduler answers, LostWorkersError where a worker dies.
     """
     if not items:
         return
     if isinstance(workers, str):
         yield from _on_cluster(function, items, workers)
-    elif min(workers, len(items)) == 1:
+    elif min(workers, len(items)) == 1 and not apart:
         yield from map(function, items)
     else:
-        yield from _in_processes(function, items, min(workers, len(items)))
+        # joblib has one worker's work done in this process
+        yield from _in_processes(function, items, max(min(workers, len(items)), 2))
 
 
 def _in_processes(

@@ -12,7 +12,7 @@ from quietarm.metaheuristics.algorithms.presets import PRESETS
 from quietarm.metaheuristics.objective.stated_figures import check_figures
 from quietarm.metaheuristics.score import HYPERVOLUME, filled, objectives
 from quietarm.ocp import Front, Mark
-from quietarm.ocp.saved import plain, read_document, stated_part, typed
+from quietarm.ocp.saved import as_loaded, plain, read_document, stated_part
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.jobs import Job
@@ -61,8 +61,8 @@ def _checksum(front: Front, job: Job, document: Any) -> str:
     """
     settings = front.record.settings.items()
     stated_settings = {name: value for name, value in settings if name != CHECKSUM}
-    as_read = typed(plain(front.restated(settings=stated_settings)), Front)
-    stated = stated_part(plain(as_read, whole=True), document)
+    loaded = as_loaded(front.restated(settings=stated_settings))
+    stated = stated_part(plain(loaded, whole=True), document)
     scale = objectives(job.problem.reference().front).tolist()
     text = json.dumps([job.name, scale, stated], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:32]

@@ -41,6 +41,8 @@ PLANT_FILE = "plant_file"
 """Entry of a plant: the file it was loaded from."""
 CHECKSUM = "checksum"
 """Entry of an answer's file: a digest of all the others."""
+_ENCODER = json.JSONEncoder(allow_nan=False)
+"""Made once: a file has a thousand lists of its own line."""
 _LEAVES = frozenset({float, int, str, bool, type(None)})
 """Of JSON, and as they are."""
 
@@ -50,8 +52,12 @@ def plain(value: Any, whole: bool = False) -> Any:
 
     Fields that are `IF_STATED` are left out where they have nothing, unless it is to be `whole`.
     """
-    if type(value) in _LEAVES:
+    kind = type(value)
+    if kind in _LEAVES:
         return value
+    if kind is tuple or kind is list:
+        # most entries are numbers, of which a file may have ten thousands
+        return [entry if type(entry) in _LEAVES else plain(entry, whole) for entry in value]
     match value:
         case Plant() | JointProfile() | Energy():
             return _named(value) | _entries(value, whole)
@@ -63,9 +69,8 @@ def plain(value: Any, whole: bool = False) -> Any:
             return value.tolist()
         case float():
             return float(value)  # also of a class of its own, as a default window
-        case list() | tuple():
-            # most entries are numbers, of which a file may have ten thousands
-            return [entry if type(entry) in _LEAVES else plain(entry, whole) for entry in value]
+        case list() | tuple():  # of a class of its own
+            return plain(list(value), whole)
         case _ if dataclasses.is_dataclass(value):
             return _entries(value, whole)
     return value
@@ -129,6 +134,11 @@ def typed(document: Any, kind: type[T]) -> T:
     if odd:
         raise ValueError(f"entries that are missing, or not known here: {', '.join(sorted(odd))}")
     return value
+
+
+def as_loaded(value: T) -> T:
+    """A value as its file would load: a window of 1 is one of 1.0 s."""
+    return msgspec.convert(plain(value), type(value), dec_hook=_known_here)
 
 
 def _unknown(document: Any, known: Any) -> set[str]:
@@ -288,13 +298,13 @@ def _checksum_of(document: Mapping[str, Any]) -> str:
 
 def _with_whole_numbers(entry: Any) -> Any:
     """An entry with 1 in the place of 1.0, as some programs write it that save a file again."""
-    match entry:
-        case float() if entry.is_integer():
-            return int(entry)
-        case dict():
-            return {name: _with_whole_numbers(value) for name, value in entry.items()}
-        case list():
-            return [_with_whole_numbers(value) for value in entry]
+    kind = type(entry)
+    if kind is float:
+        return int(entry) if entry.is_integer() else entry
+    if kind is dict:
+        return {name: _with_whole_numbers(value) for name, value in entry.items()}
+    if kind is list:
+        return [_with_whole_numbers(value) for value in entry]
     return entry
 
 
@@ -307,10 +317,10 @@ def _indented(document: Any, margin: str = "\n") -> str:
                 f"{json.dumps(name)}: {_indented(entry, inner)}" for name, entry in document.items()
             )
             return f"{{{inner}{f',{inner}'.join(entries)}{margin}}}"
-        case list() if document and not all(type(entry) in _LEAVES for entry in document):
+        case list() if not _LEAVES.issuperset(map(type, document)):
             entries = (_indented(entry, inner) for entry in document)
             return f"[{inner}{f',{inner}'.join(entries)}{margin}]"
-    return json.dumps(document, allow_nan=False)
+    return _ENCODER.encode(document)
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
@@ -21,8 +22,10 @@ if TYPE_CHECKING:
     from quietarm.metaheuristics.algorithms.presets import Preset  # which loads this file late
 
 
-def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algorithm:
-    """A new algorithm.
+def built(
+    preset: Preset, population: int, values: Mapping[str, Value]
+) -> Algorithm | Callable[..., None]:
+    """A new algorithm, or a function with its settings.
 
     Its operators are its own: those of pymoo's default arguments are shared, and some remember a
     run.
@@ -42,8 +45,11 @@ def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algor
         target[argument if dot else operator] = values[setting.name]
     arguments.update((name, operator_kinds[name](**options)) for name, options in operators.items())
     module, _, kind = preset.kind.partition(":")
+    method = getattr(import_module(module), kind)
+    if preset.is_function:
+        return partial(method, **arguments)
     first = directions(population) if preset.by_directions else population
-    return getattr(import_module(module), kind)(first, **arguments)
+    return method(first, **arguments)
 
 
 def directions(number: int) -> NDArray[np.float64]:

@@ -19,10 +19,15 @@ from quietarm.ocp.front.points import beyond
 from quietarm.ocp.record import Record, Setting
 
 Array = NDArray[np.float64]
+BLOCK = 10_000
+"""Candidates that are evaluated at once: more would fill the memory and be no faster."""
 
 
-class BudgetSpentError(Exception):
-    """Every candidate is spent: the search is over, wherever it was."""
+class BudgetSpentError(BaseException):
+    """Every candidate is spent, or no more are asked for: the search is over, wherever it was.
+
+    No failure: a method that goes on after any Exception ends as well.
+    """
 
 
 class RecordedFunction(MoveFunction):
@@ -62,12 +67,19 @@ class RecordedFunction(MoveFunction):
         self.archive = Archive(task, len(self.variables))
         self.failed = 0
         self.infeasible = 0
+        self._idle = 0
+        # the box that is searched is not a method's to change
+        self.lower.flags.writeable = False
+        self.upper.flags.writeable = False
 
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
         """Evaluate candidates, as `MoveFunction` does, and keep them.
 
         ValueError also when a coefficient is beyond the box, or is no number.
         """
+        remaining = self.budget - self.archive.evaluations
+        if isinstance(candidates, np.ndarray) and candidates.ndim and len(candidates) > remaining:
+            candidates = candidates[: int(remaining) + 1]  # of a huge array no copy is made
         table = table_of(candidates, len(self.variables))
         for row, column in beyond(table, self.lower, self.upper):
             raise ValueError(
@@ -75,6 +87,20 @@ class RecordedFunction(MoveFunction):
                 f"{table[row, column]:.4g}, not from {self.lower[column]:.4g} to "
                 f"{self.upper[column]:.4g}; clip candidates to the function's lower and upper"
             )
+        self._end_if_idle(len(table))
+        blocks = [self._record(table[i : i + BLOCK]) for i in range(0, len(table) or 1, BLOCK)]
+        objectives, violations = map(np.concatenate, zip(*blocks))
+        return objectives, violations
+
+    def _end_if_idle(self, rows: int) -> None:
+        """End a search that asks for nothing again and again."""
+        most_idle = 1_000
+        self._idle = 0 if rows else self._idle + 1
+        if self._idle >= most_idle:
+            raise BudgetSpentError
+
+    def _record(self, table: Array) -> tuple[Array, Array]:
+        """Evaluate the candidates that are afforded, and keep them."""
         remaining = self.budget - self.archive.evaluations
         count = int(min(remaining, len(table)))
         afforded = np.clip(table[:count], self.lower, self.upper)
@@ -88,6 +114,13 @@ class RecordedFunction(MoveFunction):
         if len(afforded) < len(table):
             raise BudgetSpentError
         return objectives, violations
+
+    def charge(self, evaluations: int) -> None:
+        """Count candidates that were simulated for derivatives; BudgetSpentError at the end."""
+        remaining = self.budget - self.archive.evaluations
+        self.archive.charge(int(min(evaluations, remaining)))
+        if evaluations >= remaining:
+            raise BudgetSpentError
 
     def front(
         self, method: str, seed: int | None = None, settings: Mapping[str, Setting] | None = None

@@ -45,13 +45,14 @@ def jobs_of(
     problems: Sequence[NamedProblem],
     methods: Sequence[str],
     runs: int,
-    evaluations: int,
+    evaluations: int | None,
     seed: int = 0,
     settings: Mapping[str, Setting] | None = None,
 ) -> tuple[list[Job], list[str]]:
     """The jobs, each method on each problem from one seed before the next; and what is left out.
 
-    Settings are named with their method, as ``nsga2.crossover``. Methods that know no limits are
+    Searches have so many evaluations, or with None those of their presets. Settings are named with
+    their method, as ``nsga2.crossover``. Methods that know no limits are
     left out where a problem has some.
     """
     stated = settings or {}

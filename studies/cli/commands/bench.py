@@ -29,13 +29,26 @@ if TYPE_CHECKING:
     from quietarm.studies.bench.results import Results
 
 
+def read_evaluations(text: str | int) -> int | None:
+    """A number of candidates; None for each method's own."""
+    if text == "preset":
+        return None
+    try:
+        return int(text)
+    except ValueError:
+        raise ValueError(f"{text!r} is no whole number; give one, or preset") from None
+
+
 @command(
     click.Argument(["problems"], nargs=-1, required=True, metavar="PROBLEM..."),
     option("--methods", default="nsga2,vepso,epsilon", type=NAMES, metavar="NAME,NAME,...",
            help="Searches, polished by the gradient as nsga2+polish; epsilon, weighted and "
-           "multistart are the gradient alone, by SQP or by IPOPT (epsilon:ipopt)."),
+           "multistart are the gradient alone, by SQP or by IPOPT (epsilon:ipopt); memetic is a "
+           "search with steps of the gradient, slsqp takes differences."),
     option("--runs", default=15, help="Seeds of each method."),
-    option("--evaluations", default=10_000, help="Candidates of each run of a search."),
+    option("--evaluations", default=10_000, type=Parsed("number", read_evaluations),
+           help="Candidates of each run of a search; preset gives each method those of its own "
+           "population and generations, and nsga2-paper and vepso the paper's."),
     SEED, METHOD_SETTING,
     option("--import", "imported", multiple=True, type=INPUT,
            help="A run of another library, by a recorded function, or a folder of such runs; in a "
@@ -56,6 +69,7 @@ def bench(given: Given) -> None:
     \b
     Examples:
       quietarm bench single-link-30deg-0.8s --output bench
+      quietarm bench all --methods vepso,nsga2-paper --evaluations preset --output paper
       quietarm bench all --methods nsga2,gde3,epsilon,epsilon:ipopt --runs 15 --output bench
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
@@ -117,6 +131,8 @@ def bench(given: Given) -> None:
     if fronts or trouble is None:
         _report(Results.of_jobs(fronts, imported), given)
     if trouble is not None:
+        others = list(trouble.failures.items())[1:]
+        print_lines(progress_console(), *(f"{name}: {why}" for name, why in others))
         raise trouble
 
 

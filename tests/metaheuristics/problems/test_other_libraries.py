@@ -27,6 +27,9 @@ def test_the_document_s_examples_run_as_they_stand(tmp_path, monkeypatch, capsys
     assert Front.load("random.json").record.method == "random"
     printed = capsys.readouterr().out.splitlines()
     assert any(float(line) > 0 for line in printed if re.fullmatch(r"[\d.]+", line))  # IGD+
+    # a method of one's own beside all others: a row of each seed
+    rows = [line.split()[1] for line in printed if re.match(r"\d+ ", line)]
+    assert [rows.count(name) for name in ("Nearby", "sampling", "moead-de", "epsilon")] == [2] * 4
     assert printed[-1] == "['nsga2', 'sampling']"
 
 
