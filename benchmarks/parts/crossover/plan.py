@@ -1,0 +1,172 @@
+"""What is run, in which order: jobs of the bench, by axis and round.
+
+A round is a seed. Within a round the centre comes first, then coefficients and budget crossed, then
+the kinds of energy, then large budgets: any stop leaves every finished round balanced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from quietarm.metaheuristics import Job
+
+from .moves import Move
+from .problems import CENTRE_TERMS, Case
+
+TERMS = (2, 4, 6, 10, 16, 24)
+BUDGETS = (1_000, 10_000)
+LARGE = 100_000
+KINDS = ("copper", "stages", "motor-map")
+SEEDS = {1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7}
+"""Rounds of the full plan, by budget."""
+LADDER = (10, 50, 200)
+"""Points of the gradient's fronts: more of them take more time, as a search's candidates do."""
+CROSSED = ("nsga2", "gde3", "cmopso", "random")
+"""Searches that are run in every cell of the map."""
+CENTRAL = ("smsemoa", "moead", "nsga2+polish", "gde3+polish")
+"""Searches that are run at the centre beside these."""
+AT_LARGE = ("nsga2", "gde3")
+IPOPT_MOVES = 5
+PAPER = {"nsga2-paper": 100_000, "vepso": 40_000}
+"""The paper's methods with the paper's candidates."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A job of the plan.
+
+    Attributes
+    ----------
+    axis : str
+        The file that keeps its run.
+    round : int
+        Its seed, or the round in which a method without a seed is run.
+    case : Case
+        Its problem.
+    method : str
+        As of `Job`.
+    budget : int, optional
+        Candidates; a gradient method has none.
+    settings : mapping
+        As of `Job`.
+    """
+
+    axis: str
+    round: int
+    case: Case
+    method: str
+    budget: int | None = None
+    settings: tuple[tuple[str, Any], ...] = ()
+    tags: tuple[str, ...] = field(default=(), compare=False)
+
+    @property
+    def key(self) -> tuple[str, str, str, str, int]:
+        """What tells its run from all others."""
+        return self.case.name, self.method, self.words, str(self.budget or ""), self.round
+
+    @property
+    def words(self) -> str:
+        """Its settings, as a table states them."""
+        return " ".join(f"{name}={value}" for name, value in self.settings)
+
+    def job(self, folder: Path) -> Job:
+        """The job of the bench."""
+        return Job(
+            self.case.problem(folder),
+            self.method,
+            seed=self.round,
+            budget=self.budget,
+            settings=dict(self.settings),
+        )
+
+
+def first_of_plants(moves: Sequence[Move], count: int) -> list[Move]:
+    """The first moves of every plant."""
+    chosen = list[Move]()
+    taken = dict[str, int]()
+    for move in moves:
+        taken[move.plant.name] = taken.get(move.plant.name, 0) + 1
+        if taken[move.plant.name] <= count:
+            chosen.append(move)
+    return chosen
+
+
+def rounds(moves: Sequence[Move]) -> Iterator[Planned]:
+    """The whole plan, one round after another."""
+    tested = [move for move in moves if not move.tuning]
+    for seed in range(max(SEEDS.values())):
+        balanced = first_of_plants(tested, 2)
+        remaining = [move for move in tested if move not in balanced]
+        yield from centre(tested, seed)
+        yield from crossing(balanced, seed)
+        yield from kinds(balanced, seed)
+        yield from papers(tested, seed)
+        yield from large(tested, seed)
+        yield from crossing(remaining, seed)
+
+
+def centre(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """All methods with six coefficients, 10,000 candidates, absolute power."""
+    if seed >= SEEDS[10_000]:
+        return
+    for move in tested:
+        case = Case(move)
+        for method in (*CROSSED, *CENTRAL):
+            yield Planned("centre", seed, case, method, 10_000)
+        if seed < 2:  # a method that repeats itself counts once, and so that it is seen to
+            for points in LADDER:
+                yield Planned("centre", seed, case, "epsilon", None, (("points", points),))
+        yield Planned("centre", seed, case, "multistart", None, (("starts", 100),))
+    if not seed:
+        for move in first_of_plants(tested, 1):
+            yield Planned("centre", 0, Case(move), "epsilon:ipopt", None, (("points", 20),))
+
+
+def crossing(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Coefficients by budget: first two moves of every plant, the others when all else is done."""
+    if not seed:
+        for terms in TERMS:
+            for move in moves if terms != CENTRE_TERMS else ():
+                for points in LADDER:
+                    yield Planned(
+                        "crossing", 0, Case(move, terms), "epsilon", None, (("points", points),)
+                    )
+    for budget in BUDGETS:
+        for terms in TERMS:
+            if (terms, budget) == (CENTRE_TERMS, 10_000) or seed >= SEEDS[budget]:
+                continue
+            for move in moves:
+                for method in CROSSED:
+                    yield Planned("crossing", seed, Case(move, terms), method, budget)
+
+
+def kinds(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Kinds of energy."""
+    for kind in KINDS:
+        for move in moves:
+            case = Case(move, kind=kind)
+            for method in CROSSED:
+                yield Planned("objective", seed, case, method, 10_000)
+            if not seed:
+                yield Planned("objective", 0, case, "epsilon", None, (("points", 50),))
+
+
+def papers(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """The paper's methods with the paper's settings and candidates."""
+    for method, budget in PAPER.items():
+        if seed < SEEDS[budget]:
+            for move in tested:
+                yield Planned("paper", seed, Case(move), method, budget)
+
+
+def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Coefficients with the large budget, on one move of every plant."""
+    if seed >= SEEDS[LARGE]:
+        return
+    for terms in (2, 6, 16, 4, 10, 24):
+        for move in first_of_plants(tested, 1):
+            for method in AT_LARGE:
+                yield Planned("large", seed, Case(move, terms), method, LARGE)
