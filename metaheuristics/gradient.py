@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -17,6 +17,7 @@ from quietarm.ocp.cost import COST, Cost
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
 from quietarm.ocp.solvers.solver import NAME, OPTIONS, Solver
@@ -76,9 +77,17 @@ def gradient_front(
     bound: float,
     seed: int,
     settings: Mapping[str, Any],
+    objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
 ) -> Front:
-    """The front of a method of `GRADIENT`, with its cost as its only mark."""
+    """The front of a method of `GRADIENT`, with its cost as its only mark.
+
+    ValueError where there are peaks among the objectives and it is not the epsilon-constraint.
+    """
     name, _, solver_name = method.partition(":")
+    options_of_problem: dict[str, Any] = {}
+    if tuple(objectives) != RESIDUAL_AND_ENERGY:
+        refuse_more_objectives(name, objectives)
+        options_of_problem["objectives"] = objectives
     find, size = _FRONTS[name]
     options, method_settings = split_solver_options(settings)
     for setting in method_settings:
@@ -101,8 +110,18 @@ def gradient_front(
         seed=seed,
         solver=solver,
         **method_settings,
+        **options_of_problem,
     )
     return _with_cost(front.restated(method=method), before, began)
+
+
+def refuse_more_objectives(name: str, objectives: Sequence[str]) -> None:
+    """Refuse a method of the gradient that is for residual and energy alone."""
+    if name != "epsilon" and tuple(objectives) != RESIDUAL_AND_ENERGY:
+        raise ValueError(
+            f"{name} is for residual and energy alone, not for {len(objectives)} objectives; give "
+            "epsilon, or a search"
+        )
 
 
 def split_solver_options(
