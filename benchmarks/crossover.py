@@ -2,6 +2,8 @@
 
     python benchmarks/crossover.py FOLDER [--workers N] [--axis centre ...] [--part 1/4]
     python benchmarks/crossover.py FOLDER --plan
+    python benchmarks/crossover.py FOLDER --tune gde3 [--trials 100] [--budget 5000]
+    python benchmarks/crossover.py FOLDER --landscapes
     python benchmarks/crossover.py FOLDER --page docs/results
 
 Goes on where it stopped, also on a new machine: runs that docs/results/runs has are not run again.
@@ -33,12 +35,34 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--rounds", type=int, default=15, help="only so many seeds")
     parser.add_argument("--results", type=Path, default=RESULTS, help="where rows are kept")
     parser.add_argument("--plan", action="store_true", help="count jobs and hours, run nothing")
+    parser.add_argument("--tune", nargs="*", default=[], help="methods whose settings are sought")
+    parser.add_argument("--trials", type=int, default=100)
+    parser.add_argument("--budget", type=int, default=5_000, help="candidates of a trial")
+    parser.add_argument("--landscapes", action="store_true", help="features of the problems")
+    parser.add_argument("--page", action="store_true", help="write the page of what is there")
     given = parser.parse_args(arguments)
 
-    from parts.crossover.run import part_of, print_plan, run
+    from parts.crossover.problems import read_moves
+    from parts.crossover.run import describe, part_of, print_plan, run
 
     if given.plan:
         print_plan(given.results)
+        return 0
+    if given.landscapes:
+        describe(given.folder, given.results)
+        return 0
+    if given.page:
+        from parts.crossover.page import write_page
+
+        write_page(given.results)
+        return 0
+    if given.tune:
+        from parts.crossover.tuning import tune
+
+        moves = read_moves(given.results / "moves.csv")
+        table = given.results / "tuning.csv"
+        for method in given.tune:
+            tune(method, moves, given.budget, given.trials, given.folder, table)
         return 0
     return run(
         given.folder,

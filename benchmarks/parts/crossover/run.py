@@ -12,11 +12,12 @@ import pandas as pd
 import quietarm as qa
 from quietarm.metaheuristics import Job, LostJobsError, run_jobs
 
+from .landscape import add_features
 from .packed import Row, key_of, read_rows, row_of, write_rows
 from .plan import Planned, rounds
-from .problems import read_moves
+from .problems import CENTRE_TERMS, read_moves
 
-BATCH = 100
+BATCH = 60
 """Jobs between two writings of the tables, and fronts in memory at once."""
 
 
@@ -132,6 +133,17 @@ def _keep_scale(results: Path, job: Job) -> None:
     }
     added = pd.DataFrame([row], index=pd.Index([job.problem.name], name="problem"))
     pd.concat([table, added]).sort_index().to_csv(path, float_format="%.10g", index_label="problem")
+
+
+def describe(folder: Path, results: Path) -> None:
+    """Features of the problems of the centre and the crossing, cheap ones first."""
+    cases = {
+        planned.case: None
+        for planned in plan_of(results)
+        if planned.axis in ("centre", "crossing") and planned.round == 0
+    }
+    ordered = sorted(cases, key=lambda case: (case.terms != CENTRE_TERMS, case.terms))
+    add_features(ordered, folder, results / "landscapes.csv")
 
 
 def print_plan(results: Path) -> None:
