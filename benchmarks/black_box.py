@@ -29,11 +29,12 @@ import pandas as pd
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
-from results_page import BUDGET, SEEDS, differences
+from results_page import BUDGET, SEEDS
 from scipy.stats import mannwhitneyu
 
 import quietarm as qa
 from quietarm.metaheuristics import PRESETS, NamedProblem, problem_of
+from quietarm.metaheuristics.algorithms.differences import slsqp
 from quietarm.metaheuristics.score import CORNER, within
 from quietarm.ocp import symbolic_rollout
 from quietarm.ocp.front.points import LEVELS
@@ -179,7 +180,7 @@ def ways_of(problem: NamedProblem, kind: type[Function]) -> dict[str, Way]:
     return ways | {
         "gradient, mechanical energy": partial(by_gradient, problem),
         "GDE3 from the gradient's front": partial(begun_there, problem),
-        "SLSQP with differences": partial(differences, step=1e-3),
+        "SLSQP with differences": partial(slsqp, step=1e-3),
     }
 
 

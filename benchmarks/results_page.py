@@ -23,7 +23,6 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pandas as pd
-from scipy.optimize import minimize
 
 import quietarm as qa
 from quietarm.metaheuristics import (
@@ -114,43 +113,9 @@ def hard_problem(name: str, folder: Path) -> NamedProblem:
     return NamedProblem.of_front(name, qa.Front.load(path))
 
 
-def differences(function: Any, seed: int, budget: int, step: float = 1e-6) -> None:
-    """SLSQP with differences, on the energy within one residual limit after another.
-
-    What is left of the gradient where an energy is a black box; a limit is a share of what the
-    cheapest motion leaves, drawn at random, and so are starts.
-    """
-    random, reach = np.random.default_rng(seed), np.inf
-    box = list(zip(function.lower, function.upper, strict=True))
-
-    def at(x: Any) -> Any:
-        return function(np.clip(x, function.lower, function.upper)[None])[0][0]
-
-    def slopes(x: Any, column: int) -> Any:
-        x = np.clip(x, function.lower, function.upper)
-        steps = np.where(x + step <= function.upper, step, -step)
-        values = function(np.vstack([x, x + np.diag(steps)]))[0][:, column]
-        return (values[1:] - values[0]) / steps
-
-    while True:
-        limit = random.uniform(0.0, reach) if np.isfinite(reach) else None
-        within = [] if limit is None else [
-            {"type": "ineq", "fun": lambda x, limit=limit: 1e2 * (limit - at(x)[0]),
-             "jac": lambda x: -1e2 * slopes(x, 0)}
-        ]  # fmt: skip
-        start = random.uniform(function.lower, function.upper)
-        scale = 1.0 / max(at(start)[1], 1e-12)
-        found = minimize(
-            lambda x, scale=scale: scale * at(x)[1], start, bounds=box, method="SLSQP",
-            jac=lambda x, scale=scale: scale * slopes(x, 1), constraints=within,
-        )  # fmt: skip
-        if limit is None:
-            reach = float(at(found.x)[0])
-
-
 def jobs_of(problems: list[Any]) -> list[Job]:
     """Every job, one seed after another."""
-    searches = (*SEARCHES, "nsga2+polish", "gde3+polish", differences)
+    searches = (*SEARCHES, "nsga2+polish", "gde3+polish", "slsqp")
     ipopt = ("epsilon:ipopt", "weighted:ipopt")
     jobs = list[Job]()
     for seed in range(SEEDS):

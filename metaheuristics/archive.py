@@ -108,9 +108,21 @@ class Archive:
         self._let_enter()
         return np.flatnonzero(usable)[entering(self._objectives, F[usable])]
 
+    def charge(self, evaluations: int) -> None:
+        """Count so many candidates that were simulated for derivatives, and may not enter."""
+        self.evaluations += evaluations
+
     def mark(self, seconds: float) -> None:
         """Note the effort until now."""
-        self.marks.append(Mark(self.evaluations, seconds=seconds))
+        spent = COST.since(self._cost)
+        self.marks.append(
+            Mark(
+                self.evaluations,
+                seconds=seconds,
+                gradients=spent.gradients,
+                hessians=spent.hessians,
+            )
+        )
 
     def non_dominated(self) -> tuple[Array, Array]:
         """Coefficients and objectives of what was found, by increasing residual."""

@@ -130,7 +130,6 @@ def search(
     """
     most_generations = 1_000_000
     # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
-    from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem
     from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
 
     profile = choose_profile(task) if profile is None else _profile_of(profile)
@@ -143,6 +142,9 @@ def search(
         chosen, stated = _of_preset(preset, task, population, evaluations, settings, len(names))
         size = preset.evaluations(stated["population"], 1, len(names))
         usual = preset.generations
+        if preset.is_function and evaluations is None:  # it knows no generations
+            evaluations = preset.generations if generations is None else generations
+            generations = None
     else:
         chosen, stated = _of_user(algorithm, population, settings)
         method = type(chosen).__name__
@@ -180,8 +182,7 @@ def search(
     # a division by a distance of zero is of no concern to a user; and pymoo's NSGA-III leaves all
     # warnings of the process switched off
     with warnings.catch_warnings(), np.errstate(all="ignore"), suppress(BudgetSpentError):
-        _set_up(chosen, PymooProblem(function), seed, **limits)
-        for done, _ in enumerate(_generations(chosen, first), start=1):
+        for done in _run(chosen, function, seed, first, limits):
             if report is not None:
                 report(_progress(function, done, generations))
     return function.front(method, seed, {**limits, **stated})
@@ -192,6 +193,26 @@ def _profile_of(profile: object) -> JointProfile:
     if (isinstance(profile, str) and profile in PRESETS) or hasattr(profile, "infill"):
         raise TypeError(f"profile is {profile!r}; a method is given as algorithm=...")
     return instance("profile", profile, JointProfile)
+
+
+def _run(
+    method: Any,
+    function: RecordedFunction,
+    seed: int,
+    first: NDArray[np.float64],
+    limits: Mapping[str, int],
+) -> Iterator[int]:
+    """How many generations are done, after each; one of a method that is a function."""
+    from pymoo.core.algorithm import Algorithm as PymooAlgorithm
+
+    from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem
+
+    if not isinstance(method, PymooAlgorithm):
+        method(function, seed, limits["evaluations"])
+        yield 1
+        return
+    _set_up(method, PymooProblem(function), seed, **limits)
+    yield from (done for done, _ in enumerate(_generations(method, first), start=1))
 
 
 def _set_up(
@@ -265,7 +286,7 @@ def _of_preset(
     evaluations: int | None,
     settings: Mapping[str, object] | None,
     objectives: int,
-) -> tuple[Algorithm, dict[str, Any]]:
+) -> tuple[Any, dict[str, Any]]:
     """A method that is known by name, and what it is set to, for so many objectives."""
     most = 100_000
     if task.limits and not preset.keeps_limits:
@@ -276,7 +297,7 @@ def _of_preset(
     size = whole(
         "population",
         preset.population if population is None else population,
-        2,
+        1 if preset.is_function else 2,
         most,
         f"{most} take 1.6 GB of memory",
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
 from itertools import product
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
 
 def built(
     preset: Preset, population: int, values: Mapping[str, Value], objectives: int
-) -> Algorithm:
-    """A new algorithm for so many objectives.
+) -> Algorithm | Callable[..., None]:
+    """A new algorithm for so many objectives, or a function with its settings.
 
     Its operators are its own: those of pymoo's default arguments are shared, and some remember a
     run.
@@ -47,8 +48,11 @@ def built(
         target[argument if dot else operator] = values[setting.name]
     arguments.update((name, operator_kinds[name](**options)) for name, options in operators.items())
     module, _, kind = preset.kind.partition(":")
+    method = getattr(import_module(module), kind)
+    if preset.is_function:
+        return partial(method, **arguments)
     first = directions(population, objectives) if preset.by_directions else population
-    return getattr(import_module(module), kind)(first, **arguments)
+    return method(first, **arguments)
 
 
 def directions(number: int, objectives: int = 2) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ and a list of names does not need it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from numbers import Integral
 from typing import TYPE_CHECKING
@@ -46,6 +46,9 @@ class Preset:
         Whether it can search a task that has limits.
     needs : str
         A library beyond pymoo's that it needs, which `quietarm[NAME]` installs.
+    is_function : bool
+        Whether it is a function of a problem's recorded function, a seed and a budget, which has no
+        population: a generation is a candidate.
     most : int
         Most individuals. pymoo's methods compare all pairs: these fill up to 2 GB of memory.
     """
@@ -61,6 +64,7 @@ class Preset:
     by_directions: bool = False
     keeps_limits: bool = True
     needs: str = ""
+    is_function: bool = False
     most: int = 10_000
 
     @property
@@ -73,8 +77,8 @@ class Preset:
         population: int,
         settings: Mapping[str, object] | None = None,
         objectives: int = 2,
-    ) -> Algorithm:
-        """A new algorithm.
+    ) -> Algorithm | Callable[..., None]:
+        """A new algorithm, or a function.
 
         Parameters
         ----------
@@ -87,8 +91,8 @@ class Preset:
 
         Returns
         -------
-        Algorithm
-            One that was not run.
+        Algorithm or callable
+            One that was not run; of a method that `is_function` that function, with its settings.
 
         Raises
         ------
@@ -108,6 +112,8 @@ class Preset:
         A population is refused that would never end, or fill the memory.
         """
         values = with_defaults(self.name, self.settings, settings or {})
+        if self.is_function and population != 1:
+            raise ValueError(f"{self.name} has no population; leave it out")
         if population > self.most:
             raise ValueError(
                 f"population is {population}; give at most {self.most}: {self.name} compares all "
@@ -171,6 +177,14 @@ def _differential(rate: float) -> dict[str, Value]:
     }
 
 
+_DECOMPOSED: dict[str, Value] = {
+    "n_neighbors": 20,
+    "prob_neighbor_mating": 0.9,
+    "replaced": 2,
+    "CR": 1.0,
+    "F": 0.5,
+    "mutation_eta": 20.0,
+}
 _PAIRS = _genetic(0.9, 15.0)
 _DIRECTIONS = _genetic(1.0, 30.0)
 _OURS = "quietarm.metaheuristics.algorithms"
@@ -254,6 +268,39 @@ _ALL = (
         {**_genetic(1.0, 20.0), "n_neighbors": 20, "prob_neighbor_mating": 0.9},
         by_directions=True,
         keeps_limits=False,
+    ),
+    Preset(
+        "moead-de",
+        "MOEA/D-DE",
+        "Li and Zhang 2009",
+        f"{_OURS}.moead_de:ScaledMOEAD",
+        _DECOMPOSED,
+        by_directions=True,
+    ),
+    Preset(
+        "memetic",
+        "memetic MOEA/D-DE",
+        "Li and Zhang 2009, with steps of the gradient",
+        f"{_OURS}.memetic:MemeticMOEAD",
+        {
+            **_DECOMPOSED,
+            "gradient_every": 10,
+            "gradient_points": 10,
+            "gradient_iterations": 5,
+        },
+        population=50,
+        generations=800,
+        by_directions=True,
+    ),
+    Preset(
+        "mo-cma-es",
+        "MO-CMA-ES",
+        "Igel, Hansen and Roth 2007",
+        f"{_OURS}.mo_cma_es:MOCMAES",
+        {"first_step": 0.2},
+        population=30,
+        generations=1_333,
+        most=2_000,
     ),
     Preset(
         "agemoea",
@@ -349,6 +396,16 @@ _ALL = (
             "obj_crowding": True,
             "var_crowding": True,
         },
+    ),
+    Preset(
+        "slsqp",
+        "SLSQP with differences",
+        "Kraft 1988",
+        f"{_OURS}.differences:slsqp",
+        {"step": 1e-6},
+        population=1,
+        generations=40_000,
+        is_function=True,
     ),
     Preset(
         "random",

@@ -76,6 +76,25 @@ _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
     "normalize": ("normalise", "scale the objectives to the population", _yes_or_no),
     "n_neighbors": ("neighbours", "nearest directions that take a child", _count(2)),
     "prob_neighbor_mating": ("neighbour_mating", "share of the pairs that come from these", _share),
+    "replaced": ("replaced", "most individuals that a child replaces", _count(1)),
+    "mutation_eta": ("mutation_eta", "how small a mutation is", _index),
+    "gradient_every": (
+        "gradient_every",
+        "generations between steps of the gradient",
+        _count(1),
+    ),
+    "gradient_points": (
+        "gradient_points",
+        "candidates of the front that take them at a time",
+        _count(2),
+    ),
+    "gradient_iterations": ("gradient_iterations", "iterations of each at a time", _count(1)),
+    "step": ("step", "step of a difference, as a share of the box", _positive_share),
+    "first_step": (
+        "first_step",
+        "standard deviation at first, as a share of the box",
+        _positive_share,
+    ),
     "alpha": ("alpha", "how fast the penalty of an angle grows", positive),
     "adapt_freq": (
         "adaptation",

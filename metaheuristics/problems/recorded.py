@@ -131,6 +131,13 @@ class RecordedFunction(MoveFunction):
         objectives[rows] = totals / times[:, None]
         return repeated
 
+    def charge(self, evaluations: int) -> None:
+        """Count candidates that were simulated for derivatives; BudgetSpentError at the end."""
+        remaining = self.budget - self.archive.evaluations
+        self.archive.charge(int(min(evaluations, remaining)))
+        if evaluations >= remaining:
+            raise BudgetSpentError
+
     def front(
         self, method: str, seed: int | None = None, settings: Mapping[str, Setting] | None = None
     ) -> Front:

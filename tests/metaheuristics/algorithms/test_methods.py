@@ -10,7 +10,8 @@ from quietarm.metaheuristics import PRESETS, search
 from quietarm.metaheuristics.algorithms.presets import preset_of
 
 SMALL = {"population": 8, "generations": 4, "bound": 0.3}
-IN_TURN = list(zip(PRESETS, itertools.cycle([SIXTH, HALF])))
+SEARCHES = [name for name, preset in PRESETS.items() if not preset.is_function]
+IN_TURN = list(zip(SEARCHES, itertools.cycle([SIXTH, HALF])))
 KEEPS_LIMITS = [name for name, preset in PRESETS.items() if preset.keeps_limits]
 
 
