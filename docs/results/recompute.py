@@ -38,6 +38,11 @@ KINDS = ("absolute", "copper", "stages", "motor-map")
 PAPER = ("nsga2-paper", "vepso")
 TARGETS = (50, 20, 10, 5, 2, 1)
 """Missing hypervolumes [%] that a run may attain."""
+DRAWN = (
+    "epsilon points=10", "epsilon points=50", "multistart starts=100", "memetic", "gde3",
+    "moead-de", "nsga2", "slsqp",
+)  # fmt: skip
+"""What the picture of attained targets shows: eight lines at most."""
 MEASURES = ("points", "between")
 """Of 50 points; of the 100 best with motions between them."""
 
@@ -147,7 +152,9 @@ class Results:
             found[run.problem] += [run.points, run.between]
             energies[run.problem].append(run.energy)
         self.whole = {name: area(np.vstack(points)) for name, points in found.items()}
-        self.least_energy = {name: float(np.nanmin(values)) for name, values in energies.items()}
+        self.least_energy = {
+            name: min(filter(np.isfinite, values), default=np.inf) for name, values in energies.items()
+        }
         self._table = defaultdict[tuple[str, int, str], list[Run]](list)
         for run in self.runs:
             self._table[run.label, run.budget, run.problem].append(run)
@@ -315,11 +322,18 @@ def searches_in(results: Results, axes: Sequence[str], budget: int, problems: Se
     return sorted((label, budget) for label, found in count.items() if len(found) >= least)
 
 
+def takes_derivatives(label: str) -> bool:
+    """Whether a search takes steps of the gradient."""
+    return "memetic" in label or "+polish" in label
+
+
 def cell(results: Results, terms: int, budget: int, crossed: Sequence[str]) -> dict[str, Any]:
     """A cell of the map: the nearest search against the gradient, four ways."""
     problems = results.problems(terms)
     have = searches_in(results, ("centre", "crossing", "large"), budget, problems, 5)
-    searches = [(label, spent) for label, spent in have if label in crossed]
+    searches = [
+        (label, spent) for label, spent in have if label in crossed and not takes_derivatives(label)
+    ]
     ways = {}
     for measure in MEASURES:
         for same_time in (False, True):
@@ -458,8 +472,9 @@ def prediction(results: Results, budget: int, crossed: Sequence[str], measure: s
     data = list[tuple[str, list[float], float]]()
     shown = list[dict[str, Any]]()
     for name, row in sorted(rows.items()):
-        runs = [r for label in crossed if (r := results.of(label, budget, name))]
-        if len(runs) < len(crossed) or not results.control(name):
+        searches = [label for label in crossed if not takes_derivatives(label)]
+        runs = [r for label in searches if (r := results.of(label, budget, name))]
+        if len(runs) < len(searches) or not results.control(name):
             continue
         lacks = min(results.median(r, results.missing, measure) for r in runs)
         theirs = results.median(results.control(name), results.missing, measure)
@@ -544,7 +559,10 @@ def compute(folder: Path) -> dict[str, Any]:
         str(share): searches_in(results, ("noise",), 10_000, centre, 5)
         for share in (0.01, 0.05)
     }
+    with (folder / "plan.csv").open(newline="") as file:
+        plan = {row["axis"]: int(row["jobs"]) for row in csv.DictReader(file)}
     return {
+        "plan": plan,
         "runs": {axis: sum(run.axis == axis for run in results.runs) for axis in axes},
         "hours": {
             axis: sum(run.seconds for run in results.runs if run.axis == axis) / 3600
@@ -581,6 +599,7 @@ def compute(folder: Path) -> dict[str, Any]:
         "attained": {
             "seconds": times.tolist(),
             "shares": attained(results, centre, [*central, *gradient], times),
+            "drawn": DRAWN,
         },
         "prediction": {
             measure: prediction(results, 10_000, crossed, measure) for measure in MEASURES

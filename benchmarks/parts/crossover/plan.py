@@ -24,12 +24,14 @@ SEEDS = {1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7}
 """Rounds of the full plan, by budget."""
 LADDER = (10, 50, 200)
 """Points of the gradient's fronts: more of them take more time, as a search's candidates do."""
-CROSSED = ("nsga2", "gde3")
+CROSSED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic")
 """Searches that are run in every cell of the map."""
-CENTRAL = ("cmopso", "smsemoa", "moead", "nsga2+polish", "gde3+polish", "random")
+CENTRAL = ("cmopso", "smsemoa", "moead", "slsqp", "nsga2+polish", "gde3+polish", "random")
 """Searches that are run at the centre beside these."""
+AT_LARGE = ("gde3", "moead-de", "nsga2", "memetic")
+OF_KINDS = ("nsga2", "gde3", "moead-de", "memetic", "slsqp")
 NOISES = (0.01, 0.05)
-NOISY = ("nsga2", "gde3")
+NOISY = ("nsga2", "gde3", "moead-de", "mo-cma-es", "slsqp")
 PAPER = {"nsga2-paper": 100_000, "vepso": 40_000}
 """The paper's methods with the paper's candidates."""
 
@@ -154,7 +156,7 @@ def kinds(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
     for kind in KINDS:
         for move in moves:
             case = Case(move, kind=kind)
-            for method in CROSSED:
+            for method in OF_KINDS:
                 yield Planned("objective", seed, case, method, 10_000)
             if not seed:
                 points = 20 if kind == "motor-map" else 50  # the solver takes long where it jumps
@@ -186,5 +188,5 @@ def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
             case = Case(move, terms)
             if not seed and terms != CENTRE_TERMS:
                 yield Planned("large", 0, case, "epsilon", None, (("points", 200),))
-            for method in CROSSED:
+            for method in AT_LARGE:
                 yield Planned("large", seed, case, method, LARGE)
