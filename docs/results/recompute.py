@@ -12,6 +12,7 @@ import argparse
 import csv
 import gzip
 import json
+import re
 import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -78,7 +79,7 @@ class Problem:
     @cached_property
     def move(self) -> str:
         """Its plant and number."""
-        return self.name.rsplit("-", 3 if self.name.endswith("motor-map") else 2)[0]
+        return re.split(r"(?<=-m\d)-", self.name)[0]
 
     @cached_property
     def plant(self) -> str:
@@ -115,9 +116,17 @@ def read_runs(folder: Path) -> list[Run]:
 
 def run_of(row: Mapping[str, str], scale: Mapping[str, str], axis: str) -> Run:
     """A row as a run."""
-    least = np.array([scale["least_residual_m"], scale["least_energy_J"]], dtype=float)
-    largest = np.array([scale["largest_residual_m"], scale["largest_energy_J"]], dtype=float)
+    least = np.append(
+        np.array([scale["least_residual_m"], scale["least_energy_J"]], dtype=float),
+        numbers(scale.get("least_peaks") or ""),
+    )
+    largest = np.append(
+        np.array([scale["largest_residual_m"], scale["largest_energy_J"]], dtype=float),
+        numbers(scale.get("largest_peaks") or ""),
+    )
     points = np.column_stack([numbers(row["residuals_mm"]), numbers(row["energies_mJ"])]) * 1e-3
+    for peak in filter(None, (row.get("peaks") or "").split(";")):
+        points = np.column_stack([points, numbers(peak)])
     between = np.column_stack([numbers(row["between_residuals"]), numbers(row["between_energies"])])
     marks = [numbers(row[name]) for name in ("marks_evaluations", "marks_seconds", "marks_area")]
     return Run(
@@ -137,7 +146,25 @@ def run_of(row: Mapping[str, str], scale: Mapping[str, str], axis: str) -> Run:
 
 def area(points: Array) -> float:
     """What points of a scale dominate, up to the corner."""
-    return float(moocore.hypervolume(points, ref=[CORNER] * 2)) if len(points) else 0.0
+    if not len(points):
+        return 0.0
+    return float(moocore.hypervolume(points, ref=[CORNER] * points.shape[1]))
+
+
+def best_known(points: Array) -> float:
+    """The area that counts as a hundred per cent: of all points of all runs of a problem.
+
+    Of two objectives it is the area above the straight lines through the best of them, the last
+    extended to the corner, so that it does not grow with the number of points on one curve.
+    """
+    inside = points[(points < CORNER).all(axis=1)]
+    best = moocore.filter_dominated(inside)
+    if points.shape[1] > 2:
+        return area(best)
+    x, y = best[np.argsort(best[:, 0])].T
+    x = np.append(x, CORNER)
+    y = np.append(y, y[-1])
+    return float(np.sum(np.diff(x) * (CORNER - (y[1:] + y[:-1]) / 2)))
 
 
 class Results:
@@ -149,9 +176,11 @@ class Results:
         found = defaultdict[str, list[Array]](list)
         energies = defaultdict[str, list[float]](list)
         for run in self.runs:
-            found[run.problem] += [run.points, run.between]
+            found[run.problem].append(run.points)
+            if len(run.between):  # of two objectives alone
+                found[run.problem].append(run.between)
             energies[run.problem].append(run.energy)
-        self.whole = {name: area(np.vstack(points)) for name, points in found.items()}
+        self.whole = {name: best_known(np.vstack(points)) for name, points in found.items()}
         self.least_energy = {
             name: min(filter(np.isfinite, values), default=np.inf) for name, values in energies.items()
         }
@@ -179,8 +208,10 @@ class Results:
         return float(np.median([value(run, measure) for run in runs]))
 
     def control(self, problem: str) -> list[Run]:
-        """The gradient's front of 50 points, or where the energy jumps of 20."""
-        runs = self.of(f"{CONTROL} {CONTROL_SETTINGS}", 0, problem)
+        """The gradient's front of 50 points; where the energy jumps of 20, of more objectives 200."""
+        several = Problem(problem).kind.endswith("objectives")
+        settings = "points=200" if several else CONTROL_SETTINGS
+        runs = self.of(f"{CONTROL} {settings}", 0, problem)
         return runs or self.of(f"{CONTROL} points=20", 0, problem)
 
     def control_within(self, problem: str, seconds: float) -> list[Run]:
@@ -551,7 +582,7 @@ def compute(folder: Path) -> dict[str, Any]:
     axes = sorted({run.axis for run in results.runs})
     kinds = {
         kind: compare(results, results.problems(kind=kind),
-                      searches_in(results, ("objective", "centre"), 10_000, results.problems(kind=kind), 8)
+                      searches_in(results, ("energy", "centre"), 10_000, results.problems(kind=kind), 8)
                       if kind != "absolute" else [(label, 10_000) for label in crossed], "between")
         for kind in KINDS
     }  # fmt: skip
@@ -592,6 +623,25 @@ def compute(folder: Path) -> dict[str, Any]:
         },
         "tuned": tuned(results),
         "kinds": kinds,
+        "objectives": {
+            str(count): compare(
+                results, results.problems(kind=f"absolute-{count}-objectives"),
+                [
+                    *searches_in(results, ("objectives",), 10_000,
+                                 results.problems(kind=f"absolute-{count}-objectives"), 5),
+                    ("epsilon points=50", 0),
+                ],
+                "points")
+            for count in (3, 4)
+        },
+        "grid_seconds": {
+            str(count): _median(np.array([
+                run.seconds
+                for name in results.problems(kind=f"absolute-{count}-objectives")
+                for run in results.control(name)
+            ]))
+            for count in (3, 4)
+        },
         "noise": {
             share: compare(results, centre, [pair for pair in pairs if pair[0].endswith(f"noise={share}")], "between")
             for share, pairs in noisy.items()

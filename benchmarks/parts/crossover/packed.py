@@ -1,9 +1,10 @@
 """Runs as rows of tables, one table an axis: what a page is computed from, and what goes on.
 
-A row has the run's effort, its 50 points of greatest hypervolume, the 100 of greatest hypervolume
-of the points with motions between them, and what was dominated at marks on the way. The scale of a
+A row has the run's effort, its 50 points of greatest hypervolume, of two objectives the 100 of
+greatest hypervolume of the points with motions between them, and what was dominated at marks on the
+way. Peaks are in SI units, a list for each, with a semicolon between. The scale of a
 problem is that of its quick front (`problems.py`): 0 and 1 are the front's least and largest
-residual and energy. Areas are dominated up to (1.1, 1.1) in that scale.
+value of each objective. Areas, or volumes, are dominated up to 1.1 in that scale.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ UNIT = 1e-4
 """Motions between are kept in whole multiples of this share of the scale."""
 KEY = ("problem", "method", "settings", "budget", "seed")
 EFFORT = ("seconds", "evaluations", "gradients", "hessians")
-POINTS_COLUMNS = ("residuals_mm", "energies_mJ", "between_residuals", "between_energies")
+POINTS_COLUMNS = ("residuals_mm", "energies_mJ", "peaks", "between_residuals", "between_energies")
 MARKS_COLUMNS = ("marks_evaluations", "marks_seconds", "marks_area")
 COLUMNS = (*KEY, *EFFORT, "energy_1mm_J", *POINTS_COLUMNS, *MARKS_COLUMNS)
 Row = dict[str, str]
@@ -43,8 +44,10 @@ def row_of(planned: Planned, front: qa.Front, scale: Reference) -> Row:
     """A run as a row."""
     points = objectives(front)
     chosen = points[best_subset(scale.scaled(points), POINTS)]
-    dense = scale.scaled(filled(front))
-    dense = dense[best_subset(dense, BETWEEN)]
+    dense = np.empty((0, 2))
+    if points.shape[1] == 2:
+        dense = scale.scaled(filled(front))
+        dense = dense[best_subset(dense, BETWEEN)]
     last = front.history[-1]
     on_the_way = list(front.history[:-1])[::2] if len(front.entries) else []
     marks = [*on_the_way, last]
@@ -59,6 +62,7 @@ def row_of(planned: Planned, front: qa.Front, scale: Reference) -> Row:
         "energy_1mm_J": f"{front.least_energy(1e-3):.6g}",
         "residuals_mm": _words(chosen[:, 0] * 1e3, ".5g"),
         "energies_mJ": _words(chosen[:, 1] * 1e3, ".6g"),
+        "peaks": ";".join(_words(peak, ".5g") for peak in chosen[:, 2:].T),
         "between_residuals": _words(np.round(dense[:, 0] / UNIT), ".0f"),
         "between_energies": _words(np.round(dense[:, 1] / UNIT), ".0f"),
         "marks_evaluations": _words([mark.evaluations for mark in marks], "d"),
@@ -74,7 +78,8 @@ def area(scaled: Array) -> float:
     points = moocore.filter_dominated(scaled)
     points = points[thinned(points)] if len(points) > 100 else points
     points = points[best_subset(points, POINTS)]
-    return float(moocore.hypervolume(points, ref=[CORNER] * 2)) if len(points) else 0.0
+    corner = [CORNER] * points.shape[1]
+    return float(moocore.hypervolume(points, ref=corner)) if len(points) else 0.0
 
 
 def _words(values: Iterable[float], form: str) -> str:

@@ -6,7 +6,7 @@ the kinds of energy, then large budgets: any stop leaves every finished round ba
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from quietarm.metaheuristics import Job
 from .moves import Move
 from .problems import CENTRE_TERMS, Case
 
+AXES = ("centre", "crossing", "energy", "paper", "noise", "objectives", "large", "tuned")
 TERMS = (2, 4, 6, 10, 16, 24)
 BUDGETS = (1_000, 10_000)
 LARGE = 100_000
@@ -30,6 +31,10 @@ CENTRAL = ("cmopso", "smsemoa", "moead", "slsqp", "nsga2+polish", "gde3+polish",
 """Searches that are run at the centre beside these."""
 AT_LARGE = ("gde3", "moead-de", "nsga2", "memetic")
 OF_KINDS = ("nsga2", "gde3", "moead-de", "memetic", "slsqp")
+PEAKS = ("peak_torque", "peak_deflection")
+OF_OBJECTIVES = ("nsga2", "nsga3", "gde3", "moead-de")
+GRID = (50, 200)
+"""Points of the gradient's fronts of three and four objectives."""
 NOISES = (0.01, 0.05)
 NOISY = ("nsga2", "gde3", "moead-de", "mo-cma-es", "slsqp")
 PAPER = {"nsga2-paper": 100_000, "vepso": 40_000}
@@ -100,8 +105,11 @@ def first_of_plants(moves: Sequence[Move], count: int) -> list[Move]:
     return chosen
 
 
-def rounds(moves: Sequence[Move]) -> Iterator[Planned]:
-    """The whole plan, one round after another."""
+Settings = Mapping[str, tuple[tuple[str, Any], ...]]
+
+
+def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]:
+    """The whole plan, one round after another, with the tuned settings that there are."""
     tested = [move for move in moves if not move.tuning]
     for seed in range(max(SEEDS.values())):
         balanced = first_of_plants(tested, 2)
@@ -111,6 +119,8 @@ def rounds(moves: Sequence[Move]) -> Iterator[Planned]:
         yield from kinds(balanced, seed)
         yield from papers(balanced, seed)
         yield from noise(balanced, seed)
+        yield from objectives(balanced, seed)
+        yield from tuned(tested, tuned_settings, seed)
         yield from large(tested, seed)
         yield from papers(remaining, seed)
         yield from crossing(remaining, seed)
@@ -157,10 +167,10 @@ def kinds(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
         for move in moves:
             case = Case(move, kind=kind)
             for method in OF_KINDS:
-                yield Planned("objective", seed, case, method, 10_000)
+                yield Planned("energy", seed, case, method, 10_000)
             if not seed:
                 points = 20 if kind == "motor-map" else 50  # the solver takes long where it jumps
-                yield Planned("objective", 0, case, "epsilon", None, (("points", points),))
+                yield Planned("energy", 0, case, "epsilon", None, (("points", points),))
 
 
 def papers(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
@@ -177,6 +187,24 @@ def noise(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
         for move in moves:
             for method in NOISY:
                 yield Planned("noise", seed, Case(move), method, 10_000, noise=share)
+
+
+def objectives(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Three objectives, with the peak torque, and four, with the peak deflection as well."""
+    for count in (1, 2):
+        for move in moves:
+            case = Case(move, peaks=PEAKS[:count])
+            for method in OF_OBJECTIVES:
+                yield Planned("objectives", seed, case, method, 10_000)
+            for points in GRID if not seed else ():
+                yield Planned("objectives", 0, case, "epsilon", None, (("points", points),))
+
+
+def tuned(tested: Sequence[Move], settings: Settings, seed: int) -> Iterator[Planned]:
+    """Tuned settings at the centre."""
+    for method, values in settings.items():
+        for move in tested:
+            yield Planned("tuned", seed, Case(move), method, 10_000, values)
 
 
 def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:

@@ -31,16 +31,20 @@ class Case:
         Coefficients of the path.
     kind : str
         Of the energy, as of `energy_of`.
+    peaks : tuple of str
+        Objectives beside residual and energy.
     """
 
     move: Move
     terms: int = CENTRE_TERMS
     kind: str = CENTRE_KIND
+    peaks: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
         """Of move, coefficients and energy; files are called by it."""
-        return f"{self.move.name}-{self.terms}-{self.kind}"
+        more = f"-{2 + len(self.peaks)}-objectives" if self.peaks else ""
+        return f"{self.move.name}-{self.terms}-{self.kind}{more}"
 
     @property
     def task(self) -> qa.PointToPoint:
@@ -70,6 +74,14 @@ def scale_front(case: Case) -> qa.Front:
     solvers take long there, and a scale needs no optimum.
     """
     profile = qa.CycloidPolynomial(case.terms)
+    if case.peaks:
+        return qa.epsilon_front(
+            case.task,
+            profile,
+            bound=case.move.bound,
+            points=50,
+            objectives=("residual", "energy", *case.peaks),
+        )
     smooth = Case(case.move, case.terms) if case.kind == "motor-map" else case
     front = qa.epsilon_front(
         smooth.task, profile, bound=case.move.bound, points=40, at=LEVELS, starts=12

@@ -14,9 +14,12 @@ from quietarm.metaheuristics import Job, LostJobsError, run_jobs
 
 from .landscape import add_features
 from .packed import Row, key_of, read_rows, row_of, write_rows
-from .plan import Planned, rounds
+from .plan import AXES, Planned, rounds
 from .problems import CENTRE_TERMS, read_moves
+from .trials import best_settings
 
+TUNED_WITH = 5_000
+"""Candidates of the trials whose best settings are tested."""
 BATCH = 60
 """Jobs between two writings of the tables, and fronts in memory at once."""
 
@@ -28,7 +31,8 @@ def runs_path(results: Path, axis: str) -> Path:
 
 def plan_of(results: Path) -> list[Planned]:
     """Every job of the plan, in order."""
-    return list(rounds(read_moves(results / "moves.csv")))
+    settings = best_settings(results / "tuning.csv", TUNED_WITH)
+    return list(rounds(read_moves(results / "moves.csv"), settings))
 
 
 def done_keys(results: Path) -> set[tuple[str, str, str, str, int]]:
@@ -43,6 +47,25 @@ def part_of(text: str) -> tuple[int, int]:
     if not (number.isdigit() and count.isdigit() and 1 <= int(number) <= int(count)):
         raise ValueError(f"part is {text!r}; give a number of how many, as 2/4")
     return int(number), int(count)
+
+
+def refuse_axes(axes: Sequence[str]) -> None:
+    """ValueError where an axis is not of the plan."""
+    for axis in axes:
+        if axis not in AXES:
+            raise ValueError(f"no axis is called {axis!r}; give one of {', '.join(AXES)}")
+
+
+def merge(results: Path, other: Path) -> None:
+    """Add the rows and scales of other results, as of another part."""
+    for path in sorted((other / "runs").glob("*.csv.gz")):
+        mine = results / "runs" / path.name
+        rows = {key_of(row): row for row in [*read_rows(path), *read_rows(mine)]}
+        write_rows(rows.values(), mine)
+    scales = [pd.read_csv(folder / "scales.csv", index_col="problem") for folder in (results, other)]
+    table = pd.concat(scales)
+    table = table[~table.index.duplicated()].sort_index()
+    table.to_csv(results / "scales.csv", float_format="%.10g", index_label="problem")
 
 
 def missing_of(
@@ -74,14 +97,19 @@ def batches(missing: Iterable[Planned]) -> Iterator[list[Planned]]:
 def run(
     folder: Path,
     results: Path,
-    *,
     workers: int | str,
     part: tuple[int, int],
     axes: Sequence[str],
     most_rounds: int,
 ) -> int:
-    """Run what is missing; the number of jobs that failed."""
-    missing = missing_of(results, part, axes, most_rounds)
+    """Run what is missing of the plan; 1 where some jobs failed."""
+    return int(run_jobs_of(missing_of(results, part, axes, most_rounds), folder, results, workers) > 0)
+
+
+def run_jobs_of(
+    missing: Sequence[Planned], folder: Path, results: Path, workers: int | str = 1
+) -> int:
+    """Run jobs in batches, and pack each; the number of those that failed."""
     print(f"{len(missing)} jobs", flush=True)
     failed = 0
     finished = 0
@@ -102,7 +130,8 @@ def run(
         pack(results, {by_job[job]: (job, front) for job, front in fronts.items()})
         finished += len(fronts)
         last = batch[-1]
-        print(f"{finished}/{len(missing)} round {last.round} {last.axis} {last.case.name}", flush=True)
+        place = f"round {last.round} {last.axis} {last.case.name}"
+        print(f"{finished}/{len(missing)} {place}", flush=True)
     return failed
 
 
@@ -130,6 +159,8 @@ def _keep_scale(results: Path, job: Job) -> None:
         "least_energy_J": scale.ideal[1],
         "largest_residual_m": scale.nadir[0],
         "largest_energy_J": scale.nadir[1],
+        "least_peaks": " ".join(f"{value:.10g}" for value in scale.ideal[2:]),
+        "largest_peaks": " ".join(f"{value:.10g}" for value in scale.nadir[2:]),
     }
     added = pd.DataFrame([row], index=pd.Index([job.problem.name], name="problem"))
     pd.concat([table, added]).sort_index().to_csv(path, float_format="%.10g", index_label="problem")

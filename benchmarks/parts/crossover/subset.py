@@ -1,4 +1,4 @@
-"""The points of a front that together dominate most: exact for two objectives."""
+"""The points of a front that together dominate most: exact for two objectives, greedy for more."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ MOST = 400
 def best_subset(points: Array, count: int, corner: float = CORNER) -> NDArray[np.int64]:
     """Rows of at most `count` points of greatest hypervolume, by increasing first objective.
 
-    Dynamic programming over the points in order (Auger and others 2009): the best of k points that
+    Of three objectives and more, the point that adds least is left out, again and again. Of two,
+    dynamic programming over the points in order (Auger and others 2009): the best of k points that
     end at one is the best of k - 1 that end at an earlier one, and what the last adds.
     """
     inside = (points < corner).all(axis=1)
@@ -24,6 +25,11 @@ def best_subset(points: Array, count: int, corner: float = CORNER) -> NDArray[np
     rows = rows[np.argsort(points[rows, 0])]
     if len(rows) > MOST:
         rows = rows[np.linspace(0, len(rows) - 1, MOST).astype(int)]
+    if points.shape[1] > 2:
+        while len(rows) > count:
+            added = moocore.hv_contributions(points[rows], ref=[corner] * points.shape[1])
+            rows = np.delete(rows, added.argmin())
+        return rows
     if len(rows) <= count:
         return rows
     x, y = points[rows].T

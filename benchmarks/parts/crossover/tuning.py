@@ -23,6 +23,7 @@ from quietarm.metaheuristics.score import objectives
 from .moves import Move
 from .packed import area
 from .problems import Case
+from .trials import read_trials
 
 FLOOR = 1e-2
 """A missing hypervolume [%] that counts as least: a trial may come nearer than the quick front."""
@@ -126,21 +127,3 @@ def tune(
 
 def _short(value: Any) -> Any:
     return float(f"{value:.4g}") if isinstance(value, float) else value
-
-
-def read_trials(path: Path) -> pd.DataFrame:
-    """The table of trials."""
-    if path.exists():
-        return pd.read_csv(path)
-    return pd.DataFrame({"method": [], "budget": [], "trial": [], "score": [], "settings": []})
-
-
-def best_settings(path: Path, budget: int) -> dict[str, tuple[tuple[str, Any], ...]]:
-    """The best trial's settings by method, as a plan takes them."""
-    table = read_trials(path)
-    table = table[table["budget"] == budget]
-    best = {
-        method: json.loads(rows.loc[rows["score"].idxmin(), "settings"])
-        for method, rows in table.groupby("method")
-    }
-    return {method: tuple(sorted(settings.items())) for method, settings in best.items()}

@@ -1,0 +1,32 @@
+"""The table of trials by which settings were tuned."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+
+def read_trials(path: Path) -> pd.DataFrame:
+    """The table of trials."""
+    if path.exists():
+        return pd.read_csv(path)
+    return pd.DataFrame({"method": [], "budget": [], "trial": [], "score": [], "settings": []})
+
+
+def best_settings(path: Path, budget: int) -> dict[str, tuple[tuple[str, Any], ...]]:
+    """The best trial's settings by method, as a plan takes them.
+
+    A method with fewer trials is being tuned still, and left out.
+    """
+    fewest = 20
+    table = read_trials(path)
+    table = table[table["budget"] == budget]
+    table = table[table.groupby("method")["trial"].transform("size") >= fewest]
+    best = {
+        method: json.loads(rows.loc[rows["score"].idxmin(), "settings"])
+        for method, rows in table.groupby("method")
+    }
+    return {method: tuple(sorted(settings.items())) for method, settings in best.items()}
