@@ -17,10 +17,11 @@ from quietarm.metaheuristics import NamedProblem
 from quietarm.ocp.front.curve import Curve
 from quietarm.ocp.planning.setup import Setup
 
-from .problems import Case
+from .problems import CENTRE_TERMS, Case
 
 Array = NDArray[np.float64]
-STARTS = 200
+STARTS, FEWER = 200, 50
+"""Local searches; fewer with more coefficients than those of the centre, where each takes longer."""
 WITHIN = 1e-3
 """Residual [m] within which local searches minimise the energy."""
 SAME = 0.01
@@ -55,8 +56,9 @@ def local_searches(problem: NamedProblem, random: np.random.Generator) -> dict[s
     """
     curve = Curve.begin(problem.task, problem.profile, Setup(bound=problem.bound))
     lower, upper = problem.profile.box(problem.bound)
-    guesses = random.uniform(lower, upper, (STARTS, problem.profile.size))
-    programs = [curve.problem(WITHIN)] * STARTS
+    starts = STARTS if problem.profile.size <= CENTRE_TERMS else FEWER
+    guesses = random.uniform(lower, upper, (starts, problem.profile.size))
+    programs = [curve.problem(WITHIN)] * starts
     solutions = [
         solution
         for solution in curve.solver.solve(programs, list(guesses))
@@ -71,7 +73,8 @@ def local_searches(problem: NamedProblem, random: np.random.Generator) -> dict[s
     spread = np.ptp(energies) > SAME * energies.min() and np.ptp(distances) > 0
     ordered = np.sort(energies)
     return {
-        "solved": len(solutions) / STARTS,
+        "starts": starts,
+        "solved": len(solutions) / starts,
         "basins": 1 + int((np.diff(ordered) > SAME * ordered[0]).sum()),
         "best_basin": float((energies <= (1 + SAME) * energies.min()).mean()),
         "funnel": float(np.corrcoef(energies, distances)[0, 1]) if spread else 0.0,

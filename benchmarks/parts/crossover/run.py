@@ -167,11 +167,12 @@ def _keep_scale(results: Path, job: Job) -> None:
 
 
 def describe(folder: Path, results: Path) -> None:
-    """Features of the problems of the centre and the crossing, cheap ones first."""
+    """Features of the problems of the centre and the crossing that have runs, cheap ones first."""
+    run_already = {problem for problem, *_ in done_keys(results)}
     cases = {
         planned.case: None
         for planned in plan_of(results)
-        if planned.axis in ("centre", "crossing") and planned.round == 0
+        if planned.axis in ("centre", "crossing") and planned.case.name in run_already
     }
     ordered = sorted(cases, key=lambda case: (case.terms != CENTRE_TERMS, case.terms))
     add_features(ordered, folder, results / "landscapes.csv")
