@@ -1,6 +1,6 @@
 """When does a metaheuristic win? The runs behind docs/results, and its page.
 
-    python benchmarks/crossover.py FOLDER [--workers N | --scheduler ADDRESS] [--part 1/4] [--axis centre]
+    python benchmarks/crossover.py FOLDER [--workers N] [--part 1/4] [--axis centre]
     python benchmarks/crossover.py FOLDER --plan
     python benchmarks/crossover.py FOLDER --tune gde3 [--trials 100] [--budget 5000]
     python benchmarks/crossover.py FOLDER --landscapes
@@ -38,7 +38,9 @@ def parser() -> argparse.ArgumentParser:
     arguments.add_argument("--rounds", type=int, default=15, help="only so many seeds")
     arguments.add_argument("--results", type=Path, default=RESULTS, help="where rows are kept")
     arguments.add_argument("--plan", action="store_true", help="count jobs and hours, run nothing")
-    arguments.add_argument("--tune", nargs="*", default=[], help="methods whose settings are sought")
+    arguments.add_argument(
+        "--tune", nargs="*", default=[], help="methods whose settings are sought"
+    )
     arguments.add_argument("--trials", type=int, default=100)
     arguments.add_argument("--budget", type=int, default=5_000, help="candidates of a trial")
     arguments.add_argument("--landscapes", action="store_true", help="features of the problems")

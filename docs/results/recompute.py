@@ -182,7 +182,8 @@ class Results:
             energies[run.problem].append(run.energy)
         self.whole = {name: best_known(np.vstack(points)) for name, points in found.items()}
         self.least_energy = {
-            name: min(filter(np.isfinite, values), default=np.inf) for name, values in energies.items()
+            name: min(filter(np.isfinite, values), default=np.inf)
+            for name, values in energies.items()
         }
         self._table = defaultdict[tuple[str, int, str], list[Run]](list)
         for run in self.runs:
@@ -203,12 +204,14 @@ class Results:
         """The runs of a method with its settings on a problem."""
         return self._table.get((label, budget, problem), [])
 
-    def median(self, runs: Iterable[Run], value: Callable[[Run, str], float], measure: str) -> float:
+    def median(
+        self, runs: Iterable[Run], value: Callable[[Run, str], float], measure: str
+    ) -> float:
         """Over seeds; a method that repeats itself counts once as it is."""
         return float(np.median([value(run, measure) for run in runs]))
 
     def control(self, problem: str) -> list[Run]:
-        """The gradient's front of 50 points; where the energy jumps of 20, of more objectives 200."""
+        """The gradient's front of 50 points; of 20 where the energy jumps, of 200 with peaks."""
         several = Problem(problem).kind.endswith("objectives")
         settings = "points=200" if several else CONTROL_SETTINGS
         runs = self.of(f"{CONTROL} {settings}", 0, problem)
@@ -305,10 +308,12 @@ def compare(
             results.control_within(name, spent) if same_time else results.control(name)
             for name, spent in zip(problems, seconds, strict=True)
         ]
-        theirs = np.array([
-            results.median(control, results.missing, measure) if control else 100.0
-            for control in controls
-        ])
+        theirs = np.array(
+            [
+                results.median(control, results.missing, measure) if control else 100.0
+                for control in controls
+            ]
+        )
         row: dict[str, Any] = {
             "method": label,
             "budget": budget,
@@ -419,7 +424,9 @@ def tuned(results: Results) -> dict[str, Any]:
         mine = [trial for trial in trials if trial["method"] == method]
         best = min(mine, key=lambda trial: float(trial["score"]))
         runs = [run for run in results.runs if run.axis == "tuned" and run.method == method]
-        problems = sorted({run.problem for run in runs if results.of(method, run.budget, run.problem)})
+        problems = sorted(
+            {run.problem for run in runs if results.of(method, run.budget, run.problem)}
+        )
         labels = sorted({run.label for run in runs})
         found[method] = {
             "trials": len(mine),
@@ -431,14 +438,18 @@ def tuned(results: Results) -> dict[str, Any]:
         if labels and len(problems) > 1:
             label = labels[-1]
             for measure in MEASURES:
-                pairs = np.array([
+                pairs = np.array(
                     [
-                        results.median(results.of(name, 10_000, problem), results.missing, measure)
-                        for name in (method, label)
+                        [
+                            results.median(
+                                results.of(name, 10_000, problem), results.missing, measure
+                            )
+                            for name in (method, label)
+                        ]
+                        for problem in problems
+                        if results.of(label, 10_000, problem)
                     ]
-                    for problem in problems
-                    if results.of(label, 10_000, problem)
-                ])
+                )
                 found[method][measure] = {
                     "moves": len(pairs),
                     "default": float(np.median(pairs[:, 0])),
@@ -490,7 +501,9 @@ FEATURES = ("coefficients", "best_basin", "condition", "walk_residual", "walk_en
             "within_1mm", "within_5mm", "opposed")  # fmt: skip
 
 
-def prediction(results: Results, budget: int, crossed: Sequence[str], measure: str) -> dict[str, Any]:
+def prediction(
+    results: Results, budget: int, crossed: Sequence[str], measure: str
+) -> dict[str, Any]:
     """What tells the winner: features of problems, tested on plants that were left out.
 
     The outcome of a problem is the logarithm of what the nearest search lacks over what the
@@ -563,104 +576,145 @@ def stump(table: Array, wins: NDArray[np.bool_]) -> tuple[int, float, bool]:
     return best[1:]
 
 
+def both(
+    results: Results, problems: Sequence[str], searches: Sequence[tuple[str, int]]
+) -> dict[str, list[dict[str, Any]]]:
+    """Comparisons by either measure."""
+    return {measure: compare(results, problems, searches, measure) for measure in MEASURES}
+
+
+def efforts(results: Results) -> dict[str, Any]:
+    """Runs, hours and seeds by axis, beside the runs of the plan."""
+    with (results.folder / "plan.csv").open(newline="") as file:
+        plan = {row["axis"]: int(row["jobs"]) for row in csv.DictReader(file)}
+    runs = defaultdict[str, list[Run]](list)
+    for run in results.runs:
+        runs[run.axis].append(run)
+    return {
+        "plan": plan,
+        "runs": {axis: len(found) for axis, found in runs.items()},
+        "hours": {axis: sum(run.seconds for run in found) / 3600 for axis, found in runs.items()},
+        "seeds": {axis: 1 + max(run.seed for run in found) for axis, found in runs.items()},
+        "problems": len(results.whole),
+    }
+
+
+def gradient_labels(results: Results, problems: Sequence[str]) -> list[tuple[str, int]]:
+    """Methods without a budget that were run on most of the problems."""
+    labels = {run.label for run in results.runs if run.axis == "centre" and not run.budget}
+    return [
+        (label, 0)
+        for label in sorted(labels)
+        if 2 * sum(bool(results.of(label, 0, name)) for name in problems) > len(problems)
+    ]
+
+
+def map_figures(results: Results, crossed: Sequence[str]) -> dict[str, Any]:
+    """Coefficients and budget crossed, and the lines through the centre."""
+    every_terms = (2, 4, 6, 10, 16, 24)
+    budgets = (1_000, 10_000, 100_000)
+    over_terms = [(terms, terms, 10_000) for terms in every_terms]
+    over_budgets = [(budget, CENTRE, budget) for budget in budgets]
+    return {
+        "crossed": list(crossed),
+        "map": [
+            cell(results, terms, budget, crossed) for budget in budgets for terms in every_terms
+        ],
+        "map_rows": {
+            "by_terms": lines_over(results, over_terms, crossed),
+            "by_budget": lines_over(results, over_budgets, crossed),
+        },
+    }
+
+
+def kind_figures(results: Results) -> dict[str, Any]:
+    """By the kind of energy, on the moves that all kinds have, with motions between."""
+    figures = {}
+    moves = {Problem(name).move for name in results.whole if Problem(name).kind in KINDS[1:]}
+    for kind in KINDS:
+        problems = [name for name in results.problems(kind=kind) if Problem(name).move in moves]
+        methods = {run.label for run in results.runs if run.axis == "energy" and run.budget}
+        searches = [
+            (label, 10_000)
+            for label in sorted(methods)
+            if sum(bool(results.of(label, 10_000, name)) for name in problems) >= 8
+        ]
+        figures[kind] = compare(results, problems, searches, "between") if problems else []
+    return figures
+
+
+def noise_figures(results: Results) -> dict[str, Any]:
+    """By the share of the noise, on the moves that were run with noise, with motions between."""
+    noisy = [run for run in results.runs if run.axis == "noise"]
+    problems = sorted({run.problem for run in noisy})
+    methods = sorted({run.method for run in noisy})
+    figures = {"0": compare(results, problems, [(name, 10_000) for name in methods], "between")}
+    for share in ("0.01", "0.05"):
+        labels = sorted({run.label for run in noisy if run.label.endswith(f"noise={share}")})
+        searches = [(label, 10_000) for label in labels]
+        figures[share] = compare(results, problems, searches, "between") if searches else []
+    return figures if noisy else {}
+
+
+def objective_figures(results: Results) -> dict[str, Any]:
+    """With three and four objectives, by points alone; and what the gradient's grid takes."""
+    rows = {}
+    seconds = {}
+    for count in ("3", "4"):
+        problems = results.problems(kind=f"absolute-{count}-objectives")
+        searches = searches_in(results, ("objectives",), 10_000, problems, 5)
+        grid = [("epsilon points=50", 0)] if searches else []
+        rows[count] = compare(results, problems, [*searches, *grid], "points") if searches else []
+        times = [run.seconds for name in problems for run in results.control(name)]
+        seconds[count] = _median(np.array(times))
+    return {"objectives": rows, "grid_seconds": seconds}
+
+
 def compute(folder: Path) -> dict[str, Any]:
     """All figures."""
     results = Results(folder)
     centre = results.problems()
-    crossed = [
-        label
-        for label, _ in searches_in(results, ("crossing",), 10_000, results.problems(4), 5)
-    ]
+    found = searches_in(results, ("crossing",), 10_000, results.problems(4), 5)
+    crossed = [label for label, _ in found]
     central = searches_in(results, ("centre",), 10_000, centre, 10)
-    gradient = [
-        (label, 0)
-        for label in sorted({run.label for run in results.runs if run.axis == "centre" and not run.budget})
-        if sum(bool(results.of(label, 0, name)) for name in centre) >= 10
-    ]
-    budgets = (1_000, 10_000, 100_000)
+    methods = [*central, *gradient_labels(results, centre)]
     times = np.logspace(-2, 1.5, 36)
-    axes = sorted({run.axis for run in results.runs})
-    kinds = {
-        kind: compare(results, results.problems(kind=kind),
-                      searches_in(results, ("energy", "centre"), 10_000, results.problems(kind=kind), 8)
-                      if kind != "absolute" else [(label, 10_000) for label in crossed], "between")
-        for kind in KINDS
-    }  # fmt: skip
-    noisy = {
-        str(share): searches_in(results, ("noise",), 10_000, centre, 5)
-        for share in (0.01, 0.05)
-    }
-    with (folder / "plan.csv").open(newline="") as file:
-        plan = {row["axis"]: int(row["jobs"]) for row in csv.DictReader(file)}
+    paper = [
+        pair
+        for budget in (40_000, 100_000)
+        for pair in searches_in(results, ("paper",), budget, centre, 5)
+    ]
+    landscapes = (folder / "landscapes.csv").exists()
     return {
-        "plan": plan,
-        "runs": {axis: sum(run.axis == axis for run in results.runs) for axis in axes},
-        "hours": {
-            axis: sum(run.seconds for run in results.runs if run.axis == axis) / 3600
-            for axis in axes
-        },
-        "seeds": {axis: 1 + max(run.seed for run in results.runs if run.axis == axis) for axis in axes},
-        "problems": len(results.whole),
-        "crossed": crossed,
+        **efforts(results),
+        **map_figures(results, crossed),
+        **objective_figures(results),
         "repeats": repeats(results),
-        "map": [
-            cell(results, terms, budget, crossed)
-            for budget in budgets
-            for terms in (2, 4, 6, 10, 16, 24)
-        ],
-        "centre": {measure: compare(results, centre, [*central, *gradient], measure) for measure in MEASURES},
-        "paper": {
-            measure: compare(
-                results, centre,
-                [pair for budget in (40_000, 100_000)
-                 for pair in searches_in(results, ("paper",), budget, centre, 5)], measure)
-            for measure in MEASURES
-        },
-        "large": {measure: compare(results, centre, searches_in(results, ("large",), 100_000, centre, 3), measure) for measure in MEASURES},
-        "map_rows": {
-            "by_terms": lines_over(results, [(t, t, 10_000) for t in (2, 4, 6, 10, 16, 24)], crossed),
-            "by_budget": lines_over(results, [(b, CENTRE, b) for b in budgets], crossed),
-        },
+        "centre": both(results, centre, methods),
+        "paper": both(results, centre, paper),
+        "large": both(results, centre, searches_in(results, ("large",), 100_000, centre, 3)),
         "tuned": tuned(results),
-        "kinds": kinds,
-        "objectives": {
-            str(count): compare(
-                results, results.problems(kind=f"absolute-{count}-objectives"),
-                [
-                    *searches_in(results, ("objectives",), 10_000,
-                                 results.problems(kind=f"absolute-{count}-objectives"), 5),
-                    ("epsilon points=50", 0),
-                ],
-                "points")
-            for count in (3, 4)
-        },
-        "grid_seconds": {
-            str(count): _median(np.array([
-                run.seconds
-                for name in results.problems(kind=f"absolute-{count}-objectives")
-                for run in results.control(name)
-            ]))
-            for count in (3, 4)
-        },
-        "noise": {
-            share: compare(results, centre, [pair for pair in pairs if pair[0].endswith(f"noise={share}")], "between")
-            for share, pairs in noisy.items()
-        },
+        "kinds": kind_figures(results),
+        "noise": noise_figures(results),
         "attained": {
             "seconds": times.tolist(),
-            "shares": attained(results, centre, [*central, *gradient], times),
+            "shares": attained(results, centre, methods, times),
             "drawn": DRAWN,
         },
         "prediction": {
-            measure: prediction(results, 10_000, crossed, measure) for measure in MEASURES
-        } if (folder / "landscapes.csv").exists() else {},
-    }  # fmt: skip
+            measure: prediction(results, 10_000, crossed, measure)
+            for measure in MEASURES
+            if landscapes
+        },
+    }
 
 
 def differences(first: Any, second: Any, place: str = "") -> list[str]:
     """Where two documents differ by more than a relative 1e-6."""
     if isinstance(first, dict) and isinstance(second, dict) and first.keys() == second.keys():
-        return [line for key in first for line in differences(first[key], second[key], f"{place}/{key}")]
+        return [
+            line for key in first for line in differences(first[key], second[key], f"{place}/{key}")
+        ]
     if isinstance(first, list) and isinstance(second, list) and len(first) == len(second):
         pairs = enumerate(zip(first, second, strict=True))
         return [line for i, pair in pairs for line in differences(*pair, f"{place}/{i}")]
@@ -673,7 +727,9 @@ def differences(first: Any, second: Any, place: str = "") -> list[str]:
 
 def main() -> int:
     """Compare, or write."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
     folder = Path(__file__).parent

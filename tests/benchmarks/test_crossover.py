@@ -1,4 +1,4 @@
-"""benchmarks/crossover.py: its draw, its plan, what it packs, and what the page is computed from."""
+"""benchmarks/crossover.py: its draw, its plan, what it packs, and the figures of its page."""
 
 import itertools
 import json

@@ -61,7 +61,9 @@ def energy_of(kind: str, plant: Plant, target: float, duration: float) -> qa.Ene
     if kind == "copper":
         return qa.CopperLoss(0.12)
     task = qa.PointToPoint(plant, target, duration)
-    function = MoveFunction(task, qa.CycloidPolynomial(6), bound=1.0, objectives=("residual", "energy", "peak_torque"))
+    function = MoveFunction(
+        task, qa.CycloidPolynomial(6), bound=1.0, objectives=("residual", "energy", "peak_torque")
+    )
     ((_, energy, torque),) = function(np.zeros((1, 6)))[0]
     if kind == "stages":
         return Stages(_three_digits(energy / duration / 2))

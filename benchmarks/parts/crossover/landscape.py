@@ -21,7 +21,7 @@ from .problems import CENTRE_TERMS, Case
 
 Array = NDArray[np.float64]
 STARTS, FEWER = 200, 50
-"""Local searches; fewer with more coefficients than those of the centre, where each takes longer."""
+"""Local searches; fewer with more coefficients than at the centre, where each takes longer."""
 WITHIN = 1e-3
 """Residual [m] within which local searches minimise the energy."""
 SAME = 0.01

@@ -81,7 +81,9 @@ def bound_of(plant: Plant) -> float:
 
 def first_period(plant: Plant) -> float:
     """Of the plant's lowest mode [s]."""
-    frequencies = [getattr(plant, name) for name in ("omega", "omega1", "omega2") if hasattr(plant, name)]
+    frequencies = [
+        getattr(plant, name) for name in ("omega", "omega1", "omega2") if hasattr(plant, name)
+    ]
     return 2 * pi / min(frequencies)
 
 

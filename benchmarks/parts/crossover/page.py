@@ -98,7 +98,10 @@ def takes_derivatives(method: str) -> bool:
 
 def nearest(rows: Sequence[Mapping[str, Any]]) -> Mapping[str, Any]:
     """The search without derivatives that misses least."""
-    return min((row for row in rows if not takes_derivatives(row["method"])), key=lambda row: row["missing"])
+    return min(
+        (row for row in rows if not takes_derivatives(row["method"])),
+        key=lambda row: row["missing"],
+    )
 
 
 def row_of(rows: Sequence[Mapping[str, Any]], method: str) -> Mapping[str, Any] | None:

@@ -69,10 +69,14 @@ def map_figure(cells: Sequence[Mapping[str, Any]]) -> Figure:
             ax.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white"))
             if not row["verdict"]:
                 ax.add_patch(
-                    Rectangle(corner, 1, 1, fill=False, hatch="////", edgecolor="#999999", linewidth=0)
+                    Rectangle(
+                        corner, 1, 1, fill=False, hatch="////", edgecolor="#999999", linewidth=0
+                    )
                 )
             text = f"{short_label(row['method'])}\n{row['missing']:.2g} %\ngradient\n"
-            theirs = "nothing yet" if row["no_control"] * 2 > row["moves"] else f"{row['control']:.2g} %"
+            theirs = (
+                "nothing yet" if row["no_control"] * 2 > row["moves"] else f"{row['control']:.2g} %"
+            )
             middle(ax, corner, text + theirs, "white" if dark else "black")
         ax.set(
             xlim=(0, len(terms)),
@@ -140,14 +144,18 @@ def _lines_figure(lines: Mapping[str, Any], axis: str) -> Figure:
         figure.subplots(1, 2), ("points", "between"), ("50 points each", "with motions between"),
         strict=True,
     ):  # fmt: skip
-        series = {short_label(name): (line["x"], line["y"]) for name, line in lines[measure].items()}
+        series = {
+            short_label(name): (line["x"], line["y"]) for name, line in lines[measure].items()
+        }
         ax.set_xscale("log")
         ax.set_yscale("log")
         values = [value for _, y in series.values() for value in y]
         ax.set_ylim(min(values) / 1.5, max(values) * 1.5)
         labelled_lines(ax, series)
         ticks = sorted({x for xs, _ in series.values() for x in xs})
-        ax.set_xticks(ticks, [spelled_budget(tick) if axis == "candidates" else str(tick) for tick in ticks])
+        ax.set_xticks(
+            ticks, [spelled_budget(tick) if axis == "candidates" else str(tick) for tick in ticks]
+        )
         ax.minorticks_off() if axis == "coefficients" else None
         ax.set_xlabel(axis)
         ax.set_ylabel("hypervolume missing [%]")
@@ -170,7 +178,9 @@ def attained_figure(attained: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _bars(ax: Axes, groups: Mapping[str, Sequence[Mapping[str, Any]]], labels: Mapping[str, str]) -> None:
+def _bars(
+    ax: Axes, groups: Mapping[str, Sequence[Mapping[str, Any]]], labels: Mapping[str, str]
+) -> None:
     names = sorted({row["method"] for rows in groups.values() for row in rows})[:7]
     width = 0.8 / (len(names) + 1)
     for number, name in enumerate(["control", *names]):
@@ -184,7 +194,8 @@ def _bars(ax: Axes, groups: Mapping[str, Sequence[Mapping[str, Any]]], labels: M
                 continue
             x = place + (number - len(names) / 2) * width
             ax.bar(x, value, width * 0.92, color=COLOURS[number])
-            ax.text(x, value * 1.05, short_label("epsilon" if name == "control" else name), rotation=90,
+            label = short_label("epsilon" if name == "control" else name)
+            ax.text(x, value * 1.05, label, rotation=90,
                     ha="center", va="bottom", fontsize=7, color=COLOURS[number])  # fmt: skip
     ax.set_yscale("log")
     low, high = ax.get_ylim()
@@ -223,7 +234,12 @@ def features_figure(prediction: Mapping[str, Any]) -> Figure | None:
     if not shown:
         return None
     names = ("coefficients", "condition", "best_basin", "within_1mm")
-    labels = ("coefficients", "condition of the curvature", "share of the best basin", "share within 1 mm")
+    labels = (
+        "coefficients",
+        "condition of the curvature",
+        "share of the best basin",
+        "share within 1 mm",
+    )
     figure = new_figure(11.0, 3.2)
     for ax, name, label in zip(figure.subplots(1, 4, sharey=True), names, labels, strict=True):
         for colour, plant in zip(COLOURS, sorted({row["plant"] for row in shown})):
@@ -237,6 +253,8 @@ def features_figure(prediction: Mapping[str, Any]) -> Figure | None:
         if name == "within_1mm":
             ax.set_xscale("symlog", linthresh=1e-4)
         ax.grid(alpha=0.25)
-    figure.axes[0].set_ylabel("log10 of what the nearest search\nmisses over what the gradient does")
+    figure.axes[0].set_ylabel(
+        "log10 of what the nearest search\nmisses over what the gradient does"
+    )
     figure.axes[0].legend(fontsize=7)
     return figure

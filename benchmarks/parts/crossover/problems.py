@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 
 import pandas as pd
@@ -58,7 +58,7 @@ class Case:
         return _problem(self, folder)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _problem(case: Case, folder: Path) -> NamedProblem:
     path = folder / "scales" / f"{case.name}.json"
     if not path.exists():

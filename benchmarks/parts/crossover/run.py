@@ -62,7 +62,9 @@ def merge(results: Path, other: Path) -> None:
         mine = results / "runs" / path.name
         rows = {key_of(row): row for row in [*read_rows(path), *read_rows(mine)]}
         write_rows(rows.values(), mine)
-    scales = [pd.read_csv(folder / "scales.csv", index_col="problem") for folder in (results, other)]
+    scales = [
+        pd.read_csv(folder / "scales.csv", index_col="problem") for folder in (results, other)
+    ]
     table = pd.concat(scales)
     table = table[~table.index.duplicated()].sort_index()
     table.to_csv(results / "scales.csv", float_format="%.10g", index_label="problem")
@@ -103,7 +105,9 @@ def run(
     most_rounds: int,
 ) -> int:
     """Run what is missing of the plan; 1 where some jobs failed."""
-    return int(run_jobs_of(missing_of(results, part, axes, most_rounds), folder, results, workers) > 0)
+    return int(
+        run_jobs_of(missing_of(results, part, axes, most_rounds), folder, results, workers) > 0
+    )
 
 
 def run_jobs_of(
@@ -199,4 +203,5 @@ def print_plan(results: Path) -> None:
     done = done_keys(results)
     table["done"] = [int(planned.key in done) for planned in plan]
     print(table.groupby("axis", sort=False).sum().round(2).to_string())
-    print(f"{len(plan)} jobs, {table['done'].sum()} done, {table['hours'].sum():.1f} hours of one core")
+    hours = f"{table['hours'].sum():.1f} hours of one core"
+    print(f"{len(plan)} jobs, {table['done'].sum()} done, {hours}")

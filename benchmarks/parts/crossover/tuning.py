@@ -59,7 +59,7 @@ def defaults_of(method: str) -> dict[str, Any]:
     preset = PRESETS[method]
     values = {setting.name: setting.default for setting in preset.settings}
     stated = {"population": preset.population}
-    for name, distribution in space_of(method).items():
+    for name in space_of(method):
         value = values.get(name)
         if value is not None:
             stated[name] = value
@@ -68,7 +68,9 @@ def defaults_of(method: str) -> dict[str, Any]:
     return stated
 
 
-def score(method: str, settings: dict[str, Any], cases: Sequence[Case], budget: int, folder: Path) -> float:
+def score(
+    method: str, settings: dict[str, Any], cases: Sequence[Case], budget: int, folder: Path
+) -> float:
     """Mean over moves of the logarithm of the missing hypervolume [%]."""
     lacks = list[float]()
     for seed, case in enumerate(cases):
