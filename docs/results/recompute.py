@@ -627,6 +627,34 @@ def map_figures(results: Results, crossed: Sequence[str]) -> dict[str, Any]:
     }
 
 
+def energy_by_terms(
+    results: Results, crossed: Sequence[str], every_terms: Sequence[int] = (2, 4, 6, 10, 16, 24)
+) -> dict[str, list[dict[str, float]]]:
+    """Energy within 1 mm above that of the gradient with most coefficients, medians over moves [%].
+
+    After 10,000 candidates; a run without such a motion counts as infinite.
+    """
+    most = {Problem(name).move: name for name in results.problems(every_terms[-1])}
+    least = {
+        move: runs[0].energy for move, name in most.items() if (runs := results.control(name))
+    }
+    control = f"{CONTROL} {CONTROL_SETTINGS}"
+    figures = {}
+    for method in (control, *crossed):
+        budget = 0 if method == control else 10_000
+        figures[method] = []
+        for terms in every_terms:
+            ratios = [
+                np.median([run.energy if np.isfinite(run.energy) else np.inf for run in runs])
+                / least[Problem(name).move]
+                for name in results.problems(terms)
+                if Problem(name).move in least and (runs := results.of(method, budget, name))
+            ]
+            above = 100 * (float(np.median(ratios)) - 1) if ratios else float("nan")
+            figures[method].append({"terms": terms, "above": above, "moves": len(ratios)})
+    return figures
+
+
 def kind_figures(results: Results) -> dict[str, Any]:
     """By the kind of energy, on the moves that all kinds have, with motions between."""
     figures = {}
@@ -689,6 +717,7 @@ def compute(folder: Path) -> dict[str, Any]:
         **efforts(results),
         **map_figures(results, crossed),
         **objective_figures(results),
+        "energy_by_terms": energy_by_terms(results, crossed),
         "repeats": repeats(results),
         "centre": both(results, centre, methods),
         "paper": both(results, centre, paper),

@@ -65,7 +65,7 @@ def map_figure(cells: Sequence[Mapping[str, Any]]) -> Figure:
                 middle(ax, corner, "not run", "#777777")
                 continue
             colour = colours(norm(np.clip(row["log_ratio"], -MOST_DECADES, MOST_DECADES)))
-            dark = abs(row["log_ratio"]) > 0.6 * MOST_DECADES
+            dark = abs(row["log_ratio"]) > 0.6 * MOST_DECADES and row["verdict"]
             ax.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white"))
             if not row["verdict"]:
                 ax.add_patch(
@@ -77,7 +77,7 @@ def map_figure(cells: Sequence[Mapping[str, Any]]) -> Figure:
             theirs = (
                 "nothing yet" if row["no_control"] * 2 > row["moves"] else f"{row['control']:.2g} %"
             )
-            middle(ax, corner, text + theirs, "white" if dark else "black")
+            middle(ax, corner, text + theirs, "white" if dark else "black", not row["verdict"])
         ax.set(
             xlim=(0, len(terms)),
             ylim=(0, len(budgets)),
@@ -99,11 +99,15 @@ def map_figure(cells: Sequence[Mapping[str, Any]]) -> Figure:
     return figure
 
 
-def middle(ax: Axes, corner: tuple[float, float], text: str, colour: str) -> None:
-    """Text in the middle of a cell."""
-    ax.text(corner[0] + 0.5, corner[1] + 0.5, text, ha="center", va="center", fontsize=7.5,
-            color=colour, bbox={"facecolor": "white", "alpha": 0.6, "edgecolor": "none", "pad": 1}
-            if colour == "black" else None)  # fmt: skip
+def middle(
+    ax: Axes, corner: tuple[float, float], text: str, colour: str, hatched: bool = False
+) -> None:
+    """Text in the middle of a cell, on white where that is hatched."""
+    box = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1}
+    ax.text(
+        corner[0] + 0.5, corner[1] + 0.5, text, ha="center", va="center", fontsize=7.5,
+        color=colour, bbox=box if hatched else None,
+    )  # fmt: skip
 
 
 def labelled_lines(ax: Axes, lines: Mapping[str, tuple[Any, Any]], *, log_y: bool = True) -> None:

@@ -16,12 +16,12 @@ from quietarm.metaheuristics import Job
 from .moves import Move
 from .problems import CENTRE_TERMS, Case
 
-AXES = ("centre", "crossing", "energy", "paper", "noise", "objectives", "large", "tuned")
+AXES = ("centre", "crossing", "energy", "paper", "noise", "objectives", "large", "tuned", "million")
 TERMS = (2, 4, 6, 10, 16, 24)
 BUDGETS = (1_000, 10_000)
-LARGE = 100_000
+LARGE, MILLION = 100_000, 1_000_000
 KINDS = ("copper", "stages", "motor-map")
-SEEDS = {1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7}
+SEEDS = {1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7, 1_000_000: 3}
 """Rounds of the full plan, by budget."""
 LADDER = (10, 50, 200)
 """Points of the gradient's fronts: more of them take more time, as a search's candidates do."""
@@ -124,6 +124,7 @@ def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]
         yield from large(tested, seed)
         yield from papers(remaining, seed)
         yield from crossing(remaining, seed)
+        yield from million(tested, seed)
 
 
 def centre(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
@@ -218,3 +219,13 @@ def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
                 yield Planned("large", 0, case, "epsilon", None, (("points", 200),))
             for method in AT_LARGE:
                 yield Planned("large", seed, case, method, LARGE)
+
+
+def million(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """A million candidates on one move of three plants, six and sixteen coefficients."""
+    if seed >= SEEDS[MILLION]:
+        return
+    for terms in (CENTRE_TERMS, 16):
+        for move in first_of_plants(tested, 1)[:3]:
+            for method in ("gde3", "moead-de"):
+                yield Planned("million", seed, Case(move, terms), method, MILLION)

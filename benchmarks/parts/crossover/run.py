@@ -183,7 +183,11 @@ def describe(folder: Path, results: Path) -> None:
 
 
 def print_plan(results: Path) -> None:
-    """Jobs and hours by axis, of the mean seconds of the runs that are there."""
+    """Jobs and hours by axis, of the mean seconds of the runs that are there.
+
+    A method without runs is taken for the mean of all by its candidates. Beyond these hours each job
+    is judged, packed, and in every process rehearsed once.
+    """
     plan = plan_of(results)
     paths = sorted((results / "runs").glob("*.csv.gz"))
     rows = [row for path in paths for row in read_rows(path)]
@@ -191,17 +195,24 @@ def print_plan(results: Path) -> None:
     for row in rows:
         seconds[row["method"], row["budget"]].append(float(row["seconds"]))
     usual = {key: sum(values) / len(values) for key, values in seconds.items()}
+    spent = [float(row["seconds"]) / int(row["budget"]) for row in rows if row["budget"]]
+    of_candidate = sum(spent) / len(spent) if spent else 1e-4
     table = pd.DataFrame(
         {
             "axis": planned.axis,
             "jobs": 1,
             "done": 0,
-            "hours": usual.get((planned.method, str(planned.budget or "")), float("nan")) / 3600,
+            "hours": usual.get(
+                (planned.method, str(planned.budget or "")), of_candidate * (planned.budget or 1e4)
+            )
+            / 3600,
         }
         for planned in plan
     )
     done = done_keys(results)
     table["done"] = [int(planned.key in done) for planned in plan]
     print(table.groupby("axis", sort=False).sum().round(2).to_string())
+    moves = len({planned.case.move.name for planned in plan})
+    print(f"signed ranks of {moves} moves can give p = {2 / 2**moves:.2g} at least, of 10 0.002")
     hours = f"{table['hours'].sum():.1f} hours of one core"
     print(f"{len(plan)} jobs, {table['done'].sum()} done, {hours}")
