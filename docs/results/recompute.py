@@ -395,20 +395,29 @@ def lines_over(
     A place is where a line goes on, and its coefficients and budget. All places of a line have the
     moves that every one of them has.
     """
+    control = f"{CONTROL} {CONTROL_SETTINGS}"
+    fewest = 5
+
+    def runs_at(method: str, terms: int, budget: int) -> dict[str, list[Run]]:
+        spent = 0 if method == control else budget
+        found = {name: results.of(method, spent, name) for name in results.problems(terms)}
+        return {Problem(name).move: runs for name, runs in found.items() if runs}
+
+    table = {
+        (method, x): runs_at(method, terms, budget)
+        for method in (control, *methods)
+        for x, terms, budget in places
+    }
+    table = {place: by_move for place, by_move in table.items() if len(by_move) >= fewest}
+    moves = set.intersection(*map(set, table.values())) if table else set()
     lines: dict[str, dict[str, dict[str, list[float]]]] = {}
     for measure in MEASURES:
         lines[measure] = {}
-        for method in (f"{CONTROL} {CONTROL_SETTINGS}", *methods):
-            line: dict[str, list[float]] = {"x": [], "y": []}
-            for x, terms, budget in places:
-                spent = 0 if method.startswith(CONTROL) else budget
-                runs = [results.of(method, spent, name) for name in results.problems(terms)]
-                lacks = [results.median(r, results.missing, measure) for r in runs if r]
-                if len(lacks) >= 5:
-                    line["x"].append(x)
-                    line["y"].append(max(float(np.median(lacks)), 1e-3))
-            if len(line["x"]) > 1:
-                lines[measure][method] = line
+        for (method, x), by_move in table.items():
+            lacks = [results.median(by_move[move], results.missing, measure) for move in moves]
+            line = lines[measure].setdefault(method, {"x": [], "y": []})
+            line["x"].append(x)
+            line["y"].append(max(float(np.median(lacks)), 1e-3))
     return lines
 
 
@@ -552,6 +561,7 @@ def prediction(
         right += int((guess == (outcome[out] < 0)).sum())
         usual += int(((outcome[out] < 0) == ((outcome[~out] < 0).mean() > 0.5)).sum())
     return {
+        **how_far(table, outcome, plants),
         "problems": len(data),
         "search_nearer": int((outcome < 0).sum()),
         "correlations": correlations,
@@ -559,8 +569,35 @@ def prediction(
         "usual": usual,
         "rules": rules,
         "holds": right > usual,
+        "least_basin": min(row["best_basin"] for row in shown),
         "table": shown,
     }
+
+
+def how_far(table: Array, outcome: Array, plants: NDArray[np.str_]) -> dict[str, Any]:
+    """How well one feature predicts the outcome itself on plants that were left out.
+
+    The feature with the largest rank correlation on the other plants, a straight line over its
+    logarithm; explained is the share of the squared distances from the others' mean.
+    """
+    logarithms = np.log10(np.maximum(table, 1e-4))
+    missed = 0.0
+    total = 0.0
+    chosen = list[str]()
+    for plant in sorted(set(plants)):
+        out = plants == plant
+        strength = [
+            abs(spearmanr(column[~out], outcome[~out]).statistic)
+            if np.isfinite(column).all() and np.ptp(column[~out]) > 0
+            else 0.0
+            for column in logarithms.T
+        ]
+        best = int(np.argmax(strength))
+        chosen.append(FEATURES[best])
+        slope, level = np.polyfit(logarithms[~out, best], outcome[~out], 1)
+        missed += float(np.sum((outcome[out] - level - slope * logarithms[out, best]) ** 2))
+        total += float(np.sum((outcome[out] - outcome[~out].mean()) ** 2))
+    return {"explained": 1 - missed / total, "by": chosen}
 
 
 def stump(table: Array, wins: NDArray[np.bool_]) -> tuple[int, float, bool]:
@@ -635,9 +672,7 @@ def energy_by_terms(
     After 10,000 candidates; a run without such a motion counts as infinite.
     """
     most = {Problem(name).move: name for name in results.problems(every_terms[-1])}
-    least = {
-        move: runs[0].energy for move, name in most.items() if (runs := results.control(name))
-    }
+    least = {move: runs[0].energy for move, name in most.items() if (runs := results.control(name))}
     control = f"{CONTROL} {CONTROL_SETTINGS}"
     figures = {}
     for method in (control, *crossed):

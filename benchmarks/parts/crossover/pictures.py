@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from .words import short_label, spelled_budget
 
@@ -110,6 +111,16 @@ def middle(
     )  # fmt: skip
 
 
+def per_cents(ax: Axes, values: Sequence[float]) -> None:
+    """A logarithmic axis with plain numbers around values."""
+    ax.set_yscale("log")
+    ax.set_ylim(min(values) / 1.5, max(values) * 1.5)
+    wide = max(values) > 30 * min(values)
+    ax.yaxis.set_major_locator(LogLocator(subs=(1.0,) if wide else (1.0, 2.0, 5.0)))
+    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    ax.yaxis.set_minor_formatter(NullFormatter())
+
+
 def labelled_lines(ax: Axes, lines: Mapping[str, tuple[Any, Any]], *, log_y: bool = True) -> None:
     """Lines, at most eight, each with its name at its right end, so that none covers another."""
     ends = list[tuple[float, str, str, float]]()
@@ -152,9 +163,7 @@ def _lines_figure(lines: Mapping[str, Any], axis: str) -> Figure:
             short_label(name): (line["x"], line["y"]) for name, line in lines[measure].items()
         }
         ax.set_xscale("log")
-        ax.set_yscale("log")
-        values = [value for _, y in series.values() for value in y]
-        ax.set_ylim(min(values) / 1.5, max(values) * 1.5)
+        per_cents(ax, [value for _, y in series.values() for value in y])
         labelled_lines(ax, series)
         ticks = sorted({x for xs, _ in series.values() for x in xs})
         ax.set_xticks(
@@ -182,54 +191,48 @@ def attained_figure(attained: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _bars(
-    ax: Axes, groups: Mapping[str, Sequence[Mapping[str, Any]]], labels: Mapping[str, str]
-) -> None:
+def _over_groups(
+    groups: Mapping[str, Sequence[Mapping[str, Any]]], labels: Mapping[str, str], width: float
+) -> Figure:
+    """What methods lack in each group: lines of the gradient and of seven others at most."""
+    figure = new_figure(width, 3.6)
+    ax = figure.subplots()
     names = sorted({row["method"] for rows in groups.values() for row in rows})[:7]
-    width = 0.8 / (len(names) + 1)
-    for number, name in enumerate(["control", *names]):
-        for place, rows in enumerate(groups.values()):
-            known = {row["method"]: row for row in rows}
-            if name == "control" and rows:
-                value = rows[0]["control"]
-            elif name in known:
-                value = known[name]["missing"]
-            else:
-                continue
-            x = place + (number - len(names) / 2) * width
-            ax.bar(x, value, width * 0.92, color=COLOURS[number])
-            label = short_label("epsilon" if name == "control" else name)
-            ax.text(x, value * 1.05, label, rotation=90,
-                    ha="center", va="bottom", fontsize=7, color=COLOURS[number])  # fmt: skip
-    ax.set_yscale("log")
-    low, high = ax.get_ylim()
-    ax.set_ylim(low, high * 6)
-    ax.set_xticks(range(len(groups)), [labels.get(name, name) for name in groups])
+    series: dict[str, tuple[list[int], list[float]]] = {}
+    for place, rows in enumerate(groups.values()):
+        values = {row["method"]: row["missing"] for row in rows}
+        values["epsilon"] = rows[0]["control"]
+        for name in ("epsilon", *names):
+            if name in values:
+                x, y = series.setdefault(short_label(name), ([], []))
+                x.append(place)
+                y.append(values[name])
+    lacks = [value for _, y in series.values() for value in y]
+    per_cents(ax, lacks)
+    labelled_lines(ax, series)
+    ax.set_xticks(range(len(groups)), [labels[name] for name in groups])
     ax.set_ylabel("hypervolume missing [%]\nwith motions between")
-    ax.spines[["top", "right"]].set_visible(False)
-
-
-def kinds_figure(kinds: Mapping[str, Any]) -> Figure:
-    """What methods lack by the kind of energy."""
-    figure = new_figure(8.5, 3.8)
-    words = {
-        "absolute": "|power|", "copper": "copper, smooth", "stages": "in stages",
-        "motor-map": "motor's map, jumps",
-    }  # fmt: skip
-    _bars(figure.subplots(), {kind: rows for kind, rows in kinds.items() if rows}, words)
     return figure
 
 
+def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
+    """What methods lack by the kind of energy."""
+    words = {
+        "copper": "copper, smooth", "absolute": "|power|", "stages": "in stages",
+        "motor-map": "motor's map, jumps",
+    }  # fmt: skip
+    groups = {kind: kinds[kind] for kind in words if kinds[kind]}
+    return _over_groups(groups, words, 8.5) if groups else None
+
+
 def noise_figure(noise: Mapping[str, Any]) -> Figure:
-    """What searches lack where they see objectives with noise."""
-    figure = new_figure(6.5, 3.6)
+    """What searches lack where they see objectives with noise, and the gradient, which has none."""
     rows = {
         share: [{**row, "method": row["method"].partition(" ")[0]} for row in found]
         for share, found in noise.items()
         if found
     }
-    _bars(figure.subplots(), rows, {"0": "none", "0.01": "1 %", "0.05": "5 %"})
-    return figure
+    return _over_groups(rows, {"0": "no noise", "0.01": "1 %", "0.05": "5 %"}, 7.0)
 
 
 def features_figure(prediction: Mapping[str, Any]) -> Figure | None:

@@ -185,8 +185,8 @@ def describe(folder: Path, results: Path) -> None:
 def print_plan(results: Path) -> None:
     """Jobs and hours by axis, of the mean seconds of the runs that are there.
 
-    A method without runs is taken for the mean of all by its candidates. Beyond these hours each job
-    is judged, packed, and in every process rehearsed once.
+    A method without runs is taken for the mean of all by its candidates. Beyond these hours each
+    job is judged, packed, and in every process rehearsed once.
     """
     plan = plan_of(results)
     paths = sorted((results / "runs").glob("*.csv.gz"))
