@@ -321,6 +321,9 @@ def compare(
             "seeds": min((len(r) for r in runs), default=0),
             "missing": _median(lacks),
             "control": _median(theirs),
+            "control_seconds": _median(
+                np.array([control[0].seconds for control in controls if control])
+            ),
             "no_control": sum(not control for control in controls),
             "excess": _median(excess),
             "seconds": _median(seconds),
