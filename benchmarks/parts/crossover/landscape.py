@@ -18,6 +18,7 @@ from quietarm.ocp.front.curve import Curve
 from quietarm.ocp.planning.setup import Setup
 
 from .problems import CENTRE_TERMS, Case
+from .tables import write_table
 
 Array = NDArray[np.float64]
 STARTS, FEWER = 200, 50
@@ -150,5 +151,5 @@ def add_features(cases: list[Case], folder: Path, path: Path) -> None:
             print(f"{case.name}: {error}", flush=True)
             continue
         table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
-        table.sort_values("problem").to_csv(path, index=False, float_format="%.5g")
+        write_table(table.sort_values("problem"), path, 5)
         print(f"landscape of {case.name}", flush=True)

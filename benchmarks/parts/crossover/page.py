@@ -16,6 +16,7 @@ import pandas as pd
 
 from .pictures import write_pictures
 from .run import plan_of
+from .tables import write_table
 from .words import short_label, spelled_budget
 
 BEGIN = "<!-- what to take: benchmarks/crossover.py writes these lines -->"
@@ -41,7 +42,7 @@ def write_plan(results: Path) -> None:
     """How many jobs every axis has in all, as a table."""
     count = Counter(planned.axis for planned in plan_of(results))
     rows = pd.DataFrame({"axis": list(count), "jobs": list(count.values())})
-    rows.to_csv(results / "plan.csv", index=False)
+    write_table(rows, results / "plan.csv", 17)
 
 
 def recomputed(results: Path) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from quietarm.ocp.front.points import LEVELS
 
 from .energies import energy_of
 from .moves import Move, draw, plants
+from .tables import write_table
 
 CENTRE_TERMS = 6
 CENTRE_KIND = "absolute"
@@ -100,7 +101,6 @@ def scale_front(case: Case) -> qa.Front:
 def read_moves(path: Path) -> tuple[Move, ...]:
     """The moves of a table, which is drawn and written where it is missing."""
     if not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
         write_moves(draw(), path)
     plant_of = {plant.name: plant for plant in plants()}
     table = pd.read_csv(path)
@@ -132,4 +132,4 @@ def write_moves(moves: tuple[Move, ...], path: Path) -> None:
         }
         for move in moves
     ]
-    pd.DataFrame(rows).to_csv(path, index=False)
+    write_table(pd.DataFrame(rows), path, 17)

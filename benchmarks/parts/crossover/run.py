@@ -16,7 +16,7 @@ from .landscape import add_features
 from .packed import Row, key_of, read_rows, row_of, write_rows
 from .plan import AXES, Planned, rounds
 from .problems import CENTRE_TERMS, read_moves
-from .trials import best_settings
+from .tables import best_settings, write_table
 
 TUNED_WITH = 5_000
 """Candidates of the trials whose best settings are tested."""
@@ -62,12 +62,9 @@ def merge(results: Path, other: Path) -> None:
         mine = results / "runs" / path.name
         rows = {key_of(row): row for row in [*read_rows(path), *read_rows(mine)]}
         write_rows(rows.values(), mine)
-    scales = [
-        pd.read_csv(folder / "scales.csv", index_col="problem") for folder in (results, other)
-    ]
-    table = pd.concat(scales)
-    table = table[~table.index.duplicated()].sort_index()
-    table.to_csv(results / "scales.csv", float_format="%.10g", index_label="problem")
+    scales = [pd.read_csv(folder / "scales.csv") for folder in (results, other)]
+    table = pd.concat(scales).drop_duplicates("problem")
+    write_table(table.sort_values("problem"), results / "scales.csv", 10)
 
 
 def missing_of(
@@ -154,11 +151,12 @@ def pack(results: Path, fronts: dict[Planned, tuple[Job, qa.Front]]) -> None:
 def _keep_scale(results: Path, job: Job) -> None:
     """The ends of a problem's scale, in a table."""
     path = results / "scales.csv"
-    table = pd.read_csv(path, index_col="problem") if path.exists() else pd.DataFrame()
-    if job.problem.name in table.index:
+    table = pd.read_csv(path) if path.exists() else pd.DataFrame({"problem": []})
+    if job.problem.name in set(table["problem"]):
         return
     scale = job.problem.reference()
     row = {
+        "problem": job.problem.name,
         "least_residual_m": scale.ideal[0],
         "least_energy_J": scale.ideal[1],
         "largest_residual_m": scale.nadir[0],
@@ -166,8 +164,8 @@ def _keep_scale(results: Path, job: Job) -> None:
         "least_peaks": " ".join(f"{value:.10g}" for value in scale.ideal[2:]),
         "largest_peaks": " ".join(f"{value:.10g}" for value in scale.nadir[2:]),
     }
-    added = pd.DataFrame([row], index=pd.Index([job.problem.name], name="problem"))
-    pd.concat([table, added]).sort_index().to_csv(path, float_format="%.10g", index_label="problem")
+    table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
+    write_table(table.sort_values("problem"), path, 10)
 
 
 def describe(folder: Path, results: Path) -> None:

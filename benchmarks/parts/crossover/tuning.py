@@ -23,7 +23,7 @@ from quietarm.metaheuristics.score import objectives
 from .moves import Move
 from .packed import area
 from .problems import Case
-from .trials import read_trials
+from .tables import read_trials, write_table
 
 FLOOR = 1e-2
 """A missing hypervolume [%] that counts as least: a trial may come nearer than the quick front."""
@@ -123,7 +123,7 @@ def tune(
             "settings": json.dumps({name: _short(value) for name, value in settings.items()}),
         }
         table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
-        table.to_csv(path, index=False, float_format="%.6g")
+        write_table(table, path, 6)
         print(f"{method} {budget} trial {number}: {value:.4f}", flush=True)
 
 

@@ -1,12 +1,21 @@
-"""The table of trials by which settings were tuned."""
+"""Tables beside the runs: how they are written, and the trials by which settings were tuned."""
 
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
+
+
+def write_table(table: pd.DataFrame, path: Path, digits: int) -> None:
+    """A table in the place of the one that is there, whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_suffix(".tmp")
+    table.to_csv(temporary, index=False, float_format=f"%.{digits}g")
+    os.replace(temporary, path)
 
 
 def read_trials(path: Path) -> pd.DataFrame:
