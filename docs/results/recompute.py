@@ -572,9 +572,18 @@ def prediction(
         "usual": usual,
         "rules": rules,
         "holds": right > usual,
+        "one_basin": sum(row["best_basin"] >= 1.0 for row in shown),
+        "strongest": strongest_of(correlations),
         "least_basin": min(row["best_basin"] for row in shown),
         "table": shown,
     }
+
+
+def strongest_of(correlations: Mapping[str, float | None]) -> list[str | float]:
+    """The two features with the largest rank correlations, each with its own."""
+    known = [(name, value) for name, value in correlations.items() if value is not None]
+    known.sort(key=lambda pair: -abs(pair[1]))
+    return [entry for pair in known[:2] for entry in pair]
 
 
 def how_far(table: Array, outcome: Array, plants: NDArray[np.str_]) -> dict[str, Any]:

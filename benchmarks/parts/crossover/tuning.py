@@ -1,9 +1,10 @@
 """Settings tuned on the twelve moves of tuning, by Optuna; every trial is a row of a table.
 
 A trial runs a search once on every move, each with another seed, and its score is the mean over
-moves of the decimal logarithm of the missing hypervolume of 50 points [%], against the quick front
-that fixes a problem's scale. The first trial has the library's settings. The sampler (a tree of
-Parzen estimators, of one seed) is told the trials that the table has, and goes on.
+moves of the decimal logarithm of the missing hypervolume [%], against the quick front that fixes a
+problem's scale. The first trial has the library's settings; a factor that it draws at random is 0.5
+there. The sampler (a tree of Parzen estimators, of one seed) is told the trials that the table has,
+and goes on.
 """
 
 from __future__ import annotations
