@@ -257,6 +257,10 @@ def features_figure(prediction: Mapping[str, Any]) -> Figure | None:
         ax.set_xlabel(label)
         if name in ("coefficients", "condition"):
             ax.set_xscale("log")
+        if name == "coefficients":
+            ticks = sorted({row[name] for row in shown})
+            ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+            ax.minorticks_off()
         if name == "within_1mm":
             ax.set_xscale("symlog", linthresh=1e-4)
         ax.grid(alpha=0.25)
