@@ -29,7 +29,6 @@ import pandas as pd
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
-from results_page import BUDGET, SEEDS
 from scipy.stats import mannwhitneyu
 
 import quietarm as qa
@@ -42,6 +41,8 @@ from quietarm.ocp.front.points import LEVELS
 Array = NDArray[np.float64]
 MOVES = ("single-link-90deg-1s", "arm-on-flexible-link-90deg-0.8s")
 STEPS, POPULATION = 60, 100
+SEEDS, BUDGET = 15, 5_000
+"""Runs of a search, and candidates of each."""
 POINTS, MOST_TERMS, PRICE = 100, 10, 0.005
 TORQUES, SPEEDS = (0.02, 0.05, 0.1, 0.2), (0.5, 1.0, 2.0, 3.5)
 """Edges of the map's cells [N m, rad/s]."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from importlib import metadata
 
@@ -15,6 +16,7 @@ from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, reference_corner
 from quietarm.ocp.cost import COST
 from quietarm.ocp.front.points import Entries, evaluated
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, peak_quantities
 from quietarm.ocp.record import Record, versions
 
 Array = NDArray[np.float64]
@@ -26,24 +28,39 @@ _BLOCK = 512
 class Archive:
     """The feasible candidates that no earlier one dominates, and marks of the effort.
 
+    What dominates is what the search believes: with noise, its noisy values. The true ones are kept
+    beside them.
+
     Parameters
     ----------
     task : PointToPoint
         The move.
     variables : int
         Coefficients of a candidate.
+    objectives : sequence of str
+        Names of the objectives.
+    noisy : bool
+        Whether the values that it takes have noise.
     """
 
-    def __init__(self, task: PointToPoint, variables: int) -> None:
+    def __init__(
+        self,
+        task: PointToPoint,
+        variables: int,
+        objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
+        noisy: bool = False,
+    ) -> None:
         self.task = task
+        self.names = tuple(objectives)
+        self.noisy = noisy
         self.evaluations = 0
         self.marks = list[Mark]()
-        self.corner = reference_corner(task)
+        self.corner = reference_corner(task, objectives)
         self._next_mark = 1.0
         self._coefficients = np.empty((0, variables))
-        self._objectives = np.empty((0, 2))
-        self._entered = list[tuple[Places, Array, Array]]()
-        self._waiting = list[tuple[Places, Array, Array]]()
+        self._objectives = np.empty((0, len(self.names)))
+        self._entered = list[tuple[Places, Array, Array, Array]]()
+        self._waiting = list[tuple[Places, Array, Array, Array]]()
         self._waiting_rows = 0
         self._began = time.thread_time()
         self._seconds_here = 0.0
@@ -55,16 +72,29 @@ class Archive:
         apart = self._seconds_here + COST.since(self._cost).builds
         return time.thread_time() - self._began - apart
 
-    def add(self, X: Array, F: Array, usable: NDArray[np.bool_]) -> None:
-        """Take evaluated candidates, of which those that are usable may enter."""
+    def add(
+        self,
+        X: Array,
+        F: Array,
+        usable: NDArray[np.bool_],
+        true: Array | None = None,
+        repeated: int = 0,
+    ) -> None:
+        """Take evaluated candidates, of which those that are usable may enter.
+
+        F are their objectives with any noise, `true` those without, and so many evaluations were
+        spent beyond one for each.
+        """
         # evaluations between neighbouring marks: 24 in a decade, at the ends of generations
         step = 10 ** (1 / 24)
         seconds = self.seconds
         began = time.thread_time()
         numbers = self.evaluations + 1 + np.flatnonzero(usable)
-        self.evaluations += len(X)
+        self.evaluations += len(X) + repeated
         if len(numbers):
-            self._waiting.append((numbers, X[usable].copy(), F[usable].copy()))
+            believed = F[usable].copy()
+            known = believed if true is None else true[usable].copy()
+            self._waiting.append((numbers, X[usable].copy(), believed, known))
             self._waiting_rows += len(numbers)
         if self._waiting_rows >= _BLOCK:
             self._let_enter()
@@ -72,6 +102,11 @@ class Archive:
             self.mark(seconds)
             self._next_mark = max(self.evaluations, 1) * step
         self._seconds_here += time.thread_time() - began
+
+    def entering(self, F: Array, usable: NDArray[np.bool_]) -> Places:
+        """Rows of objectives that would enter, of those that are usable."""
+        self._let_enter()
+        return np.flatnonzero(usable)[entering(self._objectives, F[usable])]
 
     def charge(self, evaluations: int) -> None:
         """Count so many candidates that were simulated for derivatives, and may not enter."""
@@ -96,7 +131,10 @@ class Archive:
 
     def share_of_box(self) -> float:
         """Share of the reference box that is dominated."""
-        return share_of_box(self.non_dominated()[1], self.corner)
+        points = self.non_dominated()[1]
+        if len(self.names) > len(RESIDUAL_AND_ENERGY):  # of all, it would take longer than a search
+            points = points[thinned(points)]
+        return share_of_box(points, self.corner)
 
     @property
     def entries(self) -> Entries:
@@ -104,15 +142,17 @@ class Archive:
         self._let_enter()
         if not self._entered:
             return Entries()
-        numbers, coefficients, objectives = (
+        numbers, coefficients, believed, true = (
             np.concatenate(column).tolist() for column in zip(*self._entered)
         )
-        residuals, energies = zip(*objectives)
+        residuals, energies, *peaks = zip(*true)
         return Entries(
             tuple(numbers),
             tuple(map(tuple, coefficients)),
             residuals,
             energies,
+            dict(zip(peak_quantities(self.names), peaks)),
+            tuple(map(tuple, believed)) if self.noisy else (),
         )
 
     def _let_enter(self) -> None:
@@ -123,11 +163,11 @@ class Archive:
         self._waiting = []
         self._waiting_rows = 0
         for begin in range(0, len(columns[0]), _BLOCK):
-            numbers, X, F = (column[begin : begin + _BLOCK] for column in columns)
+            numbers, X, F, true = (column[begin : begin + _BLOCK] for column in columns)
             rows = entering(self._objectives, F)
             if not len(rows):
                 continue
-            self._entered.append((numbers[rows], X[rows], F[rows]))
+            self._entered.append((numbers[rows], X[rows], F[rows], true[rows]))
             X = np.vstack([self._coefficients, X[rows]])
             F = np.vstack([self._objectives, F[rows]])
             alive = np.flatnonzero(moocore.is_nondominated(F))
@@ -153,7 +193,7 @@ class Archive:
         coefficients, objectives = self.non_dominated()
         began = time.thread_time()
         shown = coefficients[thinned(objectives)]
-        points = evaluated(self.task, profile, shown, record.bound).points
+        points = evaluated(self.task, profile, shown, record.bound, objectives=self.names).points
         record = replace(
             record,
             evaluations=self.evaluations,
@@ -170,14 +210,21 @@ class Archive:
             infeasible=infeasible,
             history=tuple(self.marks),
             entries=self.entries,
+            objectives=self.names,
         )
 
 
 def entering(front: Array, candidates: Array) -> Places:
     """Rows of candidates, in order, that no point of a front and no earlier row weakly dominates.
 
-    The front's points are in order of residual, shape (n, 2).
+    The front's points are in order of residual, shape (n, objectives).
     """
+    if candidates.shape[1] > len(RESIDUAL_AND_ENERGY):
+        dominated = (front <= candidates[:, None]).all(axis=2).any(axis=1)
+        rows = np.flatnonzero(~dominated)
+        remaining = candidates[rows]
+        as_good = (remaining <= remaining[:, None]).all(axis=2)
+        return rows[~np.tril(as_good, -1).any(axis=1)]
     below = np.searchsorted(front[:, 0], candidates[:, 0], side="right") - 1
     least = np.append(front[:, 1], np.inf)[below]  # the last is for those with none below
     rows = np.flatnonzero(candidates[:, 1] < least)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -17,6 +17,7 @@ from quietarm.ocp.cost import COST, Cost
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.record import number_of_points, number_of_starts
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
@@ -77,11 +78,19 @@ def gradient_front(
     bound: float,
     seed: int,
     settings: Mapping[str, Any],
+    objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
 ) -> Front:
-    """The front of a method of `GRADIENT`, with its cost as its only mark."""
+    """The front of a method of `GRADIENT`, with its cost as its only mark.
+
+    ValueError where there are peaks among the objectives and it is not the epsilon-constraint.
+    """
     name, _, solver_name = method.partition(":")
-    find, _ = _FRONTS[name]
     check_settings(method, settings)
+    options_of_problem: dict[str, Any] = {}
+    if tuple(objectives) != RESIDUAL_AND_ENERGY:
+        refuse_more_objectives(name, objectives)
+        options_of_problem["objectives"] = objectives
+    find, _ = _FRONTS[name]
     options, method_settings = split_solver_options(settings)
     solver = solver_with(options, solver_name)
     before = COST.copy()
@@ -93,6 +102,7 @@ def gradient_front(
         seed=seed,
         solver=solver,
         **method_settings,
+        **options_of_problem,
     )
     return _with_cost(front.restated(method=method), before, began)
 
@@ -107,6 +117,15 @@ def check_settings(method: str, settings: Mapping[str, Any]) -> None:
             raise ValueError(has_no(method, "setting", name, [size, *SOLVER_OPTIONS]))
         checks[name](value)
     solver_with(options)
+
+
+def refuse_more_objectives(name: str, objectives: Sequence[str]) -> None:
+    """Refuse a method of the gradient that is for residual and energy alone."""
+    if name != "epsilon" and tuple(objectives) != RESIDUAL_AND_ENERGY:
+        raise ValueError(
+            f"{name} is for residual and energy alone, not for {len(objectives)} objectives; give "
+            "epsilon, or a search"
+        )
 
 
 def split_solver_options(

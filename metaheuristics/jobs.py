@@ -14,9 +14,11 @@ from quietarm.metaheuristics.gradient import (
     check_settings,
     gradient_front,
     polished,
+    refuse_more_objectives,
     solver_with,
     split_solver_options,
 )
+from quietarm.metaheuristics.objective.noise import noise_share, times_evaluated
 from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.run_files import check_run, sealed
@@ -63,6 +65,9 @@ class Job:
         Of the method: what `search` takes, ``population`` too; ``points`` of a front by the
         gradient, ``starts`` of multistart; of a gradient method and of a polish also the options
         of its solver, as ``solver_tolerance``.
+    noise, reevaluate : float, int
+        Of a search or your own function, as of a `RecordedFunction`. The gradient is that of the
+        model, which has none.
 
     Raises
     ------
@@ -75,6 +80,8 @@ class Job:
     seed: int = 0
     budget: int | None = None
     settings: Mapping[str, Setting] = field(default_factory=dict, hash=False)
+    noise: float = 0.0
+    reevaluate: int = 1
 
     def __init__(
         self,
@@ -83,15 +90,27 @@ class Job:
         seed: int = 0,
         budget: int | None = None,
         settings: Mapping[str, Setting] | None = None,
+        noise: float = 0.0,
+        reevaluate: int = 1,
     ) -> None:
         problem = problem_of(problem) if isinstance(problem, str) else problem
+        share = noise_share(noise)
         fields = {
             "problem": problem,
             "method": method,
             "seed": whole("seed", seed, 0),
-            "budget": _budget(method, budget, settings or {}),
+            "budget": _budget(method, budget, settings or {}, len(problem.objectives)),
             "settings": dict(settings or {}),
+            "noise": share,
+            "reevaluate": times_evaluated(reevaluate, share),
         }
+        if isinstance(method, str) and method in GRADIENT:
+            refuse_more_objectives(method.partition(":")[0], problem.objectives)
+            if share:
+                raise ValueError(
+                    f"{method} takes the gradient of the model, which has no noise; leave the "
+                    "noise out"
+                )
         for name, value in fields.items():
             object.__setattr__(self, name, value)
 
@@ -99,6 +118,10 @@ class Job:
     def label(self) -> str:
         """The method with its settings, as it stands in files and tables."""
         words = [f"{name}={value}" for name, value in sorted(self.settings.items())]
+        if self.noise:
+            words.append(f"noise={self.noise:g}")
+        if self.reevaluate > 1:
+            words.append(f"reevaluate={self.reevaluate}")
         return f"{method_name(self.method)}{'(' + ','.join(words) + ')' if words else ''}"
 
     @property
@@ -113,7 +136,6 @@ class Job:
         Its ``settings`` name the problem. A ``checksum`` says that the file is as it was written.
         """
         digest = digest_of(self.method)
-        self.problem.reference()  # refuses a third objective before anything is done
         if (self.problem, self.label) not in _rehearsed:
             self._find(rehearse=True)
             _rehearsed.add((self.problem, self.label))
@@ -146,6 +168,7 @@ class Job:
                 problem.task,
                 method=method,
                 settings=settings,
+                objectives=problem.objectives,
                 **common,
             )
         population: Any = settings.pop("population", None)
@@ -157,10 +180,14 @@ class Job:
             method = method.removesuffix(POLISH)
             if polish:
                 options, settings = split_solver_options(settings)
-            size = PRESETS[method].evaluations(population or PRESETS[method].population, 1)
+            preset = PRESETS[method]
+            of_population = population or preset.population
+            size = preset.evaluations(of_population, 1, len(problem.objectives))
         budget = min(budget, rehearsal * size) if rehearse else budget
         if not (isinstance(method, str) or is_of_pymoo(method)):
-            function = problem.recorded(budget)
+            function = problem.recorded(
+                budget, noise=self.noise, reevaluate=self.reevaluate, seed=self.seed
+            )
             run_method(method, function, self.seed, budget)
             return function.front(self.label, self.seed)
         front = search(
@@ -169,13 +196,21 @@ class Job:
             population=population,
             settings=settings,
             evaluations=budget,
+            objectives=problem.objectives,
+            noise=self.noise,
+            reevaluate=self.reevaluate,
             **common,
         )
         return polished(front, solver_with(options)) if polish else front
 
 
-def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting]) -> int | None:
-    """The evaluations of a method; ValueError where method, settings and budget do not fit."""
+def _budget(
+    method: Method, budget: int | None, settings: Mapping[str, Setting], objectives: int
+) -> int | None:
+    """The evaluations of a method for so many objectives.
+
+    ValueError where method, settings and budget do not fit.
+    """
     if isinstance(method, str) and method in GRADIENT:
         if budget is not None:
             raise ValueError(f"{method} ends by itself; leave its budget out")
@@ -200,8 +235,8 @@ def _budget(method: Method, budget: int | None, settings: Mapping[str, Setting])
         population: Any = search_settings.pop("population", preset.population)
         preset.checked(population, search_settings)
         if budget is None:
-            return preset.evaluations(population, preset.generations)
-        preset.refuse_less_than_one(budget, population)
+            return preset.evaluations(population, preset.generations, objectives)
+        preset.refuse_less_than_one(budget, population, objectives)
         return whole("budget", budget, 1, MOST_EVALUATIONS)
     check_method(method)
     if budget is None:
@@ -346,8 +381,8 @@ def _load(job: Job, path: Path) -> Front:
         problem = job.problem
     except FileFormatError as error:
         raise FileFormatError(f"{error}; delete that file, and its run is done again") from None
-    same = (front.task, front.profile, front.record.bound)
-    if same != (problem.task, problem.profile, problem.bound):
+    same = (front.task, front.profile, front.record.bound, front.objectives)
+    if same != (problem.task, problem.profile, problem.bound, problem.objectives):
         raise ValueError(f"{path} is of another problem than {problem.name}; give another folder")
     if front.record.settings.get("digest", "") != digest_of(job.method):
         raise ValueError(f"{path} is by {job.label} as it was before; give another folder")

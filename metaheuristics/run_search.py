@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from math import inf, nan
@@ -15,6 +15,7 @@ import numpy as np
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset, preset_of
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import instance, takes, whole
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives
 from quietarm.ocp.planning.choose_profile import choose_profile
 
 if TYPE_CHECKING:
@@ -75,8 +76,11 @@ def search(
     threads: int = 1,
     start: Front | None = None,
     report: Callable[[SearchProgress], None] | None = None,
+    objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
+    noise: float = 0.0,
+    reevaluate: int = 1,
 ) -> Front:
-    """Search the trade-off between residual and energy without derivatives.
+    """Search the trade-off between residual, energy and peaks without derivatives.
 
     Parameters
     ----------
@@ -107,11 +111,16 @@ def search(
         Its points are in the first population, as many as that holds.
     report : callable, optional
         Called with a `SearchProgress` after every generation.
+    objectives : sequence of str
+        Residual and energy, and peaks beside them, as ``"peak_torque"``.
+    noise, reevaluate
+        As of a `RecordedFunction`: noise of residual and energy, as a share, and how often a
+        candidate that is kept is evaluated.
 
     Returns
     -------
     Front
-        At most 100 of the non-dominated points found, with values by CVODES.
+        At most 100 of the non-dominated points found, with values by CVODES, without any noise.
 
     Raises
     ------
@@ -124,13 +133,14 @@ def search(
     from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
 
     profile = choose_profile(task) if profile is None else _profile_of(profile)
+    names = checked_objectives(objectives)
     if generations is not None and evaluations is not None:
         raise ValueError("evaluations stand in place of generations; leave one of them out")
     if isinstance(algorithm, str):
         method = algorithm
         preset = preset_of(algorithm)
-        chosen, stated = _of_preset(preset, task, population, evaluations, settings)
-        size = preset.evaluations(stated["population"], 1)
+        chosen, stated = _of_preset(preset, task, population, evaluations, settings, len(names))
+        size = preset.evaluations(stated["population"], 1, len(names))
         usual = preset.generations
         if preset.is_function and start is not None:
             raise ValueError(
@@ -162,7 +172,15 @@ def search(
         )
     seed = whole("seed", seed, 0)
     function = RecordedFunction(
-        task, profile, bound=bound, threads=threads, budget=evaluations or inf
+        task,
+        profile,
+        bound=bound,
+        objectives=names,
+        threads=threads,
+        budget=evaluations or inf,
+        noise=noise,
+        reevaluate=reevaluate,
+        seed=seed,
     )
     first = _starts(start, function) if start is not None else np.empty((0, profile.size))
     # a division by a distance of zero is of no concern to a user; and pymoo's NSGA-III leaves all
@@ -238,7 +256,7 @@ def _generations(algorithm: Any, first: NDArray[np.float64]) -> Iterator[None]:
 def _progress(function: RecordedFunction, done: int, generations: int) -> SearchProgress:
     archive = function.archive
     F = archive.non_dominated()[1]
-    residual, energy = F.min(axis=0).tolist() if len(F) else (nan, nan)
+    residual, energy = F.min(axis=0).tolist()[:2] if len(F) else (nan, nan)
     return SearchProgress(
         done,
         max(generations, done),
@@ -271,8 +289,9 @@ def _of_preset(
     population: int | None,
     evaluations: int | None,
     settings: Mapping[str, object] | None,
+    objectives: int,
 ) -> tuple[Any, dict[str, Any]]:
-    """A method that is known by name, and what it is set to."""
+    """A method that is known by name, and what it is set to, for so many objectives."""
     most = 100_000
     if task.limits and not preset.keeps_limits:
         raise ValueError(
@@ -288,8 +307,8 @@ def _of_preset(
     )
     stated = {"population": size, **preset.checked(size, settings)}
     if evaluations is not None:
-        preset.refuse_less_than_one(evaluations, size)
-    return preset.build(size, settings), stated
+        preset.refuse_less_than_one(evaluations, size, objectives)
+    return preset.build(size, settings, objectives), stated
 
 
 def _of_user(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil, nan
 from types import MappingProxyType
 
@@ -15,11 +16,11 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.metaheuristics.objective.population import objectives_of
-from quietarm.metaheuristics.thinning import thinned
+from quietarm.metaheuristics.objective.population import figures_of_motions
+from quietarm.metaheuristics.thinning import MOST_POINTS, thinned
 from quietarm.ocp import Front, Mark
 from quietarm.ocp.checks import takes
-from quietarm.ocp.simulation.evaluator import Evaluator
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 
 Array = NDArray[np.float64]
 CORNER = 1.1
@@ -35,9 +36,9 @@ class Scale:
 
     Attributes
     ----------
-    ideal, nadir : ndarray, shape (2,)
-        Residual [m] and energy [J] that are 0 and 1 of the scale.
-    stations : ndarray, shape (n, 2)
+    ideal, nadir : ndarray, shape (objectives,)
+        Residual [m], energy [J] and peaks that are 0 and 1 of the scale.
+    stations : ndarray, shape (n, objectives)
         Points of the front to come near to, in this scale.
     whole : float
         The hypervolume that counts as 1.
@@ -49,15 +50,15 @@ class Scale:
     whole: float
 
     def scaled(self, points: Array) -> Array:
-        """Residuals [m] and energies [J], shape (n, 2), from 0 at the ideal to 1 at the nadir."""
+        """Objectives, shape (n, objectives), from 0 at the ideal to 1 at the nadir."""
         return (points - self.ideal) / (self.nadir - self.ideal)
 
     def scores(self, points: Array) -> dict[str, float]:
-        """Every indicator of points, shape (n, 2), by its name."""
+        """Every indicator of points, shape (n, objectives), by its name."""
         return {name: self.score(points, indicator) for name, indicator in INDICATORS.items()}
 
     def score(self, points: Array, indicator: Indicator) -> float:
-        """An indicator of points, shape (n, 2), residual [m] and energy [J].
+        """An indicator of points, shape (n, objectives), in SI units.
 
         Of those that no other dominates: motions between points may be dominated, which would count
         in a mean over them.
@@ -89,13 +90,13 @@ class Reference(Scale):
         ideal = points.min(axis=0)
         nadir = points.max(axis=0)
         stations = (points - ideal) / (nadir - ideal)
-        super().__init__(ideal, nadir, stations, _hypervolume_of_line(stations))
+        super().__init__(ideal, nadir, stations, _whole_of(stations))
         object.__setattr__(self, "front", front)
 
 
 def hypervolume(scaled: Array, scale: Scale) -> float:
-    """Area that points dominate up to the corner, as a share of what is the whole there."""
-    return float(moocore.hypervolume(scaled, ref=[CORNER] * 2)) / scale.whole
+    """What points dominate up to the corner, as a share of what is the whole there."""
+    return float(moocore.hypervolume(scaled, ref=[CORNER] * scaled.shape[1])) / scale.whole
 
 
 def igd_plus(scaled: Array, scale: Scale) -> float:
@@ -125,7 +126,7 @@ class Indicator:
     meaning : str
         In a sentence of a report, after the label.
     of : callable
-        From the points that no other dominates, scaled, shape (n, 2), and their `Scale`.
+        From the points that no other dominates, scaled, shape (n, objectives), and their `Scale`.
     form : str
         Format of its digits in tables of comparisons.
     """
@@ -182,8 +183,8 @@ INDICATORS: Mapping[str, Indicator] = MappingProxyType(
 
 
 def objectives(front: Front) -> Array:
-    """Residual [m] and energy [J] of every point, shape (points, 2)."""
-    return np.column_stack([front.residuals, front.energies])
+    """Residual [m], energy [J] and peaks of every point, shape (points, objectives)."""
+    return front.objective_values
 
 
 def within(points: Array, residuals: Sequence[float] | Array) -> Array:
@@ -192,11 +193,11 @@ def within(points: Array, residuals: Sequence[float] | Array) -> Array:
     return np.array([some.min() if some.size else np.nan for some in energies])
 
 
-def share_of_box(points: Array, corner: tuple[float, float]) -> float:
-    """Share of the box from zero to a corner, residual [m] and energy [J], that points dominate."""
+def share_of_box(points: Array, corner: tuple[float, ...]) -> float:
+    """Share of the box from zero to a corner, of all objectives, that points dominate."""
     if not len(points):
         return 0.0
-    return float(moocore.hypervolume(points / corner, ref=[1.0, 1.0]))
+    return float(moocore.hypervolume(points / corner, ref=[1.0] * len(corner)))
 
 
 def shares_of_box(front: Front) -> Array:
@@ -218,11 +219,19 @@ def _share_at(front: Front, mark: Mark) -> float:
     return share_of_box(_dominating(front, mark), front.reference)
 
 
-def _dominating(front: Front, mark: Mark) -> Array:
-    """What was found until a mark; by the gradient, which has no entries, the front itself."""
+def _dominating(front: Front, mark: Mark, most: int | None = None) -> Array:
+    """What was found until a mark; by the gradient, which has no entries, the front itself.
+
+    At most so many points. What dominates is what the search believed; its true values are given.
+    """
     if mark.gradients or not len(front.entries):
-        return objectives(front)
-    return moocore.filter_dominated(front.entries.objectives(mark.evaluations))
+        points = objectives(front)
+        return points if most is None else points[thinned(points, most)]
+    beliefs = front.entries.beliefs(mark.evaluations)
+    rows = np.flatnonzero(moocore.is_nondominated(beliefs))
+    if most is not None or len(front.objectives) > len(RESIDUAL_AND_ENERGY):
+        rows = rows[thinned(beliefs[rows], most or MOST_POINTS)]
+    return front.entries.objectives(mark.evaluations)[rows]
 
 
 def scores_on_the_way(front: Front, scale: Scale, indicator: Indicator = HYPERVOLUME) -> Array:
@@ -248,29 +257,53 @@ def _score_at(front: Front, mark: Mark, scale: Scale, indicator: Indicator) -> f
         return getattr(mark.quality, indicator.name, nan)
     if mark.hypervolume is not None:  # an earlier file, where there was no point yet
         return indicator.of_nothing
-    points = _dominating(front, mark)
-    return scale.score(points[thinned(points)], indicator)
+    return scale.score(_dominating(front, mark, MOST_POINTS), indicator)
 
 
 def filled(front: Front) -> Array:
-    """Points of a front and of motions between neighbours, shape (n, 2).
+    """Points of a front and of motions between neighbours, shape (n, objectives).
 
     Coefficients are interpolated and the motions simulated: each can be driven, and stays in the
     box. Those that break a limit do not count. So a front is not judged by its number of points.
+    Of two objectives neighbours are those along the front, of more the nearest.
     """
     # share by which a motion between may exceed a limit, as those of a reference front
     overrun = 1e-6
     points = objectives(front)
+    if len(points) < 2:
+        return points
     coefficients = front.coefficients
-    between = ceil(BETWEEN / max(len(points) - 1, 1)) - 1
-    if len(points) < 2 or between < 1:
+    pairs = np.array(_neighbours(points))
+    between = ceil(BETWEEN / len(pairs)) - 1
+    if between < 1:
         return points
     share = (np.arange(1, between + 1) / (between + 1))[:, None]
-    inner = coefficients[:-1, None] * (1 - share) + coefficients[1:, None] * share
-    evaluation = Evaluator(front.task, front.profile)(inner.reshape(-1, front.profile.size))
-    table = objectives_of(evaluation)
-    usable = np.isfinite(table).all(axis=1) & (evaluation.violations <= overrun).all(axis=1)
+    first, second = (coefficients[places][:, None] for places in pairs.T)
+    inner = (first * (1 - share) + second * share).reshape(-1, front.profile.size)
+    table, violations = figures_of_motions(front, inner)
+    usable = np.isfinite(table).all(axis=1) & (violations <= overrun).all(axis=1)
     return np.vstack([points, table[usable]])
+
+
+def _neighbours(points: Array) -> list[tuple[int, int]]:
+    """Pairs of points between which motions are looked at."""
+    if points.shape[1] == len(RESIDUAL_AND_ENERGY):
+        return list(pairwise(range(len(points))))
+    # as many as a point has beside it on a surface of that dimension
+    nearest = 2 * (points.shape[1] - 1)
+    extent = np.ptp(points, axis=0)
+    scaled = points / np.where(extent > 0, extent, 1.0)
+    distance = np.linalg.norm(scaled[:, None] - scaled, axis=2)
+    order = np.argsort(distance, axis=1)[:, 1 : nearest + 1]
+    pairs = {(min(i, j), max(i, j)) for i, row in enumerate(order.tolist()) for j in row}
+    return sorted(pairs)
+
+
+def _whole_of(stations: Array) -> float:
+    """What a reference front dominates, up to the corner."""
+    if stations.shape[1] > len(RESIDUAL_AND_ENERGY):
+        return float(moocore.hypervolume(stations, ref=[CORNER] * stations.shape[1]))
+    return _hypervolume_of_line(stations)
 
 
 def _hypervolume_of_line(stations: Array) -> float:

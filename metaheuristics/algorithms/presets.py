@@ -38,8 +38,8 @@ class Preset:
     population, generations : int
         Individuals (particles of each swarm, for VEPSO) and generations by default: pymoo's own
         population, and in all as many candidates as the paper gives VEPSO.
-    swarms : int
-        How many populations are evaluated in a generation: two for VEPSO, else one.
+    by_swarms : bool
+        Whether each objective has a population, which are all evaluated in a generation: VEPSO.
     by_directions : bool
         Whether it takes reference directions: as many as individuals, evenly spread.
     keeps_limits : bool
@@ -60,7 +60,7 @@ class Preset:
     defaults: Mapping[str, Value] = field(default_factory=dict, hash=False)
     population: int = 100
     generations: int = 400
-    swarms: int = 1
+    by_swarms: bool = False
     by_directions: bool = False
     keeps_limits: bool = True
     needs: str = ""
@@ -73,7 +73,10 @@ class Preset:
         return tuple(MethodSetting.of(argument, value) for argument, value in self.defaults.items())
 
     def build(
-        self, population: int, settings: Mapping[str, object] | None = None
+        self,
+        population: int,
+        settings: Mapping[str, object] | None = None,
+        objectives: int = 2,
     ) -> Algorithm | Callable[..., None]:
         """A new algorithm, or a function.
 
@@ -83,6 +86,8 @@ class Preset:
             Individuals, or particles in a swarm.
         settings : mapping, optional
             Values by the names of `settings`; the defaults for all others.
+        objectives : int
+            How many objectives it is for.
 
         Returns
         -------
@@ -97,7 +102,7 @@ class Preset:
         values = self.checked(population, settings)
         from quietarm.metaheuristics.algorithms.building import built
 
-        return built(self, population, values)
+        return built(self, population, values, objectives)
 
     def checked(
         self, population: int, settings: Mapping[str, object] | None = None
@@ -124,16 +129,16 @@ class Preset:
                 )
         return values
 
-    def evaluations(self, population: int, generations: int) -> int:
-        """Candidates that a search evaluates.
+    def evaluations(self, population: int, generations: int, objectives: int = 2) -> int:
+        """Candidates that a search of so many objectives evaluates.
 
         They are fewer only if crossover finds too few new ones.
         """
-        return self.swarms * population * generations
+        return (objectives if self.by_swarms else 1) * population * generations
 
-    def refuse_less_than_one(self, evaluations: int, population: int) -> None:
+    def refuse_less_than_one(self, evaluations: int, population: int, objectives: int = 2) -> None:
         """Refuse whole numbers of evaluations that are less than a generation."""
-        size = self.evaluations(population, 1)
+        size = self.evaluations(population, 1, objectives)
         if isinstance(evaluations, Integral) and evaluations < size:
             raise ValueError(
                 f"evaluations is {evaluations}, less than one generation of {self.name}, {size}; "
@@ -203,7 +208,7 @@ _ALL = (
             "rule.social": 2.05,
         },
         generations=200,
-        swarms=2,
+        by_swarms=True,
         most=100_000,
     ),
     Preset(

@@ -13,7 +13,7 @@ def copy_of_algorithm(algorithm: Algorithm) -> Algorithm:
     # pymoo says nowhere else how many objectives an algorithm is for, and some would run on
     if any(kind.__module__.startswith("pymoo.algorithms.soo") for kind in type(algorithm).__mro__):
         raise ValueError(
-            f"{name} minimises one objective, and a move has two; give a multi-objective "
+            f"{name} minimises one objective, and a move has two or more; give a multi-objective "
             "algorithm, such as those of pymoo.algorithms.moo"
         )
     if algorithm.problem is not None or algorithm.is_initialized:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp import JointProfile, PointToPoint
+from quietarm.ocp import Front, JointProfile, PointToPoint
+from quietarm.ocp.objectives import peak_quantities, with_peaks_measured
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
 from quietarm.ocp.simulation.mesh import default_steps
 
@@ -40,6 +43,34 @@ def objectives_of(evaluation: Evaluation) -> NDArray[np.float64]:
     """F1 [m] as the largest of the scenarios and F2 [J] of the nominal plant, (candidates, 2)."""
     residual = evaluation.sampled_residual.max(axis=1)
     return np.column_stack([residual, evaluation.energy[:, 0]])
+
+
+def measured_figures(
+    evaluation: Evaluation, quantities: Sequence[str], limits: Sequence[str]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Objectives with the peaks of these quantities, and violations of these limits, by name.
+
+    The evaluation is of a task as of `with_peaks_measured`. Shapes are (candidates, objectives) and
+    (candidates, limits).
+    """
+    peaks = [evaluation.limited_peaks[name] for name in quantities]
+    names = [limit.name for limit in evaluation.evaluator.tasks[0].limits]
+    places = [names.index(name) for name in limits]
+    table = np.column_stack([objectives_of(evaluation), *peaks])
+    return table, evaluation.violations[:, places]
+
+
+def figures_of_motions(
+    front: Front, coefficients: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Objectives of motions along a front's profile, and their violations of its limits.
+
+    Shapes are (motions, objectives) and (motions, limits); by the steps of an `Evaluator`.
+    """
+    quantities = peak_quantities(front.objectives)
+    measured = with_peaks_measured(front.task, quantities)
+    evaluation = Evaluator(measured, front.profile)(coefficients)
+    return measured_figures(evaluation, quantities, [limit.name for limit in front.task.limits])
 
 
 def replace_failures(table: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -9,18 +9,18 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.metaheuristics.objective.population import objectives_of
+from quietarm.metaheuristics.objective.population import figures_of_motions
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import Front, Motion, Plan
 from quietarm.ocp.checks import table_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import refuse_beyond_box
-from quietarm.ocp.limits import quantities_of
+from quietarm.ocp.limits import RESIDUAL, quantities_of
 from quietarm.ocp.motion_answer import figures_of
+from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.ocp.robustness import Worst
-from quietarm.ocp.simulation.evaluator import Evaluator
 
 FIGURES = (("residual", "m", REST), ("energy", "J", 0.0))
 """Name and unit of both objectives, and the difference within which they always agree."""
@@ -53,8 +53,7 @@ def _check_points(front: Front) -> None:
     count = len(front.points)
     for i, figures, violations in _evaluated_again(front, front.coefficients):
         which = f"point {i + 1} of {count}"
-        point = front.points[i]
-        _refuse_other_figures(which, (point.residual, point.energy), figures)
+        _refuse_other_figures(which, front, front.objective_values[i], figures)
         for limit, passed in zip(front.task.limits, violations):
             if not passed <= OVERRUN:
                 raise ValueError(
@@ -74,17 +73,14 @@ def _check_entries(front: Front) -> None:
         )
     table = table_of(entries.coefficients, front.profile.size)
     _check_box(front, table)
+    stated = entries.objectives()
     for i, figures, _ in _evaluated_again(front, table):
         which = f"candidate {entries.candidates[i]}"
-        _refuse_other_figures(
-            which,
-            (entries.residuals[i], entries.energies[i]),
-            figures,
-        )
+        _refuse_other_figures(which, front, stated[i], figures)
 
 
 def _evaluated_again(front: Front, table: Array) -> Iterator[tuple[int, Array, Array]]:
-    """Some rows of coefficients: which, residual and energy, and violations of the limits."""
+    """Some rows of coefficients: which, their objectives, and violations of the limits."""
     # points that are evaluated again: as many as one call takes. An edit or a conversion rarely
     # leaves all of these as they were
     sample = 100
@@ -94,19 +90,25 @@ def _evaluated_again(front: Front, table: Array) -> Iterator[tuple[int, Array, A
     spread = np.linspace(0, count - 1, min(count, sample))
     places = np.unique(spread.round().astype(int))
     with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused
-        evaluation = Evaluator(front.task, front.profile)(table[places])
-        figures = objectives_of(evaluation)
-        violations = evaluation.violations
+        figures, violations = figures_of_motions(front, table[places])
     yield from zip(places.tolist(), figures, violations)
 
 
-def _refuse_other_figures(which: str, stated: tuple[float, float], figures: Array) -> None:
-    for (name, unit, least), states, gives in zip(FIGURES, stated, figures):
-        if not agrees(states, gives, least):
+def _refuse_other_figures(which: str, front: Front, stated: Array, figures: Array) -> None:
+    objectives = objectives_on(front.task.plant, front.objectives)
+    for objective, states, gives in zip(objectives, stated, figures):
+        if not agrees(states, gives, _least_of(objective)):
+            unit = objective.unit
+            name = objective.name.replace("_", " ")
             words = f"{gives:.4g} {unit}" if np.isfinite(gives) else "no finite figure"
             raise ValueError(
                 f"{which} states {name} {states:.4g} {unit}, but its coefficients give {words}"
             )
+
+
+def _least_of(objective: Objective) -> float:
+    """The difference within which an objective always agrees [its unit]."""
+    return REST if objective.name == RESIDUAL else 0.0
 
 
 def check_plan(plan: Plan, path: Path) -> None:

@@ -26,9 +26,13 @@ from quietarm.ocp import (
     PointToPoint,
     Uncertainty,
     epsilon_front,
+    non_dominated,
+    reference_corner,
 )
 from quietarm.ocp.checks import takes, unknown
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives, peak_quantities
 from quietarm.ocp.window import EQ_11
 
 if TYPE_CHECKING:
@@ -55,10 +59,11 @@ class NamedProblem:
         How the joint moves.
     bound : float
         Largest absolute coefficient.
-    peak : str
-        Quantity whose peak is the third objective; empty where there are two.
-    peaks : tuple of float
-        Limits on that peak under which the reference fronts of the other two were found.
+    objectives : tuple of str
+        Names of its objectives: residual, energy, and peaks beside them.
+    peak_limits : tuple of float
+        Of a named problem with one peak, the limits on it under which the reference fronts of
+        residual and energy were found.
     version : int
         Of move, profile, box and front; a change of any of them is another version.
     reference_front : Front, optional
@@ -69,8 +74,8 @@ class NamedProblem:
     task: PointToPoint
     profile: JointProfile
     bound: float
-    peak: str = ""
-    peaks: tuple[float, ...] = ()
+    objectives: tuple[str, ...] = RESIDUAL_AND_ENERGY
+    peak_limits: tuple[float, ...] = ()
     version: int = 1
     reference_front: Front | None = field(default=None, compare=False)
 
@@ -81,6 +86,7 @@ class NamedProblem:
                 f"the name {self.name!r} does not do for a problem; give letters, digits, spaces "
                 "and . + = - _ with a letter or digit first: files are called by it"
             )
+        object.__setattr__(self, "objectives", checked_objectives(self.objectives))
 
     @classmethod
     @takes(front=Front)
@@ -94,7 +100,14 @@ class NamedProblem:
             raise ValueError(f"{name} states no bound; give a front that was found within one")
         if len(front.points) < 2:
             raise ValueError(f"{name} has {len(front.points)} points; give two or more")
-        return cls(name, front.task, front.profile, bound, reference_front=front)
+        return cls(
+            name,
+            front.task,
+            front.profile,
+            bound,
+            objectives=front.objectives,
+            reference_front=front,
+        )
 
     def __reduce__(self) -> Any:
         """By its name where that says all."""
@@ -104,12 +117,11 @@ class NamedProblem:
 
     def function(self, **settings: Any) -> MoveFunction:
         """The problem as a function of arrays; settings of `MoveFunction`: steps and threads."""
-        peaks = (self.peak,) if self.peak else ()
         return MoveFunction(
             self.task,
             self.profile,
             bound=self.bound,
-            peaks=peaks,
+            objectives=self.objectives,
             **settings,
         )
 
@@ -122,55 +134,61 @@ class NamedProblem:
     def tasks(self) -> dict[str, PointToPoint]:
         """The tasks of the reference fronts by the names of their files.
 
-        The problem's own; for a third objective the same under each limit of its peak.
+        The problem's own; or the same under each limit of its peak.
         """
-        if not self.peak:
+        if not self.peak_limits:
             return {self.name: self.task}
-        limit = f"{self.peak}_limit"
-        limits: Any = {most: {limit: most} for most in self.peaks}
+        (quantity,) = peak_quantities(self.objectives)
+        limit = QUANTITIES[quantity].limit
+        limits: Any = {most: {limit: most} for most in self.peak_limits}
         return {f"{self.name}-{most:g}": replace(self.task, **limits[most]) for most in limits}
 
     def fronts(self) -> tuple[Front, ...]:
-        """The reference fronts: one, or for a third objective one for each limit."""
+        """The reference fronts: one, or those under each limit of a peak."""
         if self.reference_front is not None:
             return (self.reference_front,)
-        return tuple(
-            _loaded(self._folder / f"{name}.json")
-            if self.named
-            else front_by_gradient(task, self.profile, self.bound)
-            for name, task in self.tasks().items()
-        )
+        if self.named:
+            return tuple(_loaded(self._folder / f"{name}.json") for name in self.tasks())
+        return (front_by_gradient(self.task, self.profile, self.bound, self.objectives),)
+
+    def front(self) -> Front:
+        """The reference front, of all objectives."""
+        return _of_all_limits(self) if self.peak_limits and self.named else self.fronts()[0]
 
     def reference(self) -> Reference:
-        """The reference front as a scale; ValueError where there is a third objective."""
-        if self.peak:
-            raise ValueError(
-                f"{self.name} has a third objective, and methods are measured by residual and "
-                "energy alone; give another problem"
-            )
-        return _scale(*self.fronts())
+        """The reference front as a scale."""
+        return _scale(self.front())
 
     @property
     def named(self) -> bool:
         """Whether it is one of `PROBLEMS`."""
         return self.reference_front is None and PROBLEMS.get(self.name) == self
 
-    def recorded(self, budget: float = inf) -> RecordedFunction:
+    def recorded(
+        self, budget: float = inf, *, noise: float = 0.0, reevaluate: int = 1, seed: int = 0
+    ) -> RecordedFunction:
         """The problem as a function of arrays that records its candidates, up to a budget.
 
-        ValueError where there is a third objective, or the budget is no whole number from 1 up.
+        Arguments and errors as of a `RecordedFunction`.
         """
         from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
-        self.reference()  # refuses a third objective
         return RecordedFunction(
-            self.task, self.profile, bound=self.bound, budget=budget, problem=self.name
+            self.task,
+            self.profile,
+            bound=self.bound,
+            objectives=self.objectives,
+            budget=budget,
+            problem=self.name,
+            noise=noise,
+            reevaluate=reevaluate,
+            seed=seed,
         )
 
     @property
     def _folder(self) -> Path:
         plant = FRONTS / self.task.plant.name
-        return plant / self.name if self.peak else plant
+        return plant / self.name if self.peak_limits else plant
 
     def optimum(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Coefficients and objectives of the reference front.
@@ -180,22 +198,34 @@ class NamedProblem:
         pareto_set : ndarray, shape (points, variables)
             Coefficients; none of the motions dominates another.
         pareto_front : ndarray, shape (points, objectives)
-            Residual [m], energy [J] and the third objective.
+            Residual [m], energy [J] and peaks.
         """
-        import moocore  # not at the top: it takes long to load
-
-        X = np.vstack([front.coefficients for front in self.fronts()])
-        F = np.vstack([np.c_[front.residuals, front.energies] for front in self.fronts()])
-        if self.peak:
-            objectives, _ = self.function()(X)
-            F = np.column_stack([F, objectives[:, 2:]])
-        rows = moocore.is_nondominated(F)
-        return X[rows], F[rows]
+        front = self.front()
+        return front.coefficients, front.objective_values
 
 
 @cache
 def _loaded(path: Path) -> Front:
     return Front.load(path)
+
+
+@cache
+def _of_all_limits(problem: NamedProblem) -> Front:
+    """The fronts under all limits of a peak as one, of residual, energy and that peak."""
+    steps = 192  # as those of the fronts: nodes between which a peak is not missed
+    (quantity,) = peak_quantities(problem.objectives)
+    under_limits = problem.fronts()
+    points = [point for front in under_limits for point in front.points]
+    coefficients = np.vstack([front.coefficients for front in under_limits])
+    peaks = problem.function(steps=steps)(coefficients)[0][:, 2].tolist()
+    measured = [replace(point, peaks={quantity: peak}) for point, peak in zip(points, peaks)]
+    return replace(
+        under_limits[0],
+        task=problem.task,
+        points=non_dominated(measured, problem.objectives),
+        reference=reference_corner(problem.task, problem.objectives),
+        objectives=problem.objectives,
+    )
 
 
 @lru_cache(maxsize=64)
@@ -206,14 +236,23 @@ def _scale(front: Front) -> Reference:
 
 
 @lru_cache(maxsize=64)
-def front_by_gradient(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
-    """A reference front by the gradient; on six named problems within 1.4e-5 of the hypervolume."""
+def front_by_gradient(
+    task: PointToPoint,
+    profile: JointProfile,
+    bound: float,
+    objectives: tuple[str, ...] = RESIDUAL_AND_ENERGY,
+) -> Front:
+    """A reference front by the gradient.
+
+    Of two objectives, on six named problems within 1.4e-5 of the hypervolume.
+    """
     return epsilon_front(
         task,
         profile,
         bound=bound,
         points=300,
         at=LEVELS,
+        objectives=objectives,
         starts=12,  # of its ends
         steps=192 if task.limits else None,  # a peak between coarser ones costs up to 3e-4
     )
@@ -295,8 +334,8 @@ def _named_problems() -> tuple[NamedProblem, ...]:
             "single-link-30deg-0.8s-torque",
             link_sixth,
             link_box,
-            peak="torque",
-            peaks=(0.1, 0.115, 0.13, 0.145, 0.16, 0.18),
+            objectives=(*RESIDUAL_AND_ENERGY, "peak_torque"),
+            peak_limits=(0.1, 0.115, 0.13, 0.145, 0.16, 0.18),
         ),
         _problem(
             "single-link-30deg-0.8s-robust",

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.metaheuristics.objective.population import (
-    objectives_of,
+    measured_figures,
     replace_failures,
     search_evaluator,
 )
 from quietarm.ocp import JointProfile, PointToPoint
-from quietarm.ocp.checks import takes, unknown
-from quietarm.ocp.limits import QUANTITIES, quantities_of
+from quietarm.ocp.checks import takes
+from quietarm.ocp.objectives import (
+    RESIDUAL_AND_ENERGY,
+    checked_objectives,
+    objectives_on,
+    peak_quantities,
+    with_peaks_measured,
+)
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.record import coefficient_bound
 
@@ -36,8 +40,9 @@ class MoveFunction:
         How the joint moves; by default the polynomial that `plan_move` takes for the task.
     bound : float, optional
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
-    peaks : sequence of str
-        Quantities whose peak during the move is an objective, too, as ``"torque"``.
+    objectives : sequence of str
+        Names of the objectives: residual, energy, and peaks during the move, as
+        ``"peak_torque"``.
     steps : int, optional
         Steps of the simulation; those of every search by default, as of `search_steps`.
     threads : int
@@ -48,14 +53,14 @@ class MoveFunction:
     lower, upper : ndarray, shape (variables,)
         The box of the coefficients; they have no unit.
     variables, objectives, constraints : tuple of str
-        Names, in the order of the columns.
+        Names, in the order of the columns; residual and energy are the first objectives.
     units : tuple of str
         SI units of the objectives. Violations are shares of the limit, without a unit.
 
     Raises
     ------
     ValueError
-        When there is no bound, a quantity is not known, or a number is out of range.
+        When there is no bound, an objective is not known, or a number is out of range.
     """
 
     @takes(task=PointToPoint, profile=JointProfile)
@@ -65,7 +70,7 @@ class MoveFunction:
         profile: JointProfile | None = None,
         *,
         bound: float | None = None,
-        peaks: Sequence[str] = (),
+        objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
         steps: int | None = None,
         threads: int = 1,
     ) -> None:
@@ -78,31 +83,15 @@ class MoveFunction:
         self.task = task
         self.profile = profile
         self.bound = bound
-        for name in peaks:
-            if name not in QUANTITIES:
-                raise ValueError(unknown("quantity", name, QUANTITIES))
-        self.peaks = tuple(peaks)
+        self.objectives = checked_objectives(objectives)
+        self.peaks = peak_quantities(self.objectives)
         self.lower, self.upper = (np.array(side, dtype=float) for side in profile.box(bound))
         self.variables = tuple(f"a_{i + 1}" for i in range(profile.size))
-        self.objectives = ("residual", "energy", *(f"peak_{name}" for name in self.peaks))
-        units = quantities_of(task.plant.joint, task.plant.tip_unit)
-        self.units = (task.plant.tip_unit, "J", *(units[name].unit for name in self.peaks))
+        self.units = tuple(entry.unit for entry in objectives_on(task.plant, self.objectives))
         self.constraints = tuple(limit.quantity.limit for limit in task.limits)
-        # a peak is read from its violation of a limit; one that has no limit gets 1
-        limited = {limit.name: limit for limit in task.limits}
-        limits = {QUANTITIES[name].limit: 1.0 for name in self.peaks if name not in limited}
-        for name in self.peaks:
-            if name in limited and not limited[name].is_peak:
-                raise ValueError(
-                    f"{limited[name]} differs by direction, so that its peak is no objective; give "
-                    "one number"
-                )
-        measured: Any = replace(task, **limits)
+        measured = with_peaks_measured(task, self.peaks)
         self._evaluator = search_evaluator(measured, profile, steps, threads)
-        measures = [limit.name for limit in measured.limits]
-        self._limited = [measures.index(name) for name in limited]
-        self._peaked = [measures.index(name) for name in self.peaks]
-        self._sizes = np.array([measured.limits[i].size for i in self._peaked])
+        self._limited = [limit.name for limit in task.limits]
 
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
         """Evaluate candidates.
@@ -127,10 +116,8 @@ class MoveFunction:
         """
         with np.errstate(all="ignore"):  # coefficients of any size
             evaluation = self._evaluator(candidates)
-            objectives = objectives_of(evaluation)
-            violations = evaluation.violations
-        peaks = (violations[:, self._peaked] + 1) * self._sizes
-        table = np.column_stack([objectives, peaks, violations[:, self._limited]])
+            objectives, violations = measured_figures(evaluation, self.peaks, self._limited)
+        table = np.column_stack([objectives, violations])
         replace_failures(table)
         count = len(self.objectives)
         return table[:, :count], table[:, count:]

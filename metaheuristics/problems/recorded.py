@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.metaheuristics.archive import Archive
+from quietarm.metaheuristics.objective.noise import Noise, times_evaluated
 from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import table_of, takes, whole
 from quietarm.ocp.front.points import beyond
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Record, Setting
 
 Array = NDArray[np.float64]
@@ -37,12 +39,20 @@ class RecordedFunction(MoveFunction):
 
     Parameters
     ----------
-    task, profile, bound, threads
+    task, profile, bound, objectives, threads
         As of a `MoveFunction`.
     budget : float
-        Candidates in all: the last call is cut short, and raises `BudgetSpentError`.
+        Evaluations in all: the last call is cut short, and raises `BudgetSpentError`.
     problem : str
         Name of the problem, which a front then states.
+    noise : float
+        Standard deviation of residual and energy, as a share: each evaluation has its own. Peaks
+        and violations have none. The front at the end has the true values, as ever.
+    reevaluate : int
+        How often a candidate is evaluated that no earlier one dominates; its mean counts, and each
+        evaluation.
+    seed : int
+        Seed of the noise.
 
     Attributes
     ----------
@@ -57,14 +67,21 @@ class RecordedFunction(MoveFunction):
         profile: JointProfile | None = None,
         *,
         bound: float | None = None,
+        objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
         threads: int = 1,
         budget: float = inf,
         problem: str = "",
+        noise: float = 0.0,
+        reevaluate: int = 1,
+        seed: int = 0,
     ) -> None:
-        super().__init__(task, profile, bound=bound, threads=threads)
+        super().__init__(task, profile, bound=bound, objectives=objectives, threads=threads)
         self.budget = budget if budget == inf else whole("budget", budget, 1)
         self.problem = problem
-        self.archive = Archive(task, len(self.variables))
+        self._noise = Noise(noise, whole("seed", seed, 0))
+        self.noise = self._noise.share
+        self.reevaluate = times_evaluated(reevaluate, self.noise)
+        self.archive = Archive(task, len(self.variables), self.objectives, noisy=self.noise > 0)
         self.failed = 0
         self.infeasible = 0
         self._idle = 0
@@ -104,16 +121,41 @@ class RecordedFunction(MoveFunction):
         remaining = self.budget - self.archive.evaluations
         count = int(min(remaining, len(table)))
         afforded = np.clip(table[:count], self.lower, self.upper)
-        objectives, violations = super().__call__(afforded)
-        failed = (objectives >= UNUSABLE).any(axis=1)
+        true, violations = super().__call__(afforded)
+        failed = (true >= UNUSABLE).any(axis=1)
         broken = (violations > 0).any(axis=1)
         self.failed += int(failed.sum())
         self.infeasible += int((broken & ~failed).sum())
+        objectives = self._noise.of(true, failed)
         if len(afforded):
-            self.archive.add(afforded, objectives, np.logical_not(failed | broken))
+            usable = np.logical_not(failed | broken)
+            repeated = self._evaluate_again(objectives, true, usable, remaining - count)
+            self.archive.add(afforded, objectives, usable, true, repeated)
         if len(afforded) < len(table):
             raise BudgetSpentError
         return objectives, violations
+
+    def _evaluate_again(
+        self, objectives: Array, true: Array, usable: NDArray[np.bool_], remaining: float
+    ) -> int:
+        """Put means in the place of the objectives of rows that would enter the archive.
+
+        Gives how many evaluations that took, of so many that remain.
+        """
+        if self.reevaluate == 1:
+            return 0
+        rows = self.archive.entering(objectives, usable)
+        totals = objectives[rows]
+        times = np.ones(len(rows))
+        repeated = 0
+        for _ in range(self.reevaluate - 1):
+            count = int(min(len(rows), remaining - repeated))
+            again = true[rows[:count]]
+            totals[:count] += self._noise.of(again, np.zeros(count, dtype=bool))
+            times[:count] += 1
+            repeated += count
+        objectives[rows] = totals / times[:, None]
+        return repeated
 
     def charge(self, evaluations: int) -> None:
         """Count candidates that were simulated for derivatives; BudgetSpentError at the end."""
@@ -132,6 +174,8 @@ class RecordedFunction(MoveFunction):
         stated: dict[str, Any] = dict(settings or {})
         if self.problem:
             stated["problem"] = self.problem
+        if self.noise:
+            stated |= {"noise": self.noise, "reevaluate": self.reevaluate}
         return self.archive.front(
             self.profile,
             Record(method, stated, self.bound, seed),

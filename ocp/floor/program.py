@@ -16,6 +16,7 @@ from quietarm.models.compiled import Compiled
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import Limit, Quantity
+from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
@@ -26,7 +27,6 @@ from quietarm.ocp.simulation.objective import smooth_power
 from quietarm.ocp.simulation.rollout import march
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, options_of, run_ipopt
-from quietarm.ocp.solvers.problem import ENERGY
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.task import PointToPoint
 

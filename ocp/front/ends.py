@@ -8,6 +8,7 @@ from typing import NamedTuple
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve
 from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.best_of_starts import (
     SAME,
     best_of_starts,
@@ -16,7 +17,6 @@ from quietarm.ocp.planning.best_of_starts import (
 )
 from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify_one
 from quietarm.ocp.solvers.problem import (
-    ENERGY,
     LEAST_ENERGY,
     STILL,
     NonlinearProgram,

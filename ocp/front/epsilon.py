@@ -14,6 +14,8 @@ from quietarm.ocp.checks import positive, several, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Progress, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
+from quietarm.ocp.front.surface import surface_front
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.planning.setup import Setup
@@ -43,6 +45,7 @@ def epsilon_front(
     steps: int | None = None,
     solver: Solver = Sqp(),
     report: Progress = no_report,
+    objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
 ) -> Front:
     """Find the front of residual and energy by the gradient, with the epsilon-constraint method.
 
@@ -50,6 +53,10 @@ def epsilon_front(
     several starts. A few limits between them follow, from both ends and a random start, all at
     once. From these the points are spaced evenly in both objectives; all points are then solved at
     once, each from the solutions on either side.
+
+    With peaks among the objectives the energy is minimised at the cells of a grid of limits on the
+    residual and on each peak, between the least values of a table of payoffs and its largest ones
+    (`quietarm.ocp.front.surface`).
 
     Parameters
     ----------
@@ -63,6 +70,8 @@ def epsilon_front(
         Starts of the ends; from two on one random start tries the first limits and some points.
     report : callable, optional
         Called with the number of points done and of all.
+    objectives : sequence of str
+        Residual and energy, and peaks beside them, as ``"peak_torque"``.
 
     Returns
     -------
@@ -81,8 +90,12 @@ def epsilon_front(
     began = time.perf_counter()
     profile = choose_profile(task) if profile is None else profile
     points = number_of_points(points)
+    names = checked_objectives(objectives)
     residuals = [positive("residual", residual, "m") for residual in several("at", at, "residuals")]
     setup = Setup(solver, bound, starts, seed, steps)
+    if names != RESIDUAL_AND_ENERGY:
+        front = surface_front(task, profile, setup, names, points, residuals, report)
+        return front.restated(seconds=time.perf_counter() - began)
     ends = find_ends(Curve.begin(task, profile, setup))
     limits_at = _limits_at(ends, residuals)
     total = points + len(limits_at)

@@ -1,4 +1,4 @@
-"""Front: the trade-off between residual and energy, by whatever method it was found."""
+"""Front: the trade-off between residual, energy and peaks, by whatever method it was found."""
 
 from __future__ import annotations
 
@@ -31,6 +31,13 @@ from quietarm.ocp.front.points import (
     evaluated,
     non_dominated,
 )
+from quietarm.ocp.objectives import (
+    RESIDUAL_AND_ENERGY,
+    Objective,
+    checked_objectives,
+    objectives_on,
+    peak_quantities,
+)
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import REST, Record, Setting
@@ -46,7 +53,7 @@ LEAST_REFERENCE = 1e-3
 
 @dataclass(frozen=True)
 class Front(Answer):
-    """Non-dominated points in the plane of residual and energy.
+    """Non-dominated points in the plane of residual and energy, or in the space of more objectives.
 
     Attributes
     ----------
@@ -55,11 +62,11 @@ class Front(Answer):
     profile : JointProfile
         How the joint moves.
     points : tuple of FrontPoint
-        Sorted by increasing residual; energies fall along the front.
+        Sorted by increasing residual; of two objectives energies fall along the front.
     record : Record
         Method, settings, candidates and iterations, versions, time.
     reference : tuple of float
-        Residual [m] and energy [J] of the corner that hypervolumes are measured from.
+        Residual [m], energy [J] and peaks of the corner that hypervolumes are measured from.
     failed : int
         Candidates whose values were not finite, or absurdly large; they never enter a front.
     infeasible : int
@@ -72,6 +79,8 @@ class Front(Answer):
         Its effort during the run, the end last.
     entries : Entries
         Of a search, every candidate that no earlier one dominated.
+    objectives : tuple of str
+        Names of the objectives, as of `quietarm list`: residual and energy first.
 
     Raises
     ------
@@ -89,21 +98,36 @@ class Front(Answer):
     profile: JointProfile
     points: tuple[FrontPoint, ...]
     record: Record
-    reference: tuple[Positive, Positive]
+    reference: tuple[Positive, ...]
     failed: Count = 0
     infeasible: Count = 0
     failures: tuple[FailedPoint, ...] = ()
     gaps: tuple[tuple[NotNegative, NotNegative], ...] = ()
     history: tuple[Mark, ...] = ()
     entries: Entries = field(default_factory=Entries, metadata=IF_STATED)
+    objectives: tuple[str, ...] = field(default=RESIDUAL_AND_ENERGY, metadata=IF_STATED)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", tuple(self.points))
+        object.__setattr__(self, "objectives", checked_objectives(self.objectives))
+        if len(self.reference) != len(self.objectives):
+            raise ValueError(
+                f"its reference has {len(self.reference)} figures; give one for each of its "
+                f"{len(self.objectives)} objectives"
+            )
+        quantities = peak_quantities(self.objectives)
+        if len(self.entries) and tuple(self.entries.peaks) != quantities:
+            raise ValueError("the peaks of its entries are not those of its objectives")
         for i, point in enumerate(self.points, start=1):
             self.profile.checked(point.coefficients)
             not_negative(f"residual of point {i}", point.residual, "m")
             not_negative(f"energy of point {i}", point.energy, "J")
-        if self.points != non_dominated(self.points):
+            if set(point.peaks) != set(quantities):
+                raise ValueError(
+                    f"the peaks of point {i} are {', '.join(point.peaks) or 'none'}, and the "
+                    f"front's objectives have {', '.join(quantities) or 'none'}"
+                )
+        if self.points != non_dominated(self.points, self.objectives):
             raise ValueError(
                 "its points are out of order, or one is dominated; order them by "
                 "residual and drop dominated ones, as non_dominated(points) does"
@@ -119,15 +143,28 @@ class Front(Answer):
         """F2 of every point [J]."""
         return np.array([point.energy for point in self.points])
 
+    @property
+    def objective_values(self) -> NDArray[np.float64]:
+        """Every objective of every point, shape (points, objectives), in SI units."""
+        quantities = peak_quantities(self.objectives)
+        rows = [point.values(quantities) for point in self.points]
+        return np.array(rows, dtype=float).reshape(len(rows), len(self.objectives))
+
     def columns(self) -> dict[str, NDArray[np.float64]]:
         """``residual_m`` (or ``_rad``), ``energy_J``, ``a_1``, ``a_2``, ... of all points, by name.
+
+        Peaks that are objectives, as ``peak_torque_Nm``, stand after the energy.
 
         The last, ``residual_window_s``, is the task's residual window, the same for all.
         """
         named = {f"a_{i + 1}": column for i, column in enumerate(self.coefficients.T)}
-        residual = f"residual_{self.task.plant.tip_unit}"
         window = {"residual_window_s": np.full(len(self.points), self.task.residual_window)}
-        return {residual: self.residuals, "energy_J": self.energies, **named, **window}
+        objectives = objectives_on(self.task.plant, self.objectives)
+        values = {
+            objective.column: column
+            for objective, column in zip(objectives, self.objective_values.T)
+        }
+        return {**values, **named, **window}
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
@@ -135,6 +172,7 @@ class Front(Answer):
         head = (
             f"residual F1 within {self.task.residual_window:.4g} s [{unit}]",
             "energy F2 [J]",
+            *(f"{objective.label} [{objective.unit}]" for objective in self._peaks),
             f"shadow price [J/{unit}]",
             "coefficients",
         )
@@ -142,12 +180,19 @@ class Front(Answer):
             (
                 f"{point.residual:.3g}" if point.residual > REST else "0",
                 f"{point.energy:.5g}",
+                *(f"{point.peaks[objective.quantity]:.4g}" for objective in self._peaks),
                 f"{point.shadow_prices.get('residual', 0.0):.3g}" if point.shadow_prices else "-",
                 ", ".join(f"{a:.4g}" for a in point.coefficients),
             )
             for point in self.points
         ]
         return to_html(rows, head)
+
+    @property
+    def _peaks(self) -> list[Objective]:
+        """The objectives beside residual and energy."""
+        objectives = objectives_on(self.task.plant, self.objectives)
+        return [objective for objective in objectives if objective.quantity]
 
     def to_frame(self) -> pandas.DataFrame:
         """The points as a data frame of pandas by increasing residual, with the `columns`."""
@@ -179,6 +224,7 @@ class Front(Answer):
         settings: Mapping[str, Setting] | None = None,
         seed: int | None = None,
         evaluations: int | None = None,
+        objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
     ) -> Self:
         """The front of motions that another program found.
 
@@ -195,6 +241,8 @@ class Front(Answer):
             How the joint moves; by default a `CycloidPolynomial` of as many terms.
         evaluations : int, optional
             Candidates that it took to find them; as many as there are motions by default.
+        objectives : sequence of str
+            What dominates: residual, energy, and peaks beside them.
 
         Returns
         -------
@@ -211,7 +259,8 @@ class Front(Answer):
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile
         if evaluations is not None:
             evaluations = whole("evaluations", evaluations, len(table))
-        motions = evaluated(task, profile, table, bound)
+        names = checked_objectives(objectives)
+        motions = evaluated(task, profile, table, bound, objectives=names)
         record = Record(
             method,
             settings or {},
@@ -225,9 +274,10 @@ class Front(Answer):
             profile=profile,
             points=motions.points,
             record=record,
-            reference=reference_corner(task),
+            reference=reference_corner(task, names),
             failed=motions.failed,
             infeasible=motions.infeasible,
+            objectives=names,
         )
 
     def smallest_residual(self) -> FrontPoint:
@@ -242,7 +292,7 @@ class Front(Answer):
         points = self._nonempty()
         unit = self.task.plant.tip_unit
         if residual_limit is None:
-            return points[-1]
+            return min(reversed(points), key=_energy)
         if not residual_limit >= 0:  # nor NaN; all of them are below infinity
             raise ValueError(f"residual limit is {residual_limit:g} {unit}; give 0 or more")
         still = [point for point in points if point.residual <= residual_limit]
@@ -251,7 +301,7 @@ class Front(Answer):
                 f"no point of the front has a residual of {residual_limit:g} {unit} or less; give "
                 f"at least the smallest residual, {points[0].residual:.3g} {unit}"
             )
-        return still[-1]
+        return min(reversed(still), key=_energy)
 
     def least_energy(self, residual: float) -> float:
         """Least energy [J] of the points within a residual [m]; NaN where there is none."""
@@ -265,12 +315,13 @@ class Front(Answer):
         return np.array(rows, dtype=float).reshape(len(rows), self.profile.size)
 
     def knee(self) -> FrontPoint:
-        """The point farthest below the straight line between the ends, both objectives scaled."""
+        """The point farthest below the plane through the ends, all objectives scaled."""
         points = self._nonempty()
-        spans = np.array([np.ptp(self.residuals), np.ptp(self.energies)])
+        values = self.objective_values
+        spans = np.ptp(values, axis=0)
         if len(points) < 3 or not np.all(spans > 0):
             return points[0]
-        scaled = np.column_stack([self.residuals, self.energies]) / spans
+        scaled = values / spans
         return points[int(np.argmin(scaled.sum(axis=1)))]
 
     def _nonempty(self) -> Sequence[FrontPoint]:
@@ -293,11 +344,19 @@ class Front(Answer):
         )
 
 
+def _energy(point: FrontPoint) -> float:
+    return point.energy
+
+
 @takes(task=PointToPoint)
-def reference_corner(task: PointToPoint) -> tuple[float, float]:
+def reference_corner(
+    task: PointToPoint, objectives: Sequence[str] = RESIDUAL_AND_ENERGY
+) -> tuple[float, ...]:
     """The corner that hypervolumes of a task's fronts are measured from.
 
-    Residual [m] of the plain cycloid, 1 mm at least, and twice its energy [J].
+    Residual [m] of the plain cycloid, 1 mm at least, twice its energy [J], and twice its peaks.
     """
     cycloid = Candidate.of_profile(task, CycloidPolynomial(0), [])
-    return max(cycloid.residual, LEAST_REFERENCE), 2 * cycloid.energy
+    quantities = peak_quantities(checked_objectives(objectives))
+    peaks = [2 * cycloid.motion.peak(name) for name in quantities]
+    return (max(cycloid.residual, LEAST_REFERENCE), 2 * cycloid.energy, *peaks)

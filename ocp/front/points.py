@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import IF_STATED, Count, CountFromOne, NotNegative, Share, positive
 from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, peak_quantities
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import PointToPoint
 
@@ -28,13 +29,15 @@ class FrontPoint:
 
     `Front` checks its points. The `shadow_prices` are the decrease of the least energy per unit of
     a widened limit [J by its unit], as of a `Plan`: that of the residual is the slope of the
-    front. They are empty if they are not known.
+    front. They are empty if they are not known. The `peaks` are those that are objectives of the
+    front, by quantity [its SI unit].
     """
 
     coefficients: tuple[float, ...]
     residual: NotNegative
     energy: NotNegative
     shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
+    peaks: Mapping[str, NotNegative] = field(default_factory=dict, hash=False, metadata=IF_STATED)
 
     def __post_init__(self) -> None:
         prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
@@ -43,6 +46,12 @@ class FrontPoint:
         object.__setattr__(self, "coefficients", coefficients)
         object.__setattr__(self, "residual", float(self.residual))
         object.__setattr__(self, "energy", float(self.energy))
+        peaks = {name: float(peak) for name, peak in self.peaks.items()}
+        object.__setattr__(self, "peaks", peaks)
+
+    def values(self, quantities: Sequence[str] = ()) -> tuple[float, ...]:
+        """Residual, energy, and the peaks of these quantities."""
+        return (self.residual, self.energy, *(self.peaks[name] for name in quantities))
 
 
 @dataclass(frozen=True)
@@ -128,16 +137,27 @@ class Entries:
     coefficients : tuple of tuple of float
         The profile's coefficients of each.
     residuals, energies : tuple of float
-        F1 [m] and F2 [J] at the steps of the search.
+        F1 [m] and F2 [J] at the steps of the search, without noise.
+    peaks : mapping of str to tuple of float
+        The peaks that are objectives, by quantity [its SI unit].
+    believed : tuple of tuple of float
+        Of a search with noise, all objectives as it took them; empty where these are the true ones.
     """
 
     candidates: tuple[CountFromOne, ...] = ()
     coefficients: tuple[tuple[float, ...], ...] = ()
     residuals: tuple[NotNegative, ...] = ()
     energies: tuple[NotNegative, ...] = ()
+    peaks: Mapping[str, tuple[NotNegative, ...]] = field(
+        default_factory=dict, hash=False, metadata=IF_STATED
+    )
+    believed: tuple[tuple[NotNegative, ...], ...] = field(default=(), metadata=IF_STATED)
 
     def __post_init__(self) -> None:
-        lengths = {len(self.coefficients), len(self.residuals), len(self.energies)}
+        columns = [self.coefficients, self.residuals, self.energies, *self.peaks.values()]
+        if self.believed:
+            columns.append(self.believed)
+        lengths = {len(column) for column in columns}
         if lengths != {len(self.candidates)}:
             raise ValueError("its entries have columns of several lengths")
         if any(later <= number for number, later in pairwise(self.candidates)):
@@ -147,25 +167,48 @@ class Entries:
         return len(self.candidates)
 
     def objectives(self, evaluations: int | None = None) -> NDArray[np.float64]:
-        """Residuals [m] and energies [J], shape (n, 2), of those among so many candidates."""
-        count = len(self) if evaluations is None else bisect_right(self.candidates, evaluations)
-        return np.column_stack([self.residuals[:count], self.energies[:count]])
+        """Residuals [m], energies [J] and peaks, of those among so many candidates, a row each."""
+        count = self._count(evaluations)
+        columns = [self.residuals, self.energies, *self.peaks.values()]
+        return np.column_stack([column[:count] for column in columns])
+
+    def beliefs(self, evaluations: int | None = None) -> NDArray[np.float64]:
+        """The same as the search took them: with its noise, where it had any."""
+        if not self.believed:
+            return self.objectives(evaluations)
+        return np.array(self.believed[: self._count(evaluations)])
+
+    def _count(self, evaluations: int | None) -> int:
+        return len(self) if evaluations is None else bisect_right(self.candidates, evaluations)
 
 
-def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
-    """The non-dominated points, in order of residual, so that energies fall.
+def non_dominated(
+    points: Iterable[FrontPoint], objectives: Sequence[str] = RESIDUAL_AND_ENERGY
+) -> tuple[FrontPoint, ...]:
+    """The non-dominated points, in order of residual, so that of two objectives energies fall.
 
     Points that are not finite are dropped; of equal ones the first is kept.
     """
-    finite = [
-        point for point in points if np.isfinite(point.residual) and np.isfinite(point.energy)
-    ]
-    finite.sort(key=lambda point: (point.residual, point.energy))
+    quantities = peak_quantities(objectives)
+    finite = [point for point in points if np.isfinite(point.values(quantities)).all()]
+    finite.sort(key=lambda point: point.values(quantities))
+    if quantities:
+        table = np.array([point.values(quantities) for point in finite])
+        return tuple(finite[row] for row in non_dominated_rows(table))
     front: list[FrontPoint] = []
     for point in finite:
         if not front or point.energy < front[-1].energy:
             front.append(point)
     return tuple(front)
+
+
+def non_dominated_rows(table: NDArray[np.float64]) -> list[int]:
+    """Rows of objectives, sorted by the first, that no other dominates; of equal ones the first."""
+    rows: list[int] = []
+    for row, values in enumerate(table):  # whatever dominates it stands before it
+        if not (table[rows] <= values).all(axis=1).any():
+            rows.append(row)
+    return rows
 
 
 class Evaluated(NamedTuple):
@@ -214,6 +257,7 @@ def evaluated(
     table: NDArray[np.float64],
     bound: float | None = None,
     at_limit: float = 1e-9,
+    objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
 ) -> Evaluated:
     """The front of motions by CVODES; those that fail or break a limit of the task are counted.
 
@@ -227,7 +271,7 @@ def evaluated(
     for coefficients in rows:
         try:
             motion = Candidate.of_profile(task, profile, coefficients)
-            point = FrontPoint(coefficients, motion.residual, motion.energy)
+            point = point_of(motion, objectives)
         except SolverFailedError:
             failed += 1
             continue
@@ -235,4 +279,11 @@ def evaluated(
             infeasible += 1
         else:
             points.append(point)
-    return Evaluated(non_dominated(points), failed, infeasible)
+    return Evaluated(non_dominated(points, objectives), failed, infeasible)
+
+
+def point_of(motion: Candidate, objectives: Sequence[str]) -> FrontPoint:
+    """A motion, as CVODES judges it, as a point; SolverFailedError where it has no figures."""
+    names = peak_quantities(objectives)
+    peaks = {name: motion.motion.peak(name) for name in names} if names else {}
+    return FrontPoint(motion.coefficients, motion.residual, motion.energy, peaks=peaks)

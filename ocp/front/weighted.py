@@ -15,12 +15,13 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Place, Progress, no_
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.limits import RESIDUAL
+from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.best_of_starts import best_of_starts, minimum_of
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import digits, number_of_points
-from quietarm.ocp.solvers.problem import ENERGY, Solution
+from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint

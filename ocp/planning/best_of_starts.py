@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.limits import Limit, Ranged
+from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.certify import by_cvodes, certify_one
 from quietarm.ocp.solvers.choice import stand_in
-from quietarm.ocp.solvers.problem import ENERGY, STILL, NonlinearProgram, Scalarization, Solution
+from quietarm.ocp.solvers.problem import STILL, NonlinearProgram, Scalarization, Solution
 from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, Values
 from quietarm.ocp.simulation.mesh import default_steps
@@ -22,7 +23,6 @@ from quietarm.ocp.solvers.batch import Derivatives, batch_of
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
-ENERGY = "energy"
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
 STILL = 1e-8

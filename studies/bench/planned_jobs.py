@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from quietarm.metaheuristics import PRESETS, PROBLEMS, Job, NamedProblem, problem_of
 from quietarm.metaheuristics.gradient import GRADIENT
+from quietarm.metaheuristics.jobs import POLISH
 from quietarm.ocp import Front
 from quietarm.ocp.checks import spelling, whole
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Setting
 
 ALL = "all"
@@ -22,23 +26,59 @@ def spell_method(typed: str) -> str:
     return "".join([known.get(spelling(name), name), *rest])
 
 
-def problems_of(names_or_files: Sequence[str]) -> list[NamedProblem]:
-    """Problems by name, or by the file of a front; `all` are those with two objectives."""
+def problems_of(
+    names_or_files: Sequence[str],
+    objectives: tuple[str, ...] | None = None,
+    folder: Path | None = None,
+) -> list[NamedProblem]:
+    """Problems by name, or by the file of a front; `all` are those with two objectives.
+
+    With other objectives than its own a problem has another name, and a reference front by the
+    gradient: that of the folder, if it is there.
+    """
     problems = list[NamedProblem]()
     for name in names_or_files:
         if name == ALL:
-            problems += [problem for problem in PROBLEMS.values() if not problem.peak]
+            problems += [problem for problem in PROBLEMS.values() if len(problem.objectives) == 2]
         elif name in PROBLEMS or not Path(name).exists():
             problems.append(problem_of(name))
         else:
             problems.append(NamedProblem.of_front(Path(name).stem, Front.load(name)))
+    if objectives is not None:
+        problems = [_with_objectives(problem, objectives, folder) for problem in problems]
     names = [problem.name for problem in problems]
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"the problem {name} is given twice; give it once")
     for problem in problems:
-        problem.reference()  # refuses a third objective
+        problem.reference()  # refuses a single motion
     return problems
+
+
+def _with_objectives(
+    problem: NamedProblem, objectives: tuple[str, ...], folder: Path | None
+) -> NamedProblem:
+    """A problem with these objectives, and its reference front."""
+    if problem.objectives == objectives:
+        return problem
+    peaks = [name.replace("_", "-") for name in objectives[len(RESIDUAL_AND_ENERGY) :]]
+    renamed = replace(
+        problem,
+        name="-".join([problem.name, *(peaks or ["two-objectives"])]),
+        objectives=objectives,
+        peak_limits=(),
+        reference_front=None,
+    )
+    path = None if folder is None else _reference_path(folder, renamed)
+    if path is not None and path.exists():
+        front = Front.load(path)
+        if (front.task, front.objectives) == (renamed.task, objectives):
+            return replace(renamed, reference_front=front)
+    return replace(renamed, reference_front=renamed.front())  # found once, not in every worker
+
+
+def _reference_path(folder: Path, problem: NamedProblem) -> Path:
+    return folder / "references" / f"{problem.name}.json"
 
 
 def jobs_of(
@@ -48,12 +88,14 @@ def jobs_of(
     evaluations: int | None,
     seed: int = 0,
     settings: Mapping[str, Setting] | None = None,
+    noise: float = 0.0,
+    reevaluate: int = 1,
 ) -> tuple[list[Job], list[str]]:
     """The jobs, each method on each problem from one seed before the next; and what is left out.
 
     Searches have so many evaluations, or with None those of their presets. Settings are named with
-    their method, as ``nsga2.crossover``. Methods that know no limits are
-    left out where a problem has some.
+    their method, as ``nsga2.crossover``. Methods that know no limits are left out where a problem
+    has some. Noise is of the searches; words say which method has none.
     """
     stated = settings or {}
     for name in stated:
@@ -83,8 +125,16 @@ def jobs_of(
                 if problem.task.limits and preset is not None and not preset.keeps_limits:
                     left_out[f"{name} knows no limits: left out on {problem.name}"] = None
                     continue
-                budget = None if name in GRADIENT else evaluations
-                jobs.append(Job(problem, name, run_seed, budget, of_method[name]))
+                if name in GRADIENT:
+                    jobs.append(Job(problem, name, run_seed, None, of_method[name]))
+                    if noise:
+                        left_out[f"{name} has no noise: its gradient is that of the model"] = None
+                    continue
+                if noise and name.endswith(POLISH):
+                    left_out[f"{name} is polished by the model's gradient, without noise"] = None
+                of_search: Any = {"noise": noise, "reevaluate": reevaluate}
+                settings_of_it = of_method[name]
+                jobs.append(Job(problem, name, run_seed, evaluations, settings_of_it, **of_search))
     return jobs, list(left_out)
 
 
@@ -117,7 +167,7 @@ def write_references(problems: Sequence[NamedProblem], folder: Path) -> None:
     ValueError where the folder has runs that were measured against another.
     """
     for problem in problems:
-        path = folder / "references" / f"{problem.name}.json"
+        path = _reference_path(folder, problem)
         front = problem.reference().front
         if not path.exists():
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -15,6 +15,7 @@ from rich.console import Console
 from quietarm.metaheuristics.parallel import scheduler_address
 from quietarm.models import load_plant_file
 from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.ocp.solvers.solver import Solver
@@ -23,6 +24,8 @@ from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.quantities import (
     parse_energy,
     parse_error,
+    parse_noise,
+    parse_objectives,
     parse_share_of_work,
     parse_state,
     parse_workers,
@@ -173,6 +176,17 @@ SOLVER = (
 """What describes a solver: a command with these has `Given.read_solver`."""
 SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "
                        "change with each parameter of the plant.")  # fmt: skip
+OBJECTIVES = option("--objectives", type=Parsed("names", parse_objectives),
+                    default=",".join(RESIDUAL_AND_ENERGY), metavar="NAME,NAME,...",
+                    help="residual, energy and peaks beside them, as residual,energy,peak-torque; "
+                    "quietarm list objectives has them.")  # fmt: skip
+NOISE = (
+    option("--noise", type=Parsed("share", parse_noise), default="0", metavar="SHARE",
+           help="Noise of residual and energy, a standard deviation as 1%: a simulator with "
+           "errors, or a machine that is measured. The front at the end has the true values."),
+    option("--reevaluate", default=1, metavar="NUMBER",
+           help="Evaluations of a candidate that is kept, whose mean counts; each is counted."),
+)  # fmt: skip
 METHOD_SETTING = option("--setting", "settings", type=SETTING, multiple=True, metavar="NAME=VALUE",
                         help="A setting of the method, as crossover=0.7, or in a bench "
                         "nsga2.crossover=0.7; quietarm list METHOD has them all.")  # fmt: skip

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from quietarm.metaheuristics.objective.noise import noise_share
 from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
@@ -24,6 +25,7 @@ from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, has_no, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
+from quietarm.ocp.objectives import checked_objectives
 from quietarm.studies.reading.units import UNITS as OF_COLUMNS
 from quietarm.studies.reading.units import normal
 from quietarm.studies.sweep.grid import MOST_VALUES, OF_MOVES
@@ -295,6 +297,21 @@ def _of_column(quantity: str) -> Mapping[str, float]:
     if quantity not in OF_COLUMNS:
         raise ValueError(unknown("quantity", quantity, OF_COLUMNS))
     return OF_COLUMNS[quantity]
+
+
+def parse_objectives(text: str) -> tuple[str, ...]:
+    """Read names of objectives: ``residual,energy,peak-torque``."""
+    return checked_objectives(text.split(","))
+
+
+def parse_noise(text: str) -> float:
+    """Read a standard deviation of noise as a share: ``1%`` or ``0.01``."""
+    value = parse_quantity(text, "-", "a noise")
+    if value >= 1 and is_number(text):
+        raise ValueError(
+            f"{text} is {100 * value:g} %; was {text} % meant? give {text}%, or less than 1"
+        )
+    return noise_share(value)
 
 
 def parse_rate(text: str) -> float:

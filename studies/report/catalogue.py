@@ -11,11 +11,13 @@ from quietarm.metaheuristics.problems.card import card_of
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant
 from quietarm.ocp.checks import spelling, unknown
+from quietarm.ocp.limits import RESIDUAL
+from quietarm.ocp.objectives import ENERGY, OBJECTIVES
 from quietarm.studies.report.methods import GRADIENT_LABELS, label_of
-from quietarm.studies.report.words import error_words, window_words
+from quietarm.studies.report.words import error_words, objective_words, window_words
 
 Row = tuple[str, str]
-KINDS = ("plants", "problems", "methods")
+KINDS = ("plants", "problems", "methods", "objectives")
 
 
 def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, list[Row]]:
@@ -34,6 +36,9 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
     if name == "methods":
         rows = [(method, label_of(method)) for method in (*GRADIENT_LABELS, *PRESETS)]
         return "methods, with `quietarm list NAME` for the settings", rows
+    if name == "objectives":
+        rows = [(objective_words([objective]), _objective(objective)) for objective in OBJECTIVES]
+        return "objectives, for --objectives of search, front and bench", rows
     if name in plants:
         rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
         return f"{name}: --set NAME=VALUE, in SI or as 2Hz, 600mm, 200g", rows
@@ -55,6 +60,16 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
     return f"{name}: {preset.label}, {preset.source}", [size, *settings]
 
 
+def _objective(name: str) -> str:
+    """What an objective is."""
+    quantity = OBJECTIVES[name]
+    if quantity is not None:
+        return f"the largest {quantity.label} during the move [{quantity.unit}]"
+    unit = {RESIDUAL: "m", ENERGY: "J"}[name]
+    words = {RESIDUAL: "F1, the largest tip displacement after arrival", ENERGY: "F2, of the drive"}
+    return f"{words[name]} [{unit}], of every front"
+
+
 def _parameter(entry: Field[Any]) -> str:
     """A parameter's value, meaning and source."""
     words = "no default" if entry.default is MISSING else f"{entry.default:.5g}"
@@ -66,7 +81,7 @@ def _parameter(entry: Field[Any]) -> str:
 
 def _card(problem: NamedProblem) -> list[Row]:
     """What the reference front says of a problem of two objectives."""
-    if problem.peak:
+    if len(problem.objectives) > 2:  # a card is of a curve
         return []
     card = card_of(problem.fronts()[0])
     ranges = (f"{1e3 * begin:.3g} to {1e3 * end:.3g} mm" for begin, end in card.nonconvex)
@@ -86,7 +101,7 @@ def _problem(problem: NamedProblem) -> str:
     return ", ".join([
         f"{problem.profile.size} coefficients from {-problem.bound:g} to {problem.bound:g}",
         *([f"limits {limits}"] if limits else []),
-        *([f"third objective peak {problem.peak}"] if problem.peak else []),
+        *([f"objectives {objective_words(problem.objectives)}"] * (len(problem.objectives) > 2)),
         *([f"the largest residual with {errors}"] if errors else []),
         f"residuals {window_words(problem.task.residual_window)}",
     ])  # fmt: skip

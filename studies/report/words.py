@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import degrees, isfinite
 from typing import TYPE_CHECKING
 
@@ -135,6 +136,11 @@ def title_of_picture(task: PointToPoint) -> str:
     """The same, without the limits of several joints: a line would not hold them."""
     several = len(task.plant.joint_names) > 1
     return ", ".join([moved(task), move_of(task)]) if several else title_of(task)
+
+
+def objective_words(names: Sequence[str]) -> str:
+    """Objectives as they are typed: residual, energy, peak-torque."""
+    return ", ".join(names).replace("_", "-")
 
 
 def limit_words(task: PointToPoint) -> list[str]:

@@ -12,6 +12,8 @@ from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     METHOD_SETTING,
+    NOISE,
+    OBJECTIVES,
     PART,
     SCHEDULER,
     SEED,
@@ -49,7 +51,7 @@ def read_evaluations(text: str | int) -> int | None:
     option("--evaluations", default=10_000, type=Parsed("number", read_evaluations),
            help="Candidates of each run of a search; preset gives each method those of its own "
            "population and generations, and nsga2-paper and vepso the paper's."),
-    SEED, METHOD_SETTING,
+    OBJECTIVES, *NOISE, SEED, METHOD_SETTING,
     option("--import", "imported", multiple=True, type=INPUT,
            help="A run of another library, by a recorded function, or a folder of such runs; in a "
            "folder, runs on other problems are left out."),
@@ -61,8 +63,10 @@ def read_evaluations(text: str | int) -> int | None:
 def bench(given: Given) -> None:
     """Hold methods against the reference front of each PROBLEM, from several seeds.
 
-    PROBLEM is a name of `quietarm list`, or a front's file, whose move, profile and bound are the
-    problem and which is its reference front; `all` are the named problems with two objectives.
+    PROBLEM is a name of `quietarm list`, or a front's file, whose move, profile, bound and
+    objectives are the problem and which is its reference front; `all` are the named problems with
+    two objectives. With --objectives the gradient finds the reference fronts first. --noise is of
+    the searches: the gradient is that of the model, which has none.
     Every run is a file in the folder as soon as it is done; the same line again goes on after any
     stop.
 
@@ -71,6 +75,9 @@ def bench(given: Given) -> None:
       quietarm bench single-link-30deg-0.8s --output bench
       quietarm bench all --methods vepso,nsga2-paper --evaluations preset --output paper
       quietarm bench all --methods nsga2,gde3,epsilon,epsilon:ipopt --runs 15 --output bench
+      quietarm bench single-link-30deg-0.8s --methods nsga2,epsilon --noise 1% --output noisy
+      quietarm bench single-link-30deg-0.8s --methods nsga3,epsilon \\
+          --objectives residual,energy,peak-torque --output three
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics import LostJobsError, finished_jobs, run_jobs
@@ -91,8 +98,12 @@ def bench(given: Given) -> None:
 
     methods = list(map(spell_method, given.methods))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
-    problems = problems_of(given.problems)
-    jobs, left_out = jobs_of(problems, methods, given.runs, given.evaluations, given.seed, settings)
+    objectives = given.objectives if given.typed("objectives") else None
+    problems = problems_of(given.problems, objectives, given.output)
+    noise = given.pick("noise", "reevaluate")
+    jobs, left_out = jobs_of(
+        problems, methods, given.runs, given.evaluations, given.seed, settings, **noise
+    )
     candidates = sum(job.budget or 0 for job in jobs)
     refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     runs, unreadable = load_runs(given.imported)

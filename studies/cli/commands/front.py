@@ -1,17 +1,20 @@
-"""`quietarm front`: the trade-off of residual and energy by the gradient."""
+"""`quietarm front`: the trade-off of residual, energy and peaks by the gradient."""
 
 from __future__ import annotations
 
 from functools import partial
 
 from quietarm.metaheuristics import PRESETS
+from quietarm.metaheuristics.gradient import refuse_more_objectives
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.studies import figures
 from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
+    OBJECTIVES,
     ROBOT_PATH,
     SEED,
     SOLVER,
@@ -41,9 +44,10 @@ _SEARCHES = {
     method_option(_METHODS, _SEARCHES, "epsilon",
                   "Least energy at one residual limit after another (epsilon), or the least "
                   "weighted sum for one pair of weights after another."),
-    *profile_options(), BOUND,
+    *profile_options(), BOUND, OBJECTIVES,
     option("--points", default=50,
-           help="Points of the front; epsilon has 0.1, 1 and 5 mm besides."),
+           help="Points of the front, with peaks about so many; epsilon has 0.1, 1 and 5 mm "
+           "besides."),
     option("--weights", type=Parsed("weights", parse_weights), multiple=True, metavar="R:E",
            help="weighted: weights of residual and energy, scaled to the ends of the front, as "
            "1:3; in place of --points."),
@@ -55,7 +59,7 @@ _SEARCHES = {
     output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture"}),
 )  # fmt: skip
 def front(given: Given) -> None:
-    """Find the trade-off of residual and energy by the gradient.
+    """Find the trade-off of residual, energy and peaks by the gradient.
 
     \b
     Examples:
@@ -63,6 +67,8 @@ def front(given: Given) -> None:
           --output front.csv --output front.png
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method weighted
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --check
+      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 \\
+          --objectives residual,energy,peak-torque --output front.json --output front.png
       quietarm front --polish nsga2.json --output polished.json --output polished.png
     """  # noqa: D301  # \b is click's: do not rewrap
     if given.polish is not None:
@@ -73,17 +79,25 @@ def front(given: Given) -> None:
             raise ValueError(f"--weights is for weighted, not for {given.method}; leave it out")
         given.refuse(["points"], "is for weights that are chosen by the method")
         wanted = "weights"
+    refuse_more_objectives(given.method, given.objectives)
+    if given.check and given.objectives != RESIDUAL_AND_ENERGY:
+        raise ValueError(
+            "--check is for residual and energy; find the front again with the other --solver"
+        )
     task = given.read_task()
     profile = given.read_profile(task)
     solver = given.read_solver()
     total = len(given.weights) or given.points
+    options = given.pick(wanted, "bound", "starts", "seed")
+    if given.objectives != RESIDUAL_AND_ENERGY:
+        options |= given.pick("objectives")
     with counting(total, wanted) as report:
         solution = _METHODS[given.method](
             task,
             profile=profile,
             report=report,
             solver=solver,
-            **given.pick(wanted, "bound", "starts", "seed"),
+            **options,
         )
     # the ends come with weights, and epsilon has residuals of its own
     with_ends = total + 2 * bool(given.weights)

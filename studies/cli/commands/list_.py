@@ -1,4 +1,4 @@
-"""`quietarm list`: plants with their parameters, problems, methods with their settings."""
+"""`quietarm list`: plants with their parameters, problems, methods, objectives."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ from quietarm.studies.report.words import counted
 
 
 @command(
-    click.Argument(["names"], nargs=-1, metavar="[plants|problems|methods|NAME|ROBOT.yaml]..."),
+    click.Argument(["names"], nargs=-1, metavar="[plants|problems|methods|objectives|NAME|"
+                   "ROBOT.yaml]..."),
     *ENDS, *ROBOT_PATH,
     output_option({FOLDER: "the reference fronts of the problems"}),
 )  # fmt: skip
 def list_(given: Given) -> None:
-    """List plants, problems and methods; or one of them by its name.
+    """List plants, problems, methods and objectives; or one of them by its name.
 
     A plant comes with the value, unit, meaning and source of its parameters, a problem with its
     move and box, a method with its settings; a robot, by its file, with its masses, joints, springs

@@ -1,4 +1,4 @@
-"""`quietarm search`: the trade-off of residual and energy by a metaheuristic."""
+"""`quietarm search`: the trade-off of residual, energy and peaks by a metaheuristic."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
     METHOD_SETTING,
+    NOISE,
+    OBJECTIVES,
     ROBOT_PATH,
     SEED,
     TASK,
@@ -56,7 +58,7 @@ _BY_GRADIENT = {
     *profile_options(), BOUND,
     option("--population", type=int, help="Individuals, or particles in a swarm."),
     option("--generations", type=int, help="Generations."),
-    METHOD_SETTING, SEED,
+    OBJECTIVES, *NOISE, METHOD_SETTING, SEED,
     option("--runs", default=1,
            help="Seeds, from --seed on; each has a file, as front-seed0.json, once it is done."),
     option("--from", "start_front", type=INPUT,
@@ -65,7 +67,7 @@ _BY_GRADIENT = {
     output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"}),
 )  # fmt: skip
 def search(given: Given) -> None:
-    """Find the trade-off of residual and energy with a metaheuristic, without derivatives.
+    """Find the trade-off of residual, energy and peaks with a metaheuristic, without derivatives.
 
     \b
     Examples; nsga2-paper and vepso have the paper's settings:
@@ -75,6 +77,10 @@ def search(given: Given) -> None:
           --runs 5 --workers 2 --output front.json --output fronts.png
       quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
           --population 100 --generations 200 --setting crossover=0.7
+      quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --method nsga3 \\
+          --objectives residual,energy,peak-torque --output front.json --output front.png
+      quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --noise 1% \\
+          --reevaluate 5
     """  # noqa: D301  # \b is click's: do not rewrap
     several = given.runs > 1
     if several and STDOUT in given.output:
@@ -84,7 +90,8 @@ def search(given: Given) -> None:
 
     task = given.read_task()
     profile = given.read_profile(task)
-    options = given.pick("bound", "population", "generations") | {
+    chosen = ("bound", "population", "generations", "objectives", "noise", "reevaluate")
+    options = given.pick(*chosen) | {
         "profile": profile,
         "settings": read_settings(given.settings),
         "start": None if given.start_front is None else load_front(given.start_front),
@@ -100,7 +107,8 @@ def search(given: Given) -> None:
     preset = PRESETS[given.method]
     population = given.population or preset.population
     generations = given.generations or preset.generations
-    candidates = len(seeds) * preset.evaluations(population, generations)
+    of_run = preset.evaluations(population, generations, len(given.objectives))
+    candidates = len(seeds) * of_run * given.reevaluate
     refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     fronts = list[Front]()
     trouble = None

@@ -23,7 +23,7 @@ def test_the_seed_decides_about_the_front(name, task):
     assert_is_a_front(one)
     assert (one.record.method, len(one.history)) == (name, 4)
     # a population and a generation mean the same for all
-    wanted = preset_of(name).swarms * 8 * 4
+    wanted = (2 if preset_of(name).by_swarms else 1) * 8 * 4
     assert one.record.evaluations == wanted == preset_of(name).evaluations(8, 4)
     steps = [entry.evaluations for entry in one.history]
     assert steps == [wanted // 4 * generation for generation in range(1, 5)]

@@ -10,12 +10,13 @@ from quietarm.metaheuristics import MoveFunction, problem_of
 from quietarm.ocp import CycloidPolynomial, Front, evaluate_coefficients
 
 LIMITED = dataclasses.replace(SIXTH, torque_limit=0.16, acceleration_limit=60.0)
+THREE = ("residual", "energy", "peak_torque")
 RANDOM = np.random.default_rng(4).uniform(-0.2, 0.2, (7, 3))
 
 
 def test_it_says_what_goes_in_and_what_comes_out():
     function = MoveFunction(
-        LIMITED, CycloidPolynomial(3), bound=0.2, peaks=["torque", "speed"], steps=10
+        LIMITED, CycloidPolynomial(3), bound=0.2, objectives=[*THREE, "peak-speed"], steps=10
     )
     assert function.variables == ("a_1", "a_2", "a_3")
     assert function.lower.tolist() == [-0.2] * 3
@@ -31,7 +32,7 @@ def test_it_says_what_goes_in_and_what_comes_out():
 @pytest.mark.parametrize("task", [HALF, LIMITED])
 def test_the_figures_are_those_of_cvodes(task):
     # the README's table: energy within 1e-5 relative; a peak between samples is a little higher
-    function = MoveFunction(task, CycloidPolynomial(3), bound=0.2, peaks=["torque"])
+    function = MoveFunction(task, CycloidPolynomial(3), bound=0.2, objectives=THREE)
     objectives, violations = function(RANDOM)
     for row, found, broken in zip(RANDOM, objectives, violations, strict=True):
         exact = evaluate_coefficients(task, row)

@@ -1,0 +1,88 @@
+"""When does a metaheuristic win? The runs behind docs/results, and its page.
+
+    python benchmarks/crossover.py FOLDER [--workers N] [--part 1/4] [--axis centre]
+    python benchmarks/crossover.py FOLDER --plan
+    python benchmarks/crossover.py FOLDER --tune gde3 [--trials 100] [--budget 5000]
+    python benchmarks/crossover.py FOLDER --landscapes
+    python benchmarks/crossover.py FOLDER --page
+
+Goes on where it stopped, on a new machine, too: what docs/results/runs has is not run again. A run
+is a file of FOLDER; what the page needs of it becomes a row of docs/results/runs/AXIS.csv.gz after
+every batch. With --part the tables are those of --results, a folder of each part's own: copy
+docs/results there before, and bring the rows together with --merge OTHER after.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")
+
+RESULTS = Path(__file__).parents[1] / "docs" / "results"
+
+
+def parser() -> argparse.ArgumentParser:
+    """What may be typed."""
+    arguments = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    arguments.add_argument("folder", type=Path)
+    arguments.add_argument("--workers", type=int, default=1)
+    arguments.add_argument("--scheduler", help="address of a Dask scheduler, as tcp://host:8786")
+    arguments.add_argument("--part", default="1/1", help="which part of how many, as 2/4")
+    arguments.add_argument("--axis", nargs="*", default=[], help="only these")
+    arguments.add_argument("--rounds", type=int, default=15, help="only so many seeds")
+    arguments.add_argument("--results", type=Path, default=RESULTS, help="where rows are kept")
+    arguments.add_argument("--plan", action="store_true", help="count jobs and hours, run nothing")
+    arguments.add_argument(
+        "--tune", nargs="*", default=[], help="methods whose settings are sought"
+    )
+    arguments.add_argument("--trials", type=int, default=100)
+    arguments.add_argument("--budget", type=int, default=5_000, help="candidates of a trial")
+    arguments.add_argument("--landscapes", action="store_true", help="features of the problems")
+    arguments.add_argument("--page", action="store_true", help="write the page of what is there")
+    arguments.add_argument("--merge", type=Path, help="results whose rows are added to these")
+    return arguments
+
+
+def main(typed: list[str] | None = None) -> int:
+    """Run what is missing, or what else is asked for."""
+    given = parser().parse_args(typed)
+
+    from parts.crossover.problems import read_moves
+    from parts.crossover.run import describe, merge, part_of, print_plan, refuse_axes, run
+
+    try:
+        part = part_of(given.part)
+        refuse_axes(given.axis)
+    except ValueError as error:
+        parser().error(str(error))
+    if given.plan:
+        print_plan(given.results)
+    elif given.merge:
+        merge(given.results, given.merge)
+    elif given.landscapes:
+        describe(given.folder, given.results)
+    elif given.page:
+        from parts.crossover.page import write_page
+
+        write_page(given.results)
+    elif given.tune:
+        from parts.crossover.tuning import tune
+
+        moves = read_moves(given.results / "moves.csv")
+        table = given.results / "tuning.csv"
+        for method in given.tune:
+            tune(method, moves, given.budget, given.trials, given.folder, table)
+    else:
+        workers = given.scheduler or given.workers
+        return run(given.folder, given.results, workers, part, given.axis, given.rounds)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""The experiment of `crossover.py`: problems, plan, packed runs, measures, statistics, page."""

@@ -1,0 +1,163 @@
+"""Write docs/results from the files beside it, and the decision that docs/choose.md repeats."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import platform
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import pandas as pd
+
+from .pictures import write_pictures
+from .run import plan_of
+from .tables import write_table
+from .words import short_label, spelled_budget
+
+BEGIN = "<!-- what to take: benchmarks/crossover.py writes these lines -->"
+END = "<!-- end of what to take -->"
+DERIVATIVE = ("epsilon", "multistart", "memetic", "+polish")
+"""What takes derivatives, by name."""
+
+
+def write_page(results: Path, choose: Path | None = None) -> None:
+    """Plan, figures, pictures, page, and the lines of docs/choose.md."""
+    write_plan(results)
+    figures = recomputed(results)
+    (results / "figures.json").write_text(json.dumps(figures, indent=1) + "\n")
+    write_pictures(figures, results)
+    text = page_of(figures, results)
+    (results / "report.md").write_text(text)
+    choose = choose or results.parent / "choose.md"
+    if choose.exists():
+        choose.write_text(with_decision(choose.read_text(), decision_in(text)))
+
+
+def write_plan(results: Path) -> None:
+    """How many jobs every axis has in all, as a table."""
+    count = Counter(planned.axis for planned in plan_of(results))
+    rows = pd.DataFrame({"axis": list(count), "jobs": list(count.values())})
+    write_table(rows, results / "plan.csv", 17)
+
+
+def recomputed(results: Path) -> dict[str, Any]:
+    """All figures, by the script that is published beside them."""
+    return json.loads(json.dumps(recompute_module(results).compute(results)))
+
+
+def recompute_module(results: Path) -> Any:
+    """The published script as a module."""
+    source = Path(__file__).parents[3] / "docs" / "results" / "recompute.py"
+    spec = importlib.util.spec_from_file_location("recompute", source)
+    if spec is None or spec.loader is None:
+        raise FileNotFoundError(source)
+    module = importlib.util.module_from_spec(spec)
+    import sys
+
+    sys.modules["recompute"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def page_of(figures: Mapping[str, Any], results: Path) -> str:
+    """The page in Markdown."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters.update(
+        short=short_label, budget=spelled_budget, two=two_digits, p=p_value, times=times_of
+    )
+    moves = pd.read_csv(results / "moves.csv")
+    return environment.get_template("page.md").render(
+        figures=figures,
+        moves=moves,
+        plants=moves["plant"].unique().tolist(),
+        takes_derivatives=takes_derivatives,
+        nearest=nearest,
+        verdicts=verdicts,
+        row_of=row_of,
+        begin=BEGIN,
+        end=END,
+        machine=f"Python {platform.python_version()}",
+        megabytes=sum(path.stat().st_size for path in results.rglob("*") if path.is_file()) / 1e6,
+    )
+
+
+def takes_derivatives(method: str) -> bool:
+    """Whether a method of the tables takes derivatives, in whole or in part."""
+    return any(word in method for word in DERIVATIVE)
+
+
+def nearest(rows: Sequence[Mapping[str, Any]]) -> Mapping[str, Any]:
+    """The search without derivatives that misses least."""
+    return min(
+        (row for row in rows if not takes_derivatives(row["method"])),
+        key=lambda row: row["missing"],
+    )
+
+
+def row_of(rows: Sequence[Mapping[str, Any]], method: str) -> Mapping[str, Any] | None:
+    """A method's row."""
+    return next((row for row in rows if row["method"] == method), None)
+
+
+def verdicts(cells: Sequence[Mapping[str, Any]], way: str) -> dict[str, Any]:
+    """Of the cells of a map that were run: how many have a verdict, and for whom."""
+    rows = [(cell, cell["ways"][way]) for cell in cells if way in cell["ways"]]
+    sure = [(cell, row) for cell, row in rows if row["verdict"]]
+    return {
+        "run": len(rows),
+        "search": [cell for cell, row in sure if row["log_ratio"] < 0],
+        "gradient": [cell for cell, row in sure if row["log_ratio"] > 0],
+        "none": len(rows) - len(sure),
+    }
+
+
+def two_digits(value: float | None) -> str:
+    """Two significant digits, without an exponent; a dash where there is no number."""
+    if value is None or value != value:
+        return "-"
+    if value in (float("inf"), float("-inf")):
+        return "none"
+    magnitude = abs(value)
+    if magnitude >= 10:
+        return f"{value:.0f}"
+    return f"{value:.1f}" if magnitude >= 1 else f"{value:.2g}"
+
+
+def p_value(value: float | None) -> str:
+    """A p value as it is printed."""
+    if value is None or value != value:
+        return "-"
+    return f"{value:.2g}" if value >= 1e-4 else "< 0.0001"
+
+
+def times_of(log_ratio: float) -> str:
+    """A decimal logarithm as a factor."""
+    return two_digits(10**log_ratio)
+
+
+def decision_in(page: str) -> str:
+    """The lines between the marks."""
+    found = re.search(f"{re.escape(BEGIN)}\n(.*?){re.escape(END)}", page, re.DOTALL)
+    if found is None:
+        raise ValueError("the page has no decision between its marks")
+    return found.group(1)
+
+
+def with_decision(text: str, decision: str) -> str:
+    """A text with other lines between the marks."""
+    if BEGIN not in text:
+        raise ValueError("choose.md has no marks of what to take")
+    head, _, rest = text.partition(BEGIN)
+    _, _, tail = rest.partition(END)
+    return f"{head}{BEGIN}\n{decision}{END}{tail}"

@@ -1,0 +1,271 @@
+"""The pictures of the page, from the figures of recompute.py alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from .words import short_label, spelled_budget
+
+WAYS = (
+    ("points, to its end", "50 points each, the gradient to its end"),
+    ("points, same time", "50 points each, in the search's time"),
+    ("between, to its end", "with motions between, the gradient to its end"),
+    ("between, same time", "with motions between, in the search's time"),
+)
+MOST_DECADES = 1.5
+"""A ratio of this many decades has the darkest colour."""
+COLOURS = ("#1b1b1b", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7f7f00", "#56b4e9", "#8c510a")
+
+
+def write_pictures(figures: Mapping[str, Any], folder: Path) -> None:
+    """All pictures of a page."""
+    drawn = {
+        "map.png": map_figure(figures["map"]),
+        "coefficients.png": coefficients_figure(figures["map_rows"]),
+        "budget.png": budget_figure(figures["map_rows"]),
+        "attained.png": attained_figure(figures["attained"]),
+        "kinds.png": kinds_figure(figures["kinds"]),
+        "features.png": features_figure(figures["prediction"]),
+    }
+    if any(figures["noise"].values()):
+        drawn["noise.png"] = noise_figure(figures["noise"])
+    for name, figure in drawn.items():
+        if figure is not None:
+            figure.savefig(folder / name, dpi=110, metadata={"Software": ""})
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """With room for labels."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def map_figure(cells: Sequence[Mapping[str, Any]]) -> Figure:
+    """Coefficients by budget: blue where a search is nearer, red where the gradient is."""
+    figure = new_figure(11.0, 7.0)
+    axes = figure.subplots(2, 2, sharex=True, sharey=True)
+    terms = sorted({cell["terms"] for cell in cells})
+    budgets = sorted({cell["budget"] for cell in cells})
+    norm = TwoSlopeNorm(0.0, -MOST_DECADES, MOST_DECADES)
+    colours = matplotlib.colormaps["RdBu_r"]
+    for ax, (way, title) in zip(axes.flat, WAYS, strict=True):
+        for cell in cells:
+            row = cell["ways"].get(way)
+            corner = (terms.index(cell["terms"]), budgets.index(cell["budget"]))
+            if row is None:
+                ax.add_patch(Rectangle(corner, 1, 1, facecolor="#eeeeee", edgecolor="white"))
+                middle(ax, corner, "not run", "#777777")
+                continue
+            colour = colours(norm(np.clip(row["log_ratio"], -MOST_DECADES, MOST_DECADES)))
+            dark = abs(row["log_ratio"]) > 0.6 * MOST_DECADES and row["verdict"]
+            ax.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white"))
+            if not row["verdict"]:
+                ax.add_patch(
+                    Rectangle(
+                        corner, 1, 1, fill=False, hatch="////", edgecolor="#999999", linewidth=0
+                    )
+                )
+            text = f"{short_label(row['method'])}\n{row['missing']:.2g} %\ngradient\n"
+            theirs = (
+                "nothing yet" if row["no_control"] * 2 > row["moves"] else f"{row['control']:.2g} %"
+            )
+            middle(ax, corner, text + theirs, "white" if dark else "black", not row["verdict"])
+        ax.set(
+            xlim=(0, len(terms)),
+            ylim=(0, len(budgets)),
+            xticks=np.arange(len(terms)) + 0.5,
+            xticklabels=terms,
+            yticks=np.arange(len(budgets)) + 0.5,
+            yticklabels=[spelled_budget(budget) for budget in budgets],
+        )
+        ax.set_title(title, fontsize=10)
+        ax.tick_params(length=0)
+    for ax in axes[1]:
+        ax.set_xlabel("coefficients")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("candidates")
+    bar = figure.colorbar(
+        matplotlib.cm.ScalarMappable(norm, colours), ax=axes, shrink=0.6, ticks=[-1, 0, 1]
+    )
+    bar.ax.set_yticklabels(["search misses a tenth", "alike", "search misses tenfold"], fontsize=8)
+    return figure
+
+
+def middle(
+    ax: Axes, corner: tuple[float, float], text: str, colour: str, hatched: bool = False
+) -> None:
+    """Text in the middle of a cell, on white where that is hatched."""
+    box = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1}
+    ax.text(
+        corner[0] + 0.5, corner[1] + 0.5, text, ha="center", va="center", fontsize=7.5,
+        color=colour, bbox=box if hatched else None,
+    )  # fmt: skip
+
+
+def per_cents(ax: Axes, values: Sequence[float]) -> None:
+    """A logarithmic axis with plain numbers around values."""
+    ax.set_yscale("log")
+    ax.set_ylim(min(values) / 1.5, max(values) * 1.5)
+    wide = max(values) > 30 * min(values)
+    ax.yaxis.set_major_locator(LogLocator(subs=(1.0,) if wide else (1.0, 2.0, 5.0)))
+    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    ax.yaxis.set_minor_formatter(NullFormatter())
+
+
+def labelled_lines(ax: Axes, lines: Mapping[str, tuple[Any, Any]], *, log_y: bool = True) -> None:
+    """Lines, at most eight, each with its name at its right end, so that none covers another."""
+    ends = list[tuple[float, str, str, float]]()
+    for colour, (name, (x, y)) in zip(COLOURS, lines.items()):
+        ax.plot(x, y, color=colour, marker="o", markersize=3)
+        ends.append((float(y[-1]), name, colour, float(x[-1])))
+    low, high = ax.get_ylim()
+    transform = np.log10 if log_y else np.asarray
+    gap = 0.055 * (transform(high) - transform(low))
+    ends.sort()
+    places = list[float]()
+    for y, *_ in ends:
+        place = float(transform(max(y, low)))
+        places.append(max(place, places[-1] + gap) if places else place)
+    for place, (_, name, colour, x) in zip(places, ends, strict=True):
+        y = 10**place if log_y else place
+        ax.annotate(name, (x, y), xytext=(7, 0), textcoords="offset points", color=colour,
+                    fontsize=8, va="center", annotation_clip=False)  # fmt: skip
+    ax.grid(alpha=0.25)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def coefficients_figure(rows: Mapping[str, Any]) -> Figure:
+    """What methods lack over the number of coefficients, 10,000 candidates."""
+    return _lines_figure(rows["by_terms"], "coefficients")
+
+
+def budget_figure(rows: Mapping[str, Any]) -> Figure:
+    """What methods lack over the budget, six coefficients."""
+    return _lines_figure(rows["by_budget"], "candidates")
+
+
+def _lines_figure(lines: Mapping[str, Any], axis: str) -> Figure:
+    figure = new_figure(9.5, 3.6)
+    for ax, measure, title in zip(
+        figure.subplots(1, 2), ("points", "between"), ("50 points each", "with motions between"),
+        strict=True,
+    ):  # fmt: skip
+        series = {
+            short_label(name): (line["x"], line["y"]) for name, line in lines[measure].items()
+        }
+        ax.set_xscale("log")
+        per_cents(ax, [value for _, y in series.values() for value in y])
+        labelled_lines(ax, series)
+        ticks = sorted({x for xs, _ in series.values() for x in xs})
+        ax.set_xticks(
+            ticks, [spelled_budget(tick) if axis == "candidates" else str(tick) for tick in ticks]
+        )
+        ax.minorticks_off() if axis == "coefficients" else None
+        ax.set_xlabel(axis)
+        ax.set_ylabel("hypervolume missing [%]")
+        ax.set_title(title, fontsize=10)
+    return figure
+
+
+def attained_figure(attained: Mapping[str, Any]) -> Figure:
+    """Share of targets attained over processor time."""
+    figure = new_figure(7.5, 4.0)
+    ax = figure.subplots()
+    ax.set_xscale("log")
+    ax.set_ylim(0, 1.02)
+    shares = {
+        name: values for name, values in attained["shares"].items() if name in attained["drawn"]
+    }
+    series = {short_label(name): (attained["seconds"], values) for name, values in shares.items()}
+    labelled_lines(ax, series, log_y=False)
+    ax.set(xlabel="processor time [s]", ylabel="share of targets attained")
+    return figure
+
+
+def _over_groups(
+    groups: Mapping[str, Sequence[Mapping[str, Any]]], labels: Mapping[str, str], width: float
+) -> Figure:
+    """What methods lack in each group: lines of the gradient and of seven others at most."""
+    figure = new_figure(width, 3.6)
+    ax = figure.subplots()
+    names = sorted({row["method"] for rows in groups.values() for row in rows})[:7]
+    series: dict[str, tuple[list[int], list[float]]] = {}
+    for place, rows in enumerate(groups.values()):
+        values = {row["method"]: row["missing"] for row in rows}
+        values["epsilon"] = rows[0]["control"]
+        for name in ("epsilon", *names):
+            if name in values:
+                x, y = series.setdefault(short_label(name), ([], []))
+                x.append(place)
+                y.append(values[name])
+    lacks = [value for _, y in series.values() for value in y]
+    per_cents(ax, lacks)
+    labelled_lines(ax, series)
+    ax.set_xticks(range(len(groups)), [labels[name] for name in groups])
+    ax.set_ylabel("hypervolume missing [%]\nwith motions between")
+    return figure
+
+
+def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
+    """What methods lack by the kind of energy."""
+    words = {
+        "copper": "copper, smooth", "absolute": "|power|", "stages": "in stages",
+        "motor-map": "motor's map, jumps",
+    }  # fmt: skip
+    groups = {kind: kinds[kind] for kind in words if kinds[kind]}
+    return _over_groups(groups, words, 8.5) if groups else None
+
+
+def noise_figure(noise: Mapping[str, Any]) -> Figure:
+    """What searches lack where they see objectives with noise, and the gradient, which has none."""
+    rows = {
+        share: [{**row, "method": row["method"].partition(" ")[0]} for row in found]
+        for share, found in noise.items()
+        if found
+    }
+    return _over_groups(rows, {"0": "no noise", "0.01": "1 %", "0.05": "5 %"}, 7.0)
+
+
+def features_figure(prediction: Mapping[str, Any]) -> Figure | None:
+    """A feature of every problem beside the outcome."""
+    shown = prediction.get("between", {}).get("table")
+    if not shown:
+        return None
+    names = ("coefficients", "condition", "best_basin", "within_1mm")
+    labels = (
+        "coefficients",
+        "condition of the curvature",
+        "share of the best basin",
+        "share within 1 mm",
+    )
+    figure = new_figure(11.0, 3.2)
+    for ax, name, label in zip(figure.subplots(1, 4, sharey=True), names, labels, strict=True):
+        for colour, plant in zip(COLOURS, sorted({row["plant"] for row in shown})):
+            rows = [row for row in shown if row["plant"] == plant]
+            ax.plot([row[name] for row in rows], [row["outcome"] for row in rows], "o",
+                    markersize=4, color=colour, label=plant)  # fmt: skip
+        ax.axhline(0.0, color="grey", linewidth=0.8)
+        ax.set_xlabel(label)
+        if name in ("coefficients", "condition"):
+            ax.set_xscale("log")
+        if name == "coefficients":
+            ticks = sorted({row[name] for row in shown})
+            ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+            ax.minorticks_off()
+        if name == "within_1mm":
+            ax.set_xscale("symlog", linthresh=1e-4)
+        ax.grid(alpha=0.25)
+    figure.axes[0].set_ylabel(
+        "log10 of what the nearest search\nmisses over what the gradient does"
+    )
+    figure.axes[0].legend(fontsize=7)
+    return figure

@@ -1,0 +1,231 @@
+"""What is run, in which order: jobs of the bench, by axis and round.
+
+A round is a seed. Within a round the centre comes first, then coefficients and budget crossed, then
+the kinds of energy, then large budgets: any stop leaves every finished round balanced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from quietarm.metaheuristics import Job
+
+from .moves import Move
+from .problems import CENTRE_TERMS, Case
+
+AXES = ("centre", "crossing", "energy", "paper", "noise", "objectives", "large", "tuned", "million")
+TERMS = (2, 4, 6, 10, 16, 24)
+BUDGETS = (1_000, 10_000)
+LARGE, MILLION = 100_000, 1_000_000
+KINDS = ("copper", "stages", "motor-map")
+SEEDS = {1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7, 1_000_000: 3}
+"""Rounds of the full plan, by budget."""
+LADDER = (10, 50, 200)
+"""Points of the gradient's fronts: more of them take more time, as a search's candidates do."""
+CROSSED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic")
+"""Searches that are run in every cell of the map."""
+CENTRAL = ("cmopso", "smsemoa", "moead", "slsqp", "nsga2+polish", "gde3+polish", "random")
+"""Searches that are run at the centre beside these."""
+AT_LARGE = ("gde3", "moead-de", "nsga2", "memetic")
+OF_KINDS = ("nsga2", "gde3", "moead-de", "memetic", "slsqp")
+PEAKS = ("peak_torque", "peak_deflection")
+OF_OBJECTIVES = ("nsga2", "nsga3", "gde3", "moead-de")
+GRID = (50, 200)
+"""Points of the gradient's fronts of three and four objectives."""
+NOISES = (0.01, 0.05)
+NOISY = ("nsga2", "gde3", "moead-de", "mo-cma-es", "slsqp")
+PAPER = {"nsga2-paper": 100_000, "vepso": 40_000}
+"""The paper's methods with the paper's candidates."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A job of the plan.
+
+    Attributes
+    ----------
+    axis : str
+        The file that keeps its run.
+    round : int
+        Its seed, or the round in which a method without a seed is run.
+    case : Case
+        Its problem.
+    method : str
+        As of `Job`.
+    budget : int, optional
+        Candidates; a gradient method has none.
+    settings : tuple of (str, value)
+        As of `Job`.
+    noise : float
+        Share of residual and energy by which a search sees them wrong, as of `Job`.
+    """
+
+    axis: str
+    round: int
+    case: Case
+    method: str
+    budget: int | None = None
+    settings: tuple[tuple[str, Any], ...] = ()
+    noise: float = 0.0
+
+    @property
+    def key(self) -> tuple[str, str, str, str, int]:
+        """What tells its run from all others."""
+        return self.case.name, self.method, self.words, str(self.budget or ""), self.round
+
+    @property
+    def words(self) -> str:
+        """Its settings and noise, as a table states them."""
+        noise = (("noise", self.noise),) if self.noise else ()
+        return " ".join(f"{name}={value}" for name, value in (*self.settings, *noise))
+
+    def job(self, folder: Path) -> Job:
+        """The job of the bench."""
+        return Job(
+            self.case.problem(folder),
+            self.method,
+            seed=self.round,
+            budget=self.budget,
+            settings=dict(self.settings),
+            noise=self.noise,
+        )
+
+
+def first_of_plants(moves: Sequence[Move], count: int) -> list[Move]:
+    """The first moves of every plant."""
+    chosen = list[Move]()
+    taken = dict[str, int]()
+    for move in moves:
+        taken[move.plant.name] = taken.get(move.plant.name, 0) + 1
+        if taken[move.plant.name] <= count:
+            chosen.append(move)
+    return chosen
+
+
+Settings = Mapping[str, tuple[tuple[str, Any], ...]]
+
+
+def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]:
+    """The whole plan, one round after another, with the tuned settings that there are."""
+    tested = [move for move in moves if not move.tuning]
+    for seed in range(max(SEEDS.values())):
+        balanced = first_of_plants(tested, 2)
+        remaining = [move for move in tested if move not in balanced]
+        yield from centre(tested, seed)
+        yield from crossing(balanced, seed)
+        yield from kinds(balanced, seed)
+        yield from papers(balanced, seed)
+        yield from noise(balanced, seed)
+        yield from objectives(balanced, seed)
+        yield from tuned(tested, tuned_settings, seed)
+        yield from large(tested, seed)
+        yield from papers(remaining, seed)
+        yield from crossing(remaining, seed)
+        yield from million(tested, seed)
+
+
+def centre(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """All methods with six coefficients, 10,000 candidates, absolute power."""
+    if seed >= SEEDS[10_000]:
+        return
+    for move in tested:
+        case = Case(move)
+        for method in (*CROSSED, *CENTRAL):
+            yield Planned("centre", seed, case, method, 10_000)
+        if seed < 2:  # the second to see that it repeats itself
+            for points in LADDER:
+                yield Planned("centre", seed, case, "epsilon", None, (("points", points),))
+        yield Planned("centre", seed, case, "multistart", None, (("starts", 100),))
+    if seed == 1:  # they take long, and their fronts are those of SQP
+        for move in first_of_plants(tested, 1):
+            yield Planned("centre", seed, Case(move), "epsilon:ipopt", None, (("points", 20),))
+
+
+def crossing(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Coefficients by budget: first two moves of every plant, the others when all else is done."""
+    if not seed:
+        for terms in TERMS:
+            for move in moves if terms != CENTRE_TERMS else ():
+                for points in LADDER[:2]:
+                    yield Planned(
+                        "crossing", 0, Case(move, terms), "epsilon", None, (("points", points),)
+                    )
+    for budget in BUDGETS:
+        for terms in TERMS:
+            if (terms, budget) == (CENTRE_TERMS, 10_000) or seed >= SEEDS[budget]:
+                continue
+            for move in moves:
+                for method in CROSSED:
+                    yield Planned("crossing", seed, Case(move, terms), method, budget)
+
+
+def kinds(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Kinds of energy."""
+    for kind in KINDS:
+        for move in moves:
+            case = Case(move, kind=kind)
+            for method in OF_KINDS:
+                yield Planned("energy", seed, case, method, 10_000)
+            if not seed:
+                points = 20 if kind == "motor-map" else 50  # the solver takes long where it jumps
+                yield Planned("energy", 0, case, "epsilon", None, (("points", points),))
+
+
+def papers(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """The paper's methods with the paper's settings and candidates."""
+    for method, budget in PAPER.items():
+        if seed < SEEDS[budget]:
+            for move in moves:
+                yield Planned("paper", seed, Case(move), method, budget)
+
+
+def noise(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Residual and energy with noise, for what sees values alone."""
+    for share in NOISES:
+        for move in moves:
+            for method in NOISY:
+                yield Planned("noise", seed, Case(move), method, 10_000, noise=share)
+
+
+def objectives(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Three objectives, with the peak torque, and four, with the peak deflection as well."""
+    for count in (1, 2):
+        for move in moves:
+            case = Case(move, peaks=PEAKS[:count])
+            for method in OF_OBJECTIVES:
+                yield Planned("objectives", seed, case, method, 10_000)
+            for points in GRID if not seed else ():
+                yield Planned("objectives", 0, case, "epsilon", None, (("points", points),))
+
+
+def tuned(tested: Sequence[Move], settings: Settings, seed: int) -> Iterator[Planned]:
+    """Tuned settings at the centre."""
+    for method, values in settings.items():
+        for move in tested:
+            yield Planned("tuned", seed, Case(move), method, 10_000, values)
+
+
+def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Coefficients with the large budget, on one move of every plant."""
+    if seed >= SEEDS[LARGE]:
+        return
+    for terms in (6, 2, 16, 4, 10, 24):
+        for move in first_of_plants(tested, 1):
+            case = Case(move, terms)
+            if not seed and terms != CENTRE_TERMS:
+                yield Planned("large", 0, case, "epsilon", None, (("points", 200),))
+            for method in AT_LARGE:
+                yield Planned("large", seed, case, method, LARGE)
+
+
+def million(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """A million candidates on one move of three plants, six and sixteen coefficients."""
+    if seed >= SEEDS[MILLION]:
+        return
+    for terms in (CENTRE_TERMS, 16):
+        for move in first_of_plants(tested, 1)[:3]:
+            for method in ("gde3", "moead-de"):
+                yield Planned("million", seed, Case(move, terms), method, MILLION)

@@ -1,0 +1,135 @@
+"""The problems of the experiment, each with a front that fixes its scale."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import pandas as pd
+
+import quietarm as qa
+from quietarm.metaheuristics import NamedProblem
+from quietarm.ocp.front.points import LEVELS
+
+from .energies import energy_of
+from .moves import Move, draw, plants
+from .tables import write_table
+
+CENTRE_TERMS = 6
+CENTRE_KIND = "absolute"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A move with a number of coefficients and a kind of energy.
+
+    Attributes
+    ----------
+    move : Move
+        The random move.
+    terms : int
+        Coefficients of the path.
+    kind : str
+        Of the energy, as of `energy_of`.
+    peaks : tuple of str
+        Objectives beside residual and energy.
+    """
+
+    move: Move
+    terms: int = CENTRE_TERMS
+    kind: str = CENTRE_KIND
+    peaks: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Of move, coefficients and energy; files are called by it."""
+        more = f"-{2 + len(self.peaks)}-objectives" if self.peaks else ""
+        return f"{self.move.name}-{self.terms}-{self.kind}{more}"
+
+    @property
+    def task(self) -> qa.PointToPoint:
+        """The move with its energy."""
+        move = self.move
+        energy = energy_of(self.kind, move.plant, move.target, move.duration)
+        return qa.PointToPoint(move.plant, move.target, move.duration, energy=energy)
+
+    def problem(self, folder: Path) -> NamedProblem:
+        """With the front that fixes its scale, which a folder keeps."""
+        return _problem(self, folder)
+
+
+@cache
+def _problem(case: Case, folder: Path) -> NamedProblem:
+    path = folder / "scales" / f"{case.name}.json"
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        scale_front(case).save(path)
+    return NamedProblem.of_front(case.name, qa.Front.load(path))
+
+
+def scale_front(case: Case) -> qa.Front:
+    """A quick front of a case, by the gradient: its ends are 0 and 1 of the scale of all figures.
+
+    Where the energy jumps, the front of the absolute power is taken, with its energies by the map:
+    solvers take long there, and a scale needs no optimum.
+    """
+    profile = qa.CycloidPolynomial(case.terms)
+    if case.peaks:
+        return qa.epsilon_front(
+            case.task,
+            profile,
+            bound=case.move.bound,
+            points=50,
+            objectives=("residual", "energy", *case.peaks),
+        )
+    smooth = Case(case.move, case.terms) if case.kind == "motor-map" else case
+    front = qa.epsilon_front(
+        smooth.task, profile, bound=case.move.bound, points=40, at=LEVELS, starts=12
+    )
+    if smooth is case:
+        return front
+    return qa.Front.from_coefficients(
+        case.task,
+        front.coefficients,
+        method="the gradient's motions of least absolute power",
+        profile=profile,
+        bound=case.move.bound,
+    )
+
+
+def read_moves(path: Path) -> tuple[Move, ...]:
+    """The moves of a table, which is drawn and written where it is missing."""
+    if not path.exists():
+        write_moves(draw(), path)
+    plant_of = {plant.name: plant for plant in plants()}
+    table = pd.read_csv(path)
+    return tuple(
+        Move(
+            row.move,
+            plant_of[row.plant],
+            row.target,
+            row.duration,
+            row.bound,
+            row.use == "tune",
+            row.redrawn,
+        )
+        for row in table.itertuples()
+    )
+
+
+def write_moves(moves: tuple[Move, ...], path: Path) -> None:
+    """A table of moves."""
+    rows = [
+        {
+            "move": move.name,
+            "plant": move.plant.name,
+            "target": move.target,
+            "duration": move.duration,
+            "bound": move.bound,
+            "use": "tune" if move.tuning else "test",
+            "redrawn": move.redrawn,
+        }
+        for move in moves
+    ]
+    write_table(pd.DataFrame(rows), path, 17)

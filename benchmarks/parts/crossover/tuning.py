@@ -1,0 +1,132 @@
+"""Settings tuned on the twelve moves of tuning, by Optuna; every trial is a row of a table.
+
+A trial runs a search once on every move, each with another seed, and its score is the mean over
+moves of the decimal logarithm of the missing hypervolume [%], against the quick front that fixes a
+problem's scale. The first trial has the library's settings; a factor that it draws at random is 0.5
+there. The sampler (a tree of Parzen estimators, of one seed) is told the trials that the table has,
+and goes on.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import optuna
+import pandas as pd
+
+from quietarm.metaheuristics import PRESETS, search
+from quietarm.metaheuristics.score import objectives
+
+from .moves import Move
+from .packed import area
+from .problems import Case
+from .tables import read_trials, write_table
+
+FLOOR = 1e-2
+"""A missing hypervolume [%] that counts as least: a trial may come nearer than the quick front."""
+Space = dict[str, optuna.distributions.BaseDistribution]
+
+
+def space_of(method: str) -> Space:
+    """What is tuned, and its ranges: settings of `quietarm list METHOD`."""
+    share = optuna.distributions.FloatDistribution(0.0, 1.0)
+    eta = optuna.distributions.FloatDistribution(1.0, 60.0, log=True)
+    population = optuna.distributions.IntDistribution(12, 200, log=True)
+    names = {setting.name for setting in PRESETS[method].settings}
+    known: Space = {
+        "crossover": share,
+        "crossover_gene": share,
+        "crossover_eta": eta,
+        "mutation": share,
+        "mutation_gene": share,
+        "mutation_eta": eta,
+        "scale": optuna.distributions.FloatDistribution(0.1, 1.0),
+        "variant": optuna.distributions.CategoricalDistribution(
+            ("DE/rand/1/bin", "DE/best/1/bin", "DE/rand/2/bin")
+        ),
+        "velocity_limit": optuna.distributions.FloatDistribution(0.02, 1.0, log=True),
+        "elites": optuna.distributions.IntDistribution(2, 12),
+        "neighbour_mating": share,
+    }
+    return {"population": population, **{name: known[name] for name in known if name in names}}
+
+
+def defaults_of(method: str) -> dict[str, Any]:
+    """The library's settings of what is tuned; what has no value is in the middle of its range."""
+    preset = PRESETS[method]
+    values = {setting.name: setting.default for setting in preset.settings}
+    stated = {"population": preset.population}
+    for name in space_of(method):
+        value = values.get(name)
+        if value is not None:
+            stated[name] = value
+        elif name != "population":
+            stated[name] = 1 / 6 if name == "mutation_gene" else 0.5
+    return stated
+
+
+def score(
+    method: str, settings: dict[str, Any], cases: Sequence[Case], budget: int, folder: Path
+) -> float:
+    """Mean over moves of the logarithm of the missing hypervolume [%]."""
+    lacks = list[float]()
+    for seed, case in enumerate(cases):
+        problem = case.problem(folder)
+        scale = problem.reference()
+        front = search(
+            problem.task,
+            problem.profile,
+            algorithm=method,
+            bound=problem.bound,
+            population=settings["population"],
+            settings={name: value for name, value in settings.items() if name != "population"},
+            evaluations=budget,
+            seed=1000 + seed,
+        )
+        whole = area(scale.stations)
+        lacks.append(100 * (1 - area(scale.scaled(objectives(front))) / whole))
+    return float(np.mean(np.log10(np.maximum(lacks, FLOOR))))
+
+
+def tune(
+    method: str, moves: Sequence[Move], budget: int, trials: int, folder: Path, path: Path
+) -> None:
+    """Go on until so many trials of a method with a budget are in the table."""
+    cases = [Case(move) for move in moves if move.tuning]
+    table = read_trials(path)
+    rows = table[(table["method"] == method) & (table["budget"] == budget)]
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    sampler = optuna.samplers.TPESampler(seed=52 + len(rows))
+    study = optuna.create_study(sampler=sampler)
+    space = space_of(method)
+    for row in rows.itertuples():
+        study.add_trial(
+            optuna.trial.create_trial(
+                params=json.loads(row.settings), distributions=space, value=row.score
+            )
+        )
+    if not len(rows):
+        study.enqueue_trial(defaults_of(method))
+    for number in range(len(rows), trials):
+        trial = study.ask(space)
+        settings = dict(trial.params)
+        value = score(method, settings, cases, budget, folder)
+        study.tell(trial, value)
+        row = {
+            "method": method,
+            "budget": budget,
+            "trial": number,
+            "score": value,
+            "settings": json.dumps({name: _short(value) for name, value in settings.items()}),
+        }
+        table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
+        write_table(table, path, 6)
+        print(f"{method} {budget} trial {number}: {value:.4f}", flush=True)
+
+
+def _short(value: Any) -> Any:
+    return float(f"{value:.4g}") if isinstance(value, float) else value

@@ -1,0 +1,29 @@
+"""How methods and budgets are called on the page."""
+
+from __future__ import annotations
+
+from quietarm.metaheuristics import PRESETS
+
+LABELS = {
+    "epsilon": "gradient",
+    "epsilon points=50": "gradient, 50 points",
+    "epsilon points=10": "gradient, 10 points",
+    "epsilon points=200": "gradient, 200 points",
+    "multistart starts=100": "multistart",
+    "nsga2+polish": "NSGA-II, polished",
+    "gde3+polish": "GDE3, polished",
+}
+
+
+def short_label(method: str) -> str:
+    """A method as text and pictures call it, with its settings where it has some."""
+    if method in LABELS:
+        return LABELS[method]
+    name, _, settings = method.partition(" ")
+    label = LABELS.get(name) or (PRESETS[name].label if name in PRESETS else name)
+    return f"{label}, tuned" if "population=" in settings else f"{label} {settings}".strip()
+
+
+def spelled_budget(budget: float) -> str:
+    """A number of candidates with commas."""
+    return f"{budget:,.0f}"

@@ -1,0 +1,823 @@
+"""Every figure of report.md from the files beside it, with moocore, scipy and numpy, not quietarm.
+
+    python recompute.py            compares them with figures.json
+    python recompute.py --write    writes figures.json
+
+report.md is filled in from figures.json. What the files hold is in report.md, under "Files".
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import gzip
+import json
+import re
+import sys
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import moocore
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import spearmanr, wilcoxon
+
+Array = NDArray[np.float64]
+CORNER = 1.1
+"""Areas are dominated up to here, where a problem's scale goes from 0 to 1."""
+UNIT = 1e-4
+"""Motions between are kept in whole multiples of this share of the scale."""
+LEVEL = 0.05
+CENTRE = 6
+CONTROL = "epsilon"
+CONTROL_SETTINGS = "points=50"
+KINDS = ("absolute", "copper", "stages", "motor-map")
+PAPER = ("nsga2-paper", "vepso")
+TARGETS = (50, 20, 10, 5, 2, 1)
+"""Missing hypervolumes [%] that a run may attain."""
+DRAWN = (
+    "epsilon points=10", "epsilon points=50", "multistart starts=100", "memetic", "gde3",
+    "moead-de", "nsga2", "slsqp",
+)  # fmt: skip
+"""What the picture of attained targets shows: eight lines at most."""
+MEASURES = ("points", "between")
+"""Of 50 points; of the 100 best with motions between them."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A row of a table of runs, with its points in the scale of its problem."""
+
+    axis: str
+    problem: str
+    method: str
+    settings: str
+    budget: int
+    seed: int
+    seconds: float
+    energy: float
+    points: Array
+    between: Array
+    marks: Array
+
+    @property
+    def label(self) -> str:
+        """The method with its settings."""
+        return f"{self.method} {self.settings}".strip()
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What a problem's name says."""
+
+    name: str
+
+    @cached_property
+    def move(self) -> str:
+        """Its plant and number."""
+        return re.split(r"(?<=-m\d)-", self.name)[0]
+
+    @cached_property
+    def plant(self) -> str:
+        """Of its move."""
+        return self.move.rpartition("-")[0]
+
+    @cached_property
+    def terms(self) -> int:
+        """Coefficients."""
+        return int(self.name.removeprefix(f"{self.move}-").partition("-")[0])
+
+    @cached_property
+    def kind(self) -> str:
+        """Of its energy."""
+        return self.name.removeprefix(f"{self.move}-").partition("-")[2]
+
+
+def numbers(text: str) -> Array:
+    """The numbers of a cell."""
+    return np.array(text.split(), dtype=float)
+
+
+def read_runs(folder: Path) -> list[Run]:
+    """All runs of the tables of a folder."""
+    with (folder / "scales.csv").open(newline="") as file:
+        scales = {row["problem"]: row for row in csv.DictReader(file)}
+    runs = list[Run]()
+    for path in sorted((folder / "runs").glob("*.csv.gz")):
+        with gzip.open(path, "rt", newline="") as file:
+            for row in csv.DictReader(file):
+                runs.append(run_of(row, scales[row["problem"]], path.name.partition(".")[0]))
+    return runs
+
+
+def run_of(row: Mapping[str, str], scale: Mapping[str, str], axis: str) -> Run:
+    """A row as a run."""
+    least = np.append(
+        np.array([scale["least_residual_m"], scale["least_energy_J"]], dtype=float),
+        numbers(scale.get("least_peaks") or ""),
+    )
+    largest = np.append(
+        np.array([scale["largest_residual_m"], scale["largest_energy_J"]], dtype=float),
+        numbers(scale.get("largest_peaks") or ""),
+    )
+    points = np.column_stack([numbers(row["residuals_mm"]), numbers(row["energies_mJ"])]) * 1e-3
+    for peak in filter(None, (row.get("peaks") or "").split(";")):
+        points = np.column_stack([points, numbers(peak)])
+    between = np.column_stack([numbers(row["between_residuals"]), numbers(row["between_energies"])])
+    marks = [numbers(row[name]) for name in ("marks_evaluations", "marks_seconds", "marks_area")]
+    return Run(
+        axis,
+        row["problem"],
+        row["method"],
+        row["settings"],
+        int(row["budget"] or 0),
+        int(row["seed"]),
+        float(row["seconds"]),
+        float(row["energy_1mm_J"]),
+        (points - least) / (largest - least),
+        between * UNIT,
+        np.column_stack(marks),
+    )
+
+
+def area(points: Array) -> float:
+    """What points of a scale dominate, up to the corner."""
+    if not len(points):
+        return 0.0
+    return float(moocore.hypervolume(points, ref=[CORNER] * points.shape[1]))
+
+
+def best_known(points: Array) -> float:
+    """The area that counts as a hundred per cent: of all points of all runs of a problem.
+
+    Of two objectives it is the area above the straight lines through the best of them, the last
+    extended to the corner, so that it does not grow with the number of points on one curve.
+    """
+    inside = points[(points < CORNER).all(axis=1)]
+    best = moocore.filter_dominated(inside)
+    if points.shape[1] > 2:
+        return area(best)
+    x, y = best[np.argsort(best[:, 0])].T
+    x = np.append(x, CORNER)
+    y = np.append(y, y[-1])
+    return float(np.sum(np.diff(x) * (CORNER - (y[1:] + y[:-1]) / 2)))
+
+
+class Results:
+    """Runs, and what each lacks of the best that is known of its problem."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.runs = read_runs(folder)
+        found = defaultdict[str, list[Array]](list)
+        energies = defaultdict[str, list[float]](list)
+        for run in self.runs:
+            found[run.problem].append(run.points)
+            if len(run.between):  # of two objectives alone
+                found[run.problem].append(run.between)
+            energies[run.problem].append(run.energy)
+        self.whole = {name: best_known(np.vstack(points)) for name, points in found.items()}
+        self.least_energy = {
+            name: min(filter(np.isfinite, values), default=np.inf)
+            for name, values in energies.items()
+        }
+        self._table = defaultdict[tuple[str, int, str], list[Run]](list)
+        for run in self.runs:
+            self._table[run.label, run.budget, run.problem].append(run)
+
+    def missing(self, run: Run, measure: str) -> float:
+        """Per cent of the best known area."""
+        points = run.points if measure == "points" else run.between
+        return 100 * (1 - area(points) / self.whole[run.problem])
+
+    def excess(self, run: Run, measure: str = "") -> float:
+        """Energy within 1 mm over the least known [%]; infinite where there is no such motion."""
+        if not np.isfinite(run.energy):
+            return np.inf
+        return 100 * (run.energy / self.least_energy[run.problem] - 1)
+
+    def of(self, label: str, budget: int, problem: str) -> list[Run]:
+        """The runs of a method with its settings on a problem."""
+        return self._table.get((label, budget, problem), [])
+
+    def median(
+        self, runs: Iterable[Run], value: Callable[[Run, str], float], measure: str
+    ) -> float:
+        """Over seeds; a method that repeats itself counts once as it is."""
+        return float(np.median([value(run, measure) for run in runs]))
+
+    def control(self, problem: str) -> list[Run]:
+        """The gradient's front of 50 points; of 20 where the energy jumps, of 200 with peaks."""
+        several = Problem(problem).kind.endswith("objectives")
+        settings = "points=200" if several else CONTROL_SETTINGS
+        runs = self.of(f"{CONTROL} {settings}", 0, problem)
+        return runs or self.of(f"{CONTROL} points=20", 0, problem)
+
+    def control_within(self, problem: str, seconds: float) -> list[Run]:
+        """The gradient's front of most points that took no longer; none where all took longer."""
+        rungs = [
+            run
+            for run in self.runs_of_problem[problem]
+            if run.method == CONTROL and run.seed == 0 and run.seconds <= seconds
+        ]
+        return sorted(rungs, key=lambda run: run.seconds)[-1:]
+
+    @cached_property
+    def runs_of_problem(self) -> Mapping[str, list[Run]]:
+        """All runs by problem."""
+        table = defaultdict[str, list[Run]](list)
+        for run in self.runs:
+            table[run.problem].append(run)
+        return table
+
+    def problems(self, terms: int = CENTRE, kind: str = "absolute") -> list[str]:
+        """Names of the problems that have runs."""
+        return [
+            name
+            for name in sorted(self.whole)
+            if (Problem(name).terms, Problem(name).kind) == (terms, kind)
+        ]
+
+
+def holm(values: Sequence[float]) -> list[float]:
+    """Adjusted p values; those that are missing stay so and do not count."""
+    order = sorted((p, i) for i, p in enumerate(values) if np.isfinite(p))
+    adjusted = [float("nan")] * len(values)
+    largest = 0.0
+    for rank, (p, i) in enumerate(order):
+        largest = max(largest, min(1.0, p * (len(order) - rank)))
+        adjusted[i] = largest
+    return adjusted
+
+
+def least_p(moves: int) -> float:
+    """The smallest p that signed ranks of so many moves can give."""
+    return 2 / 2**moves
+
+
+def signed_ranks(differences: Array) -> float:
+    """Wilcoxon's p, two-sided; NaN where nothing differs."""
+    differences = differences[differences != 0]
+    return float(wilcoxon(differences).pvalue) if len(differences) else float("nan")
+
+
+def interval(values: Array, plants: Sequence[str], draws: int = 2000) -> tuple[float, float]:
+    """Of the median over moves, 95 %: plants are drawn again, then moves of each."""
+    random = np.random.default_rng(52)
+    blocks = [values[np.array(plants) == plant] for plant in sorted(set(plants))]
+    medians = np.empty(draws)
+    for draw in range(draws):
+        chosen = random.integers(len(blocks), size=len(blocks))
+        medians[draw] = np.median(
+            np.concatenate([random.choice(blocks[i], len(blocks[i])) for i in chosen])
+        )
+    low, high = np.quantile(medians, [0.025, 0.975])
+    return float(low), float(high)
+
+
+def compare(
+    results: Results,
+    problems: Sequence[str],
+    searches: Sequence[tuple[str, int]],
+    measure: str,
+    *,
+    same_time: bool = False,
+) -> list[dict[str, Any]]:
+    """Every search against the gradient over the problems that all of them have.
+
+    Its row has medians over problems, Wilcoxon's p and Holm's, in how many plants and moves the
+    search is nearer, and the decimal logarithm of the ratio of what both lack, with its interval.
+    """
+    problems = [
+        name
+        for name in problems
+        if results.control(name) and all(results.of(*search, name) for search in searches)
+    ]
+    plants = [Problem(name).plant for name in problems]
+    rows = list[dict[str, Any]]()
+    for label, budget in searches:
+        runs = [results.of(label, budget, name) for name in problems]
+        lacks = np.array([results.median(r, results.missing, measure) for r in runs])
+        excess = np.array([results.median(r, results.excess, measure) for r in runs])
+        seconds = np.array([np.median([run.seconds for run in r]) for r in runs])
+        controls = [
+            results.control_within(name, spent) if same_time else results.control(name)
+            for name, spent in zip(problems, seconds, strict=True)
+        ]
+        theirs = np.array(
+            [
+                results.median(control, results.missing, measure) if control else 100.0
+                for control in controls
+            ]
+        )
+        row: dict[str, Any] = {
+            "method": label,
+            "budget": budget,
+            "moves": len(problems),
+            "seeds": min((len(r) for r in runs), default=0),
+            "missing": _median(lacks),
+            "control": _median(theirs),
+            "control_seconds": _median(
+                np.array([control[0].seconds for control in controls if control])
+            ),
+            "no_control": sum(not control for control in controls),
+            "excess": _median(excess),
+            "seconds": _median(seconds),
+        }
+        if problems:
+            floor = 1e-3  # per cent: what the files' digits can tell
+            ratios = np.log10(np.maximum(lacks, floor) / np.maximum(theirs, floor))
+            by_plant = [np.median(ratios[np.array(plants) == plant]) for plant in set(plants)]
+            row |= {
+                "p": signed_ranks(lacks - theirs),
+                "log_ratio": float(np.median(ratios)),
+                "interval": interval(ratios, plants),
+                "moves_nearer": int((lacks < theirs).sum()),
+                "plants_nearer": int(sum(value < 0 for value in by_plant)),
+                "plants": len(by_plant),
+            }
+        rows.append(row)
+    for row, p in zip(rows, holm([row.get("p", np.nan) for row in rows]), strict=True):
+        row["holm"] = p
+    return rows
+
+
+def _median(values: Array) -> float:
+    return float(np.median(values)) if len(values) else float("nan")
+
+
+def searches_in(results: Results, axes: Sequence[str], budget: int, problems: Sequence[str],
+                least: int) -> list[tuple[str, int]]:  # fmt: skip
+    """Searches with runs of a budget on at least so many of the problems."""
+    names = set(problems)
+    count = defaultdict[str, set[str]](set)
+    for run in results.runs:
+        if run.axis in axes and run.budget == budget and run.problem in names:
+            count[run.label].add(run.problem)
+    return sorted((label, budget) for label, found in count.items() if len(found) >= least)
+
+
+def takes_derivatives(label: str) -> bool:
+    """Whether a search takes steps of the gradient."""
+    return "memetic" in label or "+polish" in label
+
+
+def cell(results: Results, terms: int, budget: int, crossed: Sequence[str]) -> dict[str, Any]:
+    """A cell of the map: the nearest search against the gradient, four ways."""
+    problems = results.problems(terms)
+    have = searches_in(results, ("centre", "crossing", "large"), budget, problems, 5)
+    searches = [
+        (label, spent) for label, spent in have if label in crossed and not takes_derivatives(label)
+    ]
+    ways = {}
+    for measure in MEASURES:
+        for same_time in (False, True):
+            rows = compare(results, problems, searches, measure, same_time=same_time)
+            rows = [row for row in rows if row["moves"]]
+            if not rows:
+                continue
+            best = min(rows, key=lambda row: row["missing"])
+            enough = least_p(best["moves"]) * len(rows) <= LEVEL
+            best["verdict"] = bool(enough and best["holm"] <= LEVEL)
+            best["least_p_holm"] = least_p(best["moves"]) * len(rows)
+            ways[f"{measure}, {'same time' if same_time else 'to its end'}"] = best
+    return {"terms": terms, "budget": budget, "ways": ways}
+
+
+def lines_over(
+    results: Results,
+    places: Sequence[tuple[float, int, int]],
+    methods: Sequence[str],
+) -> dict[str, dict[str, dict[str, list[float]]]]:
+    """Medians over moves of what methods and the gradient lack, by measure and method.
+
+    A place is where a line goes on, and its coefficients and budget. All places of a line have the
+    moves that every one of them has.
+    """
+    control = f"{CONTROL} {CONTROL_SETTINGS}"
+    fewest = 5
+
+    def runs_at(method: str, terms: int, budget: int) -> dict[str, list[Run]]:
+        spent = 0 if method == control else budget
+        found = {name: results.of(method, spent, name) for name in results.problems(terms)}
+        return {Problem(name).move: runs for name, runs in found.items() if runs}
+
+    table = {
+        (method, x): runs_at(method, terms, budget)
+        for method in (control, *methods)
+        for x, terms, budget in places
+    }
+    table = {place: by_move for place, by_move in table.items() if len(by_move) >= fewest}
+    moves = set.intersection(*map(set, table.values())) if table else set()
+    lines: dict[str, dict[str, dict[str, list[float]]]] = {}
+    for measure in MEASURES:
+        lines[measure] = {}
+        for (method, x), by_move in table.items():
+            lacks = [results.median(by_move[move], results.missing, measure) for move in moves]
+            line = lines[measure].setdefault(method, {"x": [], "y": []})
+            line["x"].append(x)
+            line["y"].append(max(float(np.median(lacks)), 1e-3))
+    return lines
+
+
+def tuned(results: Results) -> dict[str, Any]:
+    """Default and tuned settings on the moves of testing, and what was tried."""
+    path = results.folder / "tuning.csv"
+    if not path.exists():
+        return {}
+    with path.open(newline="") as file:
+        trials = list(csv.DictReader(file))
+    found: dict[str, Any] = {}
+    for method in sorted({trial["method"] for trial in trials}):
+        mine = [trial for trial in trials if trial["method"] == method]
+        best = min(mine, key=lambda trial: float(trial["score"]))
+        runs = [run for run in results.runs if run.axis == "tuned" and run.method == method]
+        problems = sorted(
+            {run.problem for run in runs if results.of(method, run.budget, run.problem)}
+        )
+        labels = sorted({run.label for run in runs})
+        found[method] = {
+            "trials": len(mine),
+            "budget": int(best["budget"]),
+            "default_score": 10 ** float(mine[0]["score"]),
+            "best_score": 10 ** float(best["score"]),
+            "settings": json.loads(best["settings"]),
+        }
+        if labels and len(problems) > 1:
+            label = labels[-1]
+            for measure in MEASURES:
+                pairs = np.array(
+                    [
+                        [
+                            results.median(
+                                results.of(name, 10_000, problem), results.missing, measure
+                            )
+                            for name in (method, label)
+                        ]
+                        for problem in problems
+                        if results.of(label, 10_000, problem)
+                    ]
+                )
+                found[method][measure] = {
+                    "moves": len(pairs),
+                    "default": float(np.median(pairs[:, 0])),
+                    "tuned": float(np.median(pairs[:, 1])),
+                    "nearer": int((pairs[:, 1] < pairs[:, 0]).sum()),
+                    "p": signed_ranks(pairs[:, 1] - pairs[:, 0]),
+                }
+    return found
+
+
+def attained(results: Results, problems: Sequence[str], labels: Sequence[tuple[str, int]],
+             times: Array) -> dict[str, list[float]]:  # fmt: skip
+    """Share of targets on all problems that a method has attained, over processor time."""
+    shares = {}
+    for label, budget in labels:
+        reached = np.zeros(len(times))
+        total = 0
+        for name in problems:
+            for run in results.of(label, budget, name):
+                lacks = 100 * (1 - run.marks[:, 2] / results.whole[name])
+                for target in TARGETS:
+                    at = run.marks[lacks <= target, 1]
+                    total += 1
+                    if len(at):
+                        reached += times >= at[0]
+        if total:
+            shares[label] = [float(share) for share in reached / total]
+    return shares
+
+
+def repeats(results: Results) -> dict[str, int]:
+    """On how many problems the gradient's fronts of two seeds are the same."""
+    same = 0
+    several = 0
+    for problem in results.problems():
+        runs = results.control(problem)
+        if len(runs) < 2:
+            continue
+        several += 1
+        first = runs[0].points
+        same += all(
+            len(first) == len(run.points) and np.abs(first - run.points).max() < 1e-5
+            for run in runs[1:]
+        )
+    return {"problems": several, "same": same}
+
+
+FEATURES = ("coefficients", "best_basin", "condition", "walk_residual", "walk_energy",
+            "within_1mm", "within_5mm", "opposed")  # fmt: skip
+
+
+def prediction(
+    results: Results, budget: int, crossed: Sequence[str], measure: str
+) -> dict[str, Any]:
+    """What tells the winner: features of problems, tested on plants that were left out.
+
+    The outcome of a problem is the logarithm of what the nearest search lacks over what the
+    gradient lacks. A rule is a feature and a threshold that tell the sign best; it is made from
+    four plants and tried on the fifth, beside the rule that always says what is more frequent.
+    """
+    path = results.folder / "landscapes.csv"
+    with path.open(newline="") as file:
+        rows = {row["problem"]: row for row in csv.DictReader(file)}
+    data = list[tuple[str, list[float], float]]()
+    shown = list[dict[str, Any]]()
+    for name, row in sorted(rows.items()):
+        searches = [label for label in crossed if not takes_derivatives(label)]
+        runs = [r for label in searches if (r := results.of(label, budget, name))]
+        if len(runs) < len(searches) or not results.control(name):
+            continue
+        lacks = min(results.median(r, results.missing, measure) for r in runs)
+        theirs = results.median(results.control(name), results.missing, measure)
+        values = [float(row[feature] or "nan") for feature in FEATURES]
+        outcome = float(np.log10(max(lacks, 1e-3) / max(theirs, 1e-3)))
+        data.append((Problem(name).plant, values, outcome))
+        shown.append(
+            {"problem": name, "plant": Problem(name).plant, "outcome": outcome}
+            | dict(zip(FEATURES, values, strict=True))
+        )
+    if not data:
+        return {"problems": 0}
+    plants = np.array([plant for plant, _, _ in data])
+    table = np.array([values for _, values, _ in data])
+    outcome = np.array([value for _, _, value in data])
+    correlations = {}
+    for i, feature in enumerate(FEATURES):
+        known = np.isfinite(table[:, i])
+        varied = known.sum() > 2 and np.ptp(table[known, i]) > 0
+        correlations[feature] = (
+            float(spearmanr(table[known, i], outcome[known]).statistic) if varied else None
+        )
+    right = 0
+    usual = 0
+    rules = list[str]()
+    for plant in sorted(set(plants)):
+        out = plants == plant
+        rule = stump(table[~out], outcome[~out] < 0)
+        rules.append(FEATURES[rule[0]])
+        guess = (table[out, rule[0]] > rule[1]) == rule[2]
+        right += int((guess == (outcome[out] < 0)).sum())
+        usual += int(((outcome[out] < 0) == ((outcome[~out] < 0).mean() > 0.5)).sum())
+    return {
+        **how_far(table, outcome, plants),
+        "problems": len(data),
+        "search_nearer": int((outcome < 0).sum()),
+        "correlations": correlations,
+        "right": right,
+        "usual": usual,
+        "rules": rules,
+        "holds": right > usual,
+        "one_basin": sum(row["best_basin"] >= 1.0 for row in shown),
+        "strongest": strongest_of(correlations),
+        "least_basin": min(row["best_basin"] for row in shown),
+        "table": shown,
+    }
+
+
+def strongest_of(correlations: Mapping[str, float | None]) -> list[str | float]:
+    """The two features with the largest rank correlations, each with its own."""
+    known = [(name, value) for name, value in correlations.items() if value is not None]
+    known.sort(key=lambda pair: -abs(pair[1]))
+    return [entry for pair in known[:2] for entry in pair]
+
+
+def how_far(table: Array, outcome: Array, plants: NDArray[np.str_]) -> dict[str, Any]:
+    """How well one feature predicts the outcome itself on plants that were left out.
+
+    The feature with the largest rank correlation on the other plants, a straight line over its
+    logarithm; explained is the share of the squared distances from the others' mean.
+    """
+    logarithms = np.log10(np.maximum(table, 1e-4))
+    missed = 0.0
+    total = 0.0
+    chosen = list[str]()
+    for plant in sorted(set(plants)):
+        out = plants == plant
+        strength = [
+            abs(spearmanr(column[~out], outcome[~out]).statistic)
+            if np.isfinite(column).all() and np.ptp(column[~out]) > 0
+            else 0.0
+            for column in logarithms.T
+        ]
+        best = int(np.argmax(strength))
+        chosen.append(FEATURES[best])
+        slope, level = np.polyfit(logarithms[~out, best], outcome[~out], 1)
+        missed += float(np.sum((outcome[out] - level - slope * logarithms[out, best]) ** 2))
+        total += float(np.sum((outcome[out] - outcome[~out].mean()) ** 2))
+    return {"explained": 1 - missed / total, "by": chosen}
+
+
+def stump(table: Array, wins: NDArray[np.bool_]) -> tuple[int, float, bool]:
+    """The feature, threshold and side that tell wins most often."""
+    best = (-1, 0, 0.0, True)
+    for i in range(table.shape[1]):
+        values = np.unique(table[np.isfinite(table[:, i]), i])
+        for threshold in (values[1:] + values[:-1]) / 2:
+            for side in (True, False):
+                score = int((((table[:, i] > threshold) == side) == wins).sum())
+                if score > best[0]:
+                    best = (score, i, float(threshold), side)
+    return best[1:]
+
+
+def both(
+    results: Results, problems: Sequence[str], searches: Sequence[tuple[str, int]]
+) -> dict[str, list[dict[str, Any]]]:
+    """Comparisons by either measure."""
+    return {measure: compare(results, problems, searches, measure) for measure in MEASURES}
+
+
+def efforts(results: Results) -> dict[str, Any]:
+    """Runs, hours and seeds by axis, beside the runs of the plan."""
+    with (results.folder / "plan.csv").open(newline="") as file:
+        plan = {row["axis"]: int(row["jobs"]) for row in csv.DictReader(file)}
+    runs = defaultdict[str, list[Run]](list)
+    for run in results.runs:
+        runs[run.axis].append(run)
+    return {
+        "plan": plan,
+        "runs": {axis: len(found) for axis, found in runs.items()},
+        "hours": {axis: sum(run.seconds for run in found) / 3600 for axis, found in runs.items()},
+        "seeds": {axis: 1 + max(run.seed for run in found) for axis, found in runs.items()},
+        "problems": len(results.whole),
+    }
+
+
+def gradient_labels(results: Results, problems: Sequence[str]) -> list[tuple[str, int]]:
+    """Methods without a budget that were run on most of the problems."""
+    labels = {run.label for run in results.runs if run.axis == "centre" and not run.budget}
+    return [
+        (label, 0)
+        for label in sorted(labels)
+        if 2 * sum(bool(results.of(label, 0, name)) for name in problems) > len(problems)
+    ]
+
+
+def map_figures(results: Results, crossed: Sequence[str]) -> dict[str, Any]:
+    """Coefficients and budget crossed, and the lines through the centre."""
+    every_terms = (2, 4, 6, 10, 16, 24)
+    budgets = (1_000, 10_000, 100_000)
+    over_terms = [(terms, terms, 10_000) for terms in every_terms]
+    over_budgets = [(budget, CENTRE, budget) for budget in budgets]
+    return {
+        "crossed": list(crossed),
+        "map": [
+            cell(results, terms, budget, crossed) for budget in budgets for terms in every_terms
+        ],
+        "map_rows": {
+            "by_terms": lines_over(results, over_terms, crossed),
+            "by_budget": lines_over(results, over_budgets, crossed),
+        },
+    }
+
+
+def energy_by_terms(
+    results: Results, crossed: Sequence[str], every_terms: Sequence[int] = (2, 4, 6, 10, 16, 24)
+) -> dict[str, list[dict[str, float]]]:
+    """Energy within 1 mm above that of the gradient with most coefficients, medians over moves [%].
+
+    After 10,000 candidates; a run without such a motion counts as infinite.
+    """
+    most = {Problem(name).move: name for name in results.problems(every_terms[-1])}
+    least = {move: runs[0].energy for move, name in most.items() if (runs := results.control(name))}
+    control = f"{CONTROL} {CONTROL_SETTINGS}"
+    figures = {}
+    for method in (control, *crossed):
+        budget = 0 if method == control else 10_000
+        figures[method] = []
+        for terms in every_terms:
+            ratios = [
+                np.median([run.energy if np.isfinite(run.energy) else np.inf for run in runs])
+                / least[Problem(name).move]
+                for name in results.problems(terms)
+                if Problem(name).move in least and (runs := results.of(method, budget, name))
+            ]
+            above = 100 * (float(np.median(ratios)) - 1) if ratios else float("nan")
+            figures[method].append({"terms": terms, "above": above, "moves": len(ratios)})
+    return figures
+
+
+def kind_figures(results: Results) -> dict[str, Any]:
+    """By the kind of energy, on the moves that all kinds have, with motions between."""
+    figures = {}
+    moves = {Problem(name).move for name in results.whole if Problem(name).kind in KINDS[1:]}
+    for kind in KINDS:
+        problems = [name for name in results.problems(kind=kind) if Problem(name).move in moves]
+        methods = {run.label for run in results.runs if run.axis == "energy" and run.budget}
+        searches = [
+            (label, 10_000)
+            for label in sorted(methods)
+            if sum(bool(results.of(label, 10_000, name)) for name in problems) >= 8
+        ]
+        figures[kind] = compare(results, problems, searches, "between") if problems else []
+    return figures
+
+
+def noise_figures(results: Results) -> dict[str, Any]:
+    """By the share of the noise, on the moves that were run with noise, with motions between."""
+    noisy = [run for run in results.runs if run.axis == "noise"]
+    problems = sorted({run.problem for run in noisy})
+    methods = sorted({run.method for run in noisy})
+    figures = {"0": compare(results, problems, [(name, 10_000) for name in methods], "between")}
+    for share in ("0.01", "0.05"):
+        labels = sorted({run.label for run in noisy if run.label.endswith(f"noise={share}")})
+        searches = [(label, 10_000) for label in labels]
+        figures[share] = compare(results, problems, searches, "between") if searches else []
+    return figures if noisy else {}
+
+
+def objective_figures(results: Results) -> dict[str, Any]:
+    """With three and four objectives, by points alone; and what the gradient's grid takes."""
+    rows = {}
+    seconds = {}
+    for count in ("3", "4"):
+        problems = results.problems(kind=f"absolute-{count}-objectives")
+        searches = searches_in(results, ("objectives",), 10_000, problems, 5)
+        grid = [("epsilon points=50", 0)] if searches else []
+        rows[count] = compare(results, problems, [*searches, *grid], "points") if searches else []
+        times = [run.seconds for name in problems for run in results.control(name)]
+        seconds[count] = _median(np.array(times))
+    return {"objectives": rows, "grid_seconds": seconds}
+
+
+def compute(folder: Path) -> dict[str, Any]:
+    """All figures."""
+    results = Results(folder)
+    centre = results.problems()
+    found = searches_in(results, ("crossing",), 10_000, results.problems(4), 5)
+    crossed = [label for label, _ in found]
+    central = searches_in(results, ("centre",), 10_000, centre, 10)
+    methods = [*central, *gradient_labels(results, centre)]
+    times = np.logspace(-2, 1.5, 36)
+    paper = [
+        pair
+        for budget in (40_000, 100_000)
+        for pair in searches_in(results, ("paper",), budget, centre, 5)
+    ]
+    landscapes = (folder / "landscapes.csv").exists()
+    return {
+        **efforts(results),
+        **map_figures(results, crossed),
+        **objective_figures(results),
+        "energy_by_terms": energy_by_terms(results, crossed),
+        "repeats": repeats(results),
+        "centre": both(results, centre, methods),
+        "paper": both(results, centre, paper),
+        "large": both(results, centre, searches_in(results, ("large",), 100_000, centre, 3)),
+        "tuned": tuned(results),
+        "kinds": kind_figures(results),
+        "noise": noise_figures(results),
+        "attained": {
+            "seconds": times.tolist(),
+            "shares": attained(results, centre, methods, times),
+            "drawn": DRAWN,
+        },
+        "prediction": {
+            measure: prediction(results, 10_000, crossed, measure)
+            for measure in MEASURES
+            if landscapes
+        },
+    }
+
+
+def differences(first: Any, second: Any, place: str = "") -> list[str]:
+    """Where two documents differ by more than a relative 1e-6."""
+    if isinstance(first, dict) and isinstance(second, dict) and first.keys() == second.keys():
+        return [
+            line for key in first for line in differences(first[key], second[key], f"{place}/{key}")
+        ]
+    if isinstance(first, list) and isinstance(second, list) and len(first) == len(second):
+        pairs = enumerate(zip(first, second, strict=True))
+        return [line for i, pair in pairs for line in differences(*pair, f"{place}/{i}")]
+    if isinstance(first, float) and isinstance(second, float):
+        same = np.isclose(first, second, rtol=1e-6, atol=1e-12, equal_nan=True)
+    else:
+        same = first == second
+    return [] if same else [f"{place}: {first} and {second}"]
+
+
+def main() -> int:
+    """Compare, or write."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("--write", action="store_true")
+    given = parser.parse_args()
+    folder = Path(__file__).parent
+    figures = json.loads(json.dumps(compute(folder)))
+    path = folder / "figures.json"
+    if given.write:
+        path.write_text(json.dumps(figures, indent=1) + "\n")
+        return 0
+    lines = differences(json.loads(path.read_text()), figures)
+    print("\n".join(lines[:20]) if lines else "all figures are those of figures.json")
+    return int(bool(lines))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,71 @@
+"""Noise of residual and energy, as of a simulator with errors or of a machine that is measured."""
+
+from __future__ import annotations
+
+from math import log, sqrt
+from numbers import Real
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quietarm.ocp.checks import whole
+
+Array = NDArray[np.float64]
+NOISY = 2
+"""Objectives that have noise, the first ones: residual and energy."""
+
+
+def noise_share(value: object) -> float:
+    """A standard deviation of noise, as a share of the value; ValueError unless from 0 to 1."""
+    is_number = isinstance(value, Real) and not isinstance(value, bool)
+    if not (is_number and 0 <= value <= 1):  # nor NaN
+        raise ValueError(
+            f"noise is {value!r}, not a share from 0 to 1; give the standard deviation as a share, "
+            "as 0.01 or 1%"
+        )
+    return float(value)
+
+
+def times_evaluated(value: object, noise: float) -> int:
+    """How often a candidate that is kept is evaluated; ValueError where nothing would differ."""
+    times = whole("reevaluate", value, 1, 1000)
+    if times > 1 and not noise:
+        raise ValueError(
+            f"reevaluate is {times}, and without noise every evaluation gives the same; give a "
+            "noise, or leave it out"
+        )
+    return times
+
+
+class Noise:
+    """Factors that every evaluation of residual and energy gets, independent of each other.
+
+    They are lognormal: positive, of mean 1, so that an average of many evaluations is the true
+    value. With `sigma` the standard deviation of the logarithm, that of a factor is
+    sqrt(exp(sigma^2) - 1), which is the share.
+
+    Parameters
+    ----------
+    share : float
+        Standard deviation as a share of the value.
+    seed : int
+        Seed of its random numbers, which are others than those of a search of the same seed.
+    """
+
+    def __init__(self, share: float, seed: int) -> None:
+        self.share = noise_share(share)
+        stream = 52
+        self._random = np.random.default_rng([seed, stream])
+        self._sigma = sqrt(log(1 + self.share**2))
+
+    def of(self, objectives: Array, failed: NDArray[np.bool_]) -> Array:
+        """Objectives, shape (n, objectives), of one evaluation each; what has failed stays."""
+        if not self.share:
+            return objectives
+        shape = len(objectives), NOISY
+        normal = self._random.standard_normal(shape)
+        factors = np.exp(self._sigma * normal - self._sigma**2 / 2)
+        factors[failed] = 1.0
+        noisy = objectives.copy()
+        noisy[:, :NOISY] *= factors
+        return noisy

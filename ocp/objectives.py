@@ -1,0 +1,113 @@
+"""What a front weighs against each other: residual, energy, and peaks on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from quietarm.models import Plant
+from quietarm.ocp.checks import several, unknown
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, quantities_of
+from quietarm.ocp.task import PointToPoint
+
+ENERGY = "energy"
+RESIDUAL_AND_ENERGY = (RESIDUAL, ENERGY)
+"""The objectives of every front; those of the paper."""
+
+
+class Objective(NamedTuple):
+    """An objective in the units of a plant.
+
+    Attributes
+    ----------
+    name, unit, label : str
+        Its name, SI unit, and what it is in words.
+    column : str
+        Its column in tables.
+    quantity : str
+        The quantity whose peak it is; empty of residual and energy.
+    """
+
+    name: str
+    unit: str
+    label: str
+    column: str
+    quantity: str = ""
+
+
+OBJECTIVES: Mapping[str, Quantity | None] = {
+    RESIDUAL: None,
+    ENERGY: None,
+    **{quantity.peak: quantity for quantity in QUANTITIES.values()},
+}
+"""Every objective by its name, in the order in which fronts have them; of a peak its quantity."""
+
+
+def checked_objectives(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of objectives in the order of `OBJECTIVES`.
+
+    A name may be spelt with hyphens, as on the command line. ValueError where one is not known,
+    stands twice, or residual or energy is not among them.
+    """
+    spelt = [_spelt(name) for name in several("objectives", names, "names, as ['residual', ...]")]
+    for name in spelt:
+        if name not in OBJECTIVES:
+            offered = [known.replace("_", "-") for known in OBJECTIVES]
+            raise ValueError(unknown("objective", name.replace("_", "-"), offered))
+        if spelt.count(name) > 1:
+            raise ValueError(f"the objective {name.replace('_', '-')} is given twice; give it once")
+    for name in RESIDUAL_AND_ENERGY:
+        if name not in spelt:
+            words = ", ".join(spelt).replace("_", "-") or "none"
+            raise ValueError(
+                f"objectives are {words}, without the {name}; give residual, energy and those "
+                "beside them"
+            )
+    return tuple(name for name in OBJECTIVES if name in spelt)
+
+
+def _spelt(name: Any) -> str:
+    return name.strip().lower().replace("-", "_") if isinstance(name, str) else repr(name)
+
+
+def peak_quantities(objectives: Sequence[str]) -> tuple[str, ...]:
+    """The quantities whose peaks are objectives, in their order."""
+    quantities = (OBJECTIVES[name] for name in objectives)
+    return tuple(quantity.name for quantity in quantities if quantity is not None)
+
+
+def objectives_on(plant: Plant, names: Sequence[str]) -> tuple[Objective, ...]:
+    """Objectives in a plant's units."""
+    tip_unit = plant.tip_unit
+    known = {
+        RESIDUAL: Objective(RESIDUAL, tip_unit, "residual F1", f"residual_{tip_unit}"),
+        ENERGY: Objective(ENERGY, "J", "energy F2", "energy_J"),
+    }
+    for name, quantity in quantities_of(plant.joint, tip_unit).items():
+        letters = quantity.unit.replace(" ", "").replace("/", "_per_").replace("^", "")
+        known[quantity.peak] = Objective(
+            quantity.peak,
+            quantity.unit,
+            f"peak {quantity.label}",
+            f"{quantity.peak}_{letters}",
+            name,
+        )
+    return tuple(known[name] for name in names)
+
+
+def with_peaks_measured(task: PointToPoint, quantities: Sequence[str]) -> PointToPoint:
+    """A task whose simulation has the peaks of these quantities as well.
+
+    A quantity without a limit gets 1 of its unit: it is to be measured, and not to be kept.
+    ValueError where a limit of the task differs by direction, so that it is of no single peak.
+    """
+    limited = {limit.name: limit for limit in task.limits}
+    for name in quantities:
+        if name in limited and not limited[name].is_peak:
+            raise ValueError(
+                f"{limited[name]} differs by direction, so that its peak is no objective; give "
+                "one number"
+            )
+    limits: Any = {QUANTITIES[name].limit: 1.0 for name in quantities if name not in limited}
+    return replace(task, **limits) if limits else task

@@ -1,0 +1,207 @@
+"""benchmarks/crossover.py: its draw, its plan, what it packs, and the figures of its page."""
+
+import itertools
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import moocore
+import numpy as np
+import pandas as pd
+import pytest
+
+ROOT = Path(__file__).parents[2]
+RESULTS = ROOT / "docs" / "results"
+sys.path.insert(0, str(ROOT / "benchmarks"))
+
+import crossover  # noqa: E402
+from parts.crossover import moves, packed, page, plan, run  # noqa: E402
+from parts.crossover.plan import Planned  # noqa: E402
+from parts.crossover.problems import Case, read_moves  # noqa: E402
+from parts.crossover.subset import best_subset  # noqa: E402
+
+recompute = page.recompute_module(RESULTS)
+DRAWN = read_moves(RESULTS / "moves.csv")
+
+
+def test_the_published_moves_are_those_of_the_seed():
+    """The first of every plant that was not drawn again, without solving anything."""
+    random = np.random.default_rng(moves.SEED)
+    random.choice(5, 2, replace=False)
+    first = next(moves.candidates(moves.plants()[0], random))
+    assert (DRAWN[0].target, DRAWN[0].duration) == pytest.approx(first)
+
+
+def test_the_moves_are_thirty_of_five_plants_twelve_of_them_to_tune():
+    table = pd.read_csv(RESULTS / "moves.csv")
+    assert table["plant"].value_counts().tolist() == [6] * 5
+    assert table["use"].value_counts().to_dict() == {"test": 18, "tune": 12}
+    for move in DRAWN:
+        share = move.duration / moves.first_period(move.plant)
+        assert 0.9 <= share <= 2.0
+
+
+@pytest.mark.slow
+def test_all_moves_are_drawn_again():
+    for move, published in zip(moves.draw(), DRAWN, strict=True):
+        assert (move.name, move.tuning, move.redrawn) == (
+            published.name,
+            published.tuning,
+            published.redrawn,
+        )
+        assert (move.target, move.duration) == pytest.approx((published.target, published.duration))
+
+
+@pytest.fixture(scope="module")
+def planned():
+    return list(plan.rounds(DRAWN, {}))
+
+
+def test_the_plan_has_every_run_once_and_ends_a_round_before_the_next(planned):
+    keys = [entry.key for entry in planned]
+    assert len(set(keys)) == len(keys)
+    rounds = [entry.round for entry in planned]
+    assert rounds == sorted(rounds)
+
+
+def test_the_plan_tests_on_no_move_of_tuning(planned):
+    assert not any(entry.case.move.tuning for entry in planned)
+    assert len({entry.case.move.name for entry in planned}) == 18
+
+
+def test_the_crossing_has_every_cell_on_every_move(planned):
+    cells = {
+        (entry.case.terms, entry.budget, entry.case.move.name)
+        for entry in planned
+        if entry.axis in ("centre", "crossing") and entry.budget
+    }
+    assert len(cells) == 6 * 2 * 18
+
+
+def test_a_new_machine_goes_on_from_the_tables_alone(tmp_path, planned):
+    shutil.copy(RESULTS / "moves.csv", tmp_path)
+    done = planned[:3]
+    rows = [
+        {**dict.fromkeys(packed.COLUMNS, ""), **dict(zip(packed.KEY, map(str, entry.key)))}
+        for entry in done
+    ]
+    packed.write_rows(rows, run.runs_path(tmp_path, done[0].axis))
+    assert run.missing_of(tmp_path) == planned[3:]
+
+
+def test_parts_share_the_plan(tmp_path, planned):
+    shutil.copy(RESULTS / "moves.csv", tmp_path)
+    parts = [run.missing_of(tmp_path, (number, 3)) for number in (1, 2, 3)]
+    assert sorted(entry.key for part in parts for entry in part) == sorted(
+        entry.key for entry in planned
+    )
+
+
+@pytest.mark.parametrize(
+    ("typed", "words"),
+    [
+        (["--part", "5/4"], "part is '5/4'; give a number of how many, as 2/4"),
+        (["--axis", "budgets"], "no axis is called 'budgets'; give one of centre,"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_line(tmp_path, capsys, typed, words):
+    with pytest.raises(SystemExit) as stopped:
+        crossover.main([str(tmp_path / "runs"), *typed])
+    assert stopped.value.code == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "runs").exists()
+
+
+def test_tables_come_back_as_they_were_with_the_same_bytes(tmp_path):
+    row = {name: f"{number} 0.5" for number, name in enumerate(packed.COLUMNS)} | {"seed": "3"}
+    other = row | {"seed": "1"}
+    path = tmp_path / "runs" / "centre.csv.gz"
+    packed.write_rows([row, other], path)
+    before = path.read_bytes()
+    assert packed.read_rows(path) == [other, row]
+    packed.write_rows(packed.read_rows(path), path)
+    assert path.read_bytes() == before
+
+
+def test_the_subset_of_two_objectives_is_the_best_of_all():
+    points = np.random.default_rng(5).uniform(0.0, 1.2, (40, 2))
+    inside = points[(points < 1.1).all(axis=1)]
+    front = moocore.filter_dominated(inside)
+    assert len(front) > 4
+
+    def area(rows):
+        return moocore.hypervolume(rows, ref=[1.1, 1.1])
+
+    chosen = points[best_subset(points, 3)]
+    assert len(chosen) == 3
+    # every choice of three
+    best = max(area(np.array(rows)) for rows in itertools.combinations(front, 3))
+    assert area(chosen) == pytest.approx(best)
+
+
+def test_the_subset_of_three_objectives_has_so_many_that_none_dominates():
+    points = np.random.default_rng(6).uniform(0.0, 1.0, (60, 3))
+    chosen = points[best_subset(points, 5)]
+    assert len(chosen) == 5
+    assert moocore.is_nondominated(chosen).all()
+
+
+def test_the_best_known_area_is_above_straight_lines():
+    # a line from (0, 1) to (1, 0): half the unit square, and a margin of 0.1 on two sides
+    points = np.column_stack([np.linspace(0, 1, 11), np.linspace(1, 0, 11)])
+    assert recompute.best_known(points) == pytest.approx(0.5 + 0.1 + 0.1 * 1.1)
+
+
+def test_p_values_are_those_of_holm_and_of_all_signs_alike():
+    assert recompute.holm([0.01, np.nan, 0.04, 0.03]) == pytest.approx(
+        [0.03, np.nan, 0.06, 0.06], nan_ok=True
+    )
+    # all ten differences of one sign: 2 of 2^10 arrangements
+    assert recompute.signed_ranks(np.arange(1.0, 11.0)) == pytest.approx(recompute.least_p(10))
+
+
+def test_a_name_says_plant_move_coefficients_and_energy():
+    problem = recompute.Problem("arm-on-flexible-link-m3-16-motor-map")
+    assert (problem.plant, problem.move) == ("arm-on-flexible-link", "arm-on-flexible-link-m3")
+    assert (problem.terms, problem.kind) == (16, "motor-map")
+
+
+def test_choose_repeats_what_the_page_says():
+    text = (ROOT / "docs" / "choose.md").read_text()
+    assert page.decision_in(text) == page.decision_in((RESULTS / "report.md").read_text())
+    assert page.decision_in(text).count("\n") == 5
+
+
+def test_the_page_is_that_of_its_figures():
+    figures = json.loads((RESULTS / "figures.json").read_text())
+    size = sum(path.stat().st_size for path in RESULTS.rglob("*") if path.is_file())
+    assert size < 15e6
+    text = (RESULTS / "report.md").read_text()
+    assert f"A map from {sum(figures['runs'].values())} runs" in text
+
+
+@pytest.mark.slow
+def test_the_figures_are_those_of_the_files():
+    figures = json.loads(json.dumps(recompute.compute(RESULTS)))
+    published = json.loads((RESULTS / "figures.json").read_text())
+    assert recompute.differences(published, figures) == []
+
+
+@pytest.mark.slow
+def test_a_small_crossing_from_end_to_end(tmp_path, capsys):
+    """Two methods on one move; the second call runs nothing, with the files of the runs gone."""
+    move = next(move for move in DRAWN if not move.tuning)
+    jobs = [
+        Planned("centre", 0, Case(move, 2), "gde3", 300),
+        Planned("centre", 0, Case(move, 2), "epsilon", None, (("points", 10),)),
+    ]
+    results = tmp_path / "results"
+    assert run.run_jobs_of(jobs, tmp_path / "runs", results) == 0
+    shutil.rmtree(tmp_path / "runs")
+    assert run.done_keys(results) == {job.key for job in jobs}
+    by_search, by_gradient = sorted(recompute.read_runs(results), key=lambda run: -run.budget)
+    assert by_search.marks[-1, 0] == 300
+    assert recompute.area(by_gradient.points) > recompute.area(by_search.points) > 0
+    # with motions between, ten points are a curve
+    assert recompute.area(by_gradient.between) > recompute.area(by_gradient.points)
