@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import log, sqrt
 from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.ocp import Front
 from quietarm.ocp.checks import whole
 
 Array = NDArray[np.float64]
@@ -35,6 +37,40 @@ def times_evaluated(value: object, noise: float) -> int:
             "noise, or leave it out"
         )
     return times
+
+
+@dataclass(frozen=True)
+class Belief:
+    """What a search with noise believed of the candidates that it took for the best.
+
+    Attributes
+    ----------
+    points : int
+        How many there are: none dominates another by what it believed.
+    residual, energy : float
+        Medians of the believed values, less 1, as shares of the true ones.
+    dominated : int
+        How many others of them dominate in truth.
+    """
+
+    points: int
+    residual: float
+    energy: float
+    dominated: int
+
+
+def belief_of(front: Front) -> Belief | None:
+    """What a search believed, and what is true; None of a front without noise or candidates."""
+    import moocore  # not at the top: it takes long to load
+
+    entries = front.entries
+    if not entries.believed:
+        return None
+    best = np.flatnonzero(moocore.is_nondominated(entries.beliefs()))
+    true = entries.objectives()[best]
+    shares = np.median(entries.beliefs()[best] / true, axis=0) - 1
+    remaining = int(moocore.is_nondominated(true, keep_weakly=True).sum())
+    return Belief(len(best), float(shares[0]), float(shares[1]), len(best) - remaining)
 
 
 class Noise:
