@@ -17,7 +17,7 @@ from quietarm.ocp.cost import COST, Cost
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
-from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
 from quietarm.ocp.solvers.solver import NAME, OPTIONS, Solver
@@ -113,15 +113,6 @@ def gradient_front(
         **options_of_problem,
     )
     return _with_cost(front.restated(method=method), before, began)
-
-
-def refuse_more_objectives(name: str, objectives: Sequence[str]) -> None:
-    """Refuse a method of the gradient that is for residual and energy alone."""
-    if name != "epsilon" and tuple(objectives) != RESIDUAL_AND_ENERGY:
-        raise ValueError(
-            f"{name} is for residual and energy alone, not for {len(objectives)} objectives; give "
-            "epsilon, or a search"
-        )
 
 
 def split_solver_options(

@@ -16,7 +16,6 @@ from quietarm.metaheuristics.gradient import (
     GRADIENT,
     gradient_front,
     polished,
-    refuse_more_objectives,
     solver_with,
     split_solver_options,
 )
@@ -28,6 +27,7 @@ from quietarm.metaheuristics.run_files import check_run, sealed
 from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
 from quietarm.ocp import FileFormatError, Front, QuietarmError
 from quietarm.ocp.checks import unknown, whole
+from quietarm.ocp.objectives import refuse_more_objectives
 from quietarm.ocp.record import Setting
 
 if TYPE_CHECKING:

@@ -104,7 +104,8 @@ class RecordedFunction(MoveFunction):
         if len(afforded):
             usable = np.logical_not(failed | broken)
             repeated = self._evaluate_again(objectives, true, usable, remaining - count)
-            self.archive.add(afforded, objectives, usable, true, repeated)
+            without_noise = true if self.noise else None
+            self.archive.add(afforded, objectives, usable, without_noise, repeated)
         if len(afforded) < len(table):
             raise BudgetSpentError
         return objectives, violations
