@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import log, sqrt
 from numbers import Real
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +20,14 @@ NOISY = 2
 
 def noise_share(value: object) -> float:
     """A standard deviation of noise, as a share of the value; ValueError unless from 0 to 1."""
+    number: Any = value
     is_number = isinstance(value, Real) and not isinstance(value, bool)
-    if not (is_number and 0 <= value <= 1):  # nor NaN
+    if not (is_number and 0 <= number <= 1):  # nor NaN
         raise ValueError(
             f"noise is {value!r}, not a share from 0 to 1; give the standard deviation as a share, "
             "as 0.01 or 1%"
         )
-    return float(value)
+    return float(number)
 
 
 def times_evaluated(value: object, noise: float) -> int:

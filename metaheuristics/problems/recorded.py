@@ -96,7 +96,7 @@ class RecordedFunction(MoveFunction):
         count = int(min(remaining, len(table)))
         afforded = np.clip(table[:count], self.lower, self.upper)
         true, violations = super().__call__(afforded)
-        failed = (true >= UNUSABLE).any(axis=1)
+        failed = np.asarray((true >= UNUSABLE).any(axis=1))
         broken = (violations > 0).any(axis=1)
         self.failed += int(failed.sum())
         self.infeasible += int((broken & ~failed).sum())

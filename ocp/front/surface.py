@@ -222,20 +222,20 @@ def surface_front(
     }
     dimensions = len(surface.axes)
     count = max(3, _count(points / 4, dimensions))
-    iterations = 0
+    grid = _solved_grid(surface, payoffs, cheapest, count, residuals)
     # a coarse grid tells which share of the cells has a motion of its own, and so how fine the next
     # has to be
-    grids = 3
+    finer_grids = 2
     enough = 0.8
-    for _ in range(grids):
-        grid = _solved_grid(surface, payoffs, cheapest, count, residuals)
-        iterations += grid.iterations
-        report(min(grid.distinct, points), points)
+    for _ in range(finer_grids):
         if grid.distinct >= enough * points:
             break
+        report(min(grid.distinct, points), points)
         share = max(grid.distinct, 1) / int(np.prod(grid.shape))
         count = max(count + 1, _count(points / share, dimensions))
-    grid.iterations = iterations
+        iterations = grid.iterations
+        grid = _solved_grid(surface, payoffs, cheapest, count, residuals)
+        grid.iterations += iterations
     report(points, points)
     return _front_of(surface, grid, cheapest, points, residuals)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -53,7 +54,8 @@ def draw_peak(fronts: Sequence[Front], ax: Axes | None = None, peak: int = 0) ->
     values = [front.objective_values for front in fronts]
     column = len(first.objectives) - len(peaks) + peak
     shown = [_shown(peaks[peak], table[:, column]) for table in values]
-    limits = {"vmin": min(map(np.min, shown)), "vmax": max(map(np.max, shown))}
+    together = np.concatenate(shown)
+    limits: Any = {"vmin": float(together.min()), "vmax": float(together.max())}
     marks = None
     for i, (table, colours) in enumerate(zip(values, shown)):
         residuals = np.maximum(table[:, 0], REST) * scale
