@@ -17,7 +17,7 @@ from quietarm.ocp.cost import COST, Cost
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
-from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.record import number_of_points, number_of_starts
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
@@ -117,15 +117,6 @@ def check_settings(method: str, settings: Mapping[str, Any]) -> None:
             raise ValueError(has_no(method, "setting", name, [size, *SOLVER_OPTIONS]))
         checks[name](value)
     solver_with(options)
-
-
-def refuse_more_objectives(name: str, objectives: Sequence[str]) -> None:
-    """Refuse a method of the gradient that is for residual and energy alone."""
-    if name != "epsilon" and tuple(objectives) != RESIDUAL_AND_ENERGY:
-        raise ValueError(
-            f"{name} is for residual and energy alone, not for {len(objectives)} objectives; give "
-            "epsilon, or a search"
-        )
 
 
 def split_solver_options(

@@ -14,7 +14,6 @@ from quietarm.metaheuristics.gradient import (
     check_settings,
     gradient_front,
     polished,
-    refuse_more_objectives,
     solver_with,
     split_solver_options,
 )
@@ -34,6 +33,7 @@ from quietarm.metaheuristics.user_method import (
 )
 from quietarm.ocp import FileFormatError, Front, QuietarmError
 from quietarm.ocp.checks import unknown, whole
+from quietarm.ocp.objectives import refuse_more_objectives
 from quietarm.ocp.record import Setting
 
 POLISH = "+polish"

@@ -34,6 +34,9 @@ class Energy(ABC):
     """The name by which files and the command line know the energy."""
     absolute: float = 0.0
     """Weight of the absolute power, 0 or more; its sign changes are found."""
+    agreement: ClassVar[float] = 0.0
+    """Share by which the steps of a search may miss it: of an integrand with jumps some per cent,
+    where 0.001 is usual."""
 
     def smooth(self, torque: Expression, speed: Expression) -> Expression:
         """The smooth integrand [W], by joint torque [N m] and speed [rad/s].

@@ -67,6 +67,15 @@ def checked_objectives(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in OBJECTIVES if name in spelt)
 
 
+def refuse_more_objectives(name: str, objectives: Sequence[str]) -> None:
+    """Refuse a method of the gradient that is for residual and energy alone."""
+    if name != "epsilon" and tuple(objectives) != RESIDUAL_AND_ENERGY:
+        raise ValueError(
+            f"{name} is for residual and energy alone, not for {len(objectives)} objectives; give "
+            "epsilon, or a search"
+        )
+
+
 def _spelt(name: Any) -> str:
     return name.strip().lower().replace("-", "_") if isinstance(name, str) else repr(name)
 

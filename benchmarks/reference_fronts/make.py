@@ -135,6 +135,19 @@ def main() -> None:
             front = exact_front(task, problem.profile, problem.bound, known.points)
             front.save(given.folder / f"{part}.json")
             print(f"{part}: {len(front.points)} points", flush=True)
+        if problem.peak_limits:
+            surface = epsilon_front(
+                problem.task,
+                problem.profile,
+                bound=problem.bound,
+                points=600,
+                at=LEVELS,
+                objectives=problem.objectives,
+                starts=12,
+                steps=192,
+            )
+            surface.save(given.folder / f"{name}.json")
+            print(f"{name}: {len(surface.points)} points", flush=True)
 
 
 if __name__ == "__main__":

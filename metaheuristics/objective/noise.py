@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import log, sqrt
 from numbers import Real
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.ocp import Front
 from quietarm.ocp.checks import whole
 
 Array = NDArray[np.float64]
@@ -17,13 +20,14 @@ NOISY = 2
 
 def noise_share(value: object) -> float:
     """A standard deviation of noise, as a share of the value; ValueError unless from 0 to 1."""
+    number: Any = value
     is_number = isinstance(value, Real) and not isinstance(value, bool)
-    if not (is_number and 0 <= value <= 1):  # nor NaN
+    if not (is_number and 0 <= number <= 1):  # nor NaN
         raise ValueError(
             f"noise is {value!r}, not a share from 0 to 1; give the standard deviation as a share, "
             "as 0.01 or 1%"
         )
-    return float(value)
+    return float(number)
 
 
 def times_evaluated(value: object, noise: float) -> int:
@@ -35,6 +39,40 @@ def times_evaluated(value: object, noise: float) -> int:
             "noise, or leave it out"
         )
     return times
+
+
+@dataclass(frozen=True)
+class Belief:
+    """What a search with noise believed of the candidates that it took for the best.
+
+    Attributes
+    ----------
+    points : int
+        How many there are: none dominates another by what it believed.
+    residual, energy : float
+        Medians of the believed values, less 1, as shares of the true ones.
+    dominated : int
+        How many others of them dominate in truth.
+    """
+
+    points: int
+    residual: float
+    energy: float
+    dominated: int
+
+
+def belief_of(front: Front) -> Belief | None:
+    """What a search believed, and what is true; None of a front without noise or candidates."""
+    import moocore  # not at the top: it takes long to load
+
+    entries = front.entries
+    if not entries.believed:
+        return None
+    best = np.flatnonzero(moocore.is_nondominated(entries.beliefs()))
+    true = entries.objectives()[best]
+    shares = np.median(entries.beliefs()[best] / true, axis=0) - 1
+    remaining = int(moocore.is_nondominated(true, keep_weakly=True).sum())
+    return Belief(len(best), float(shares[0]), float(shares[1]), len(best) - remaining)
 
 
 class Noise:

@@ -65,11 +65,14 @@ def figures_of_motions(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Objectives of motions along a front's profile, and their violations of its limits.
 
-    Shapes are (motions, objectives) and (motions, limits); by the steps of an `Evaluator`.
+    Shapes are (motions, objectives) and (motions, limits); by the steps of an `Evaluator`, with
+    peaks by so many that their nodes miss at most 0.5 % in the boxes of the named problems.
     """
+    finer = 192
     quantities = peak_quantities(front.objectives)
     measured = with_peaks_measured(front.task, quantities)
-    evaluation = Evaluator(measured, front.profile)(coefficients)
+    steps = max(default_steps(measured), finer) if quantities else None
+    evaluation = Evaluator(measured, front.profile, steps)(coefficients)
     return measured_figures(evaluation, quantities, [limit.name for limit in front.task.limits])
 
 

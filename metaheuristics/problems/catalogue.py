@@ -27,7 +27,6 @@ from quietarm.ocp import (
     Uncertainty,
     epsilon_front,
     non_dominated,
-    reference_corner,
 )
 from quietarm.ocp.checks import takes, unknown
 from quietarm.ocp.front.points import LEVELS
@@ -144,7 +143,7 @@ class NamedProblem:
         return {f"{self.name}-{most:g}": replace(self.task, **limits[most]) for most in limits}
 
     def fronts(self) -> tuple[Front, ...]:
-        """The reference fronts: one, or those under each limit of a peak."""
+        """The reference fronts: one, or those of residual and energy under each limit of a peak."""
         if self.reference_front is not None:
             return (self.reference_front,)
         if self.named:
@@ -153,7 +152,9 @@ class NamedProblem:
 
     def front(self) -> Front:
         """The reference front, of all objectives."""
-        return _of_all_limits(self) if self.peak_limits and self.named else self.fronts()[0]
+        if self.peak_limits and self.named:
+            return _of_all_limits(self, _loaded(self._folder / f"{self.name}.json"))
+        return self.fronts()[0]
 
     def reference(self) -> Reference:
         """The reference front as a scale."""
@@ -209,23 +210,21 @@ def _loaded(path: Path) -> Front:
     return Front.load(path)
 
 
-@cache
-def _of_all_limits(problem: NamedProblem) -> Front:
-    """The fronts under all limits of a peak as one, of residual, energy and that peak."""
-    steps = 192  # as those of the fronts: nodes between which a peak is not missed
+@lru_cache(maxsize=8)
+def _of_all_limits(problem: NamedProblem, surface: Front) -> Front:
+    """A front by a grid of limits, with those that the fronts under limits of a peak have besides.
+
+    Of the latter the peak is that at the nodes of 192 steps, as when they were found.
+    """
+    steps = 192
     (quantity,) = peak_quantities(problem.objectives)
     under_limits = problem.fronts()
-    points = [point for front in under_limits for point in front.points]
+    known = [point for front in under_limits for point in front.points]
     coefficients = np.vstack([front.coefficients for front in under_limits])
     peaks = problem.function(steps=steps)(coefficients)[0][:, 2].tolist()
-    measured = [replace(point, peaks={quantity: peak}) for point, peak in zip(points, peaks)]
-    return replace(
-        under_limits[0],
-        task=problem.task,
-        points=non_dominated(measured, problem.objectives),
-        reference=reference_corner(problem.task, problem.objectives),
-        objectives=problem.objectives,
-    )
+    measured = [replace(point, peaks={quantity: peak}) for point, peak in zip(known, peaks)]
+    points = non_dominated([*surface.points, *measured], problem.objectives)
+    return replace(surface, points=points)
 
 
 @lru_cache(maxsize=64)
@@ -273,12 +272,12 @@ def _task(plant: Plant, target: float, duration: float, start: float = 0.0) -> P
 def _problem(
     name: str, task: PointToPoint, bound: float, terms: int = 6, **options: Any
 ) -> NamedProblem:
+    options = {"version": 2, **options}
     return NamedProblem(
         name,
         task,
         CycloidPolynomial(terms),
         bound,
-        version=2,
         **options,
     )
 
@@ -336,6 +335,7 @@ def _named_problems() -> tuple[NamedProblem, ...]:
             link_box,
             objectives=(*RESIDUAL_AND_ENERGY, "peak_torque"),
             peak_limits=(0.1, 0.115, 0.13, 0.145, 0.16, 0.18),
+            version=3,
         ),
         _problem(
             "single-link-30deg-0.8s-robust",

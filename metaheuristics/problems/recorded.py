@@ -122,7 +122,7 @@ class RecordedFunction(MoveFunction):
         count = int(min(remaining, len(table)))
         afforded = np.clip(table[:count], self.lower, self.upper)
         true, violations = super().__call__(afforded)
-        failed = (true >= UNUSABLE).any(axis=1)
+        failed = np.asarray((true >= UNUSABLE).any(axis=1))
         broken = (violations > 0).any(axis=1)
         self.failed += int(failed.sum())
         self.infeasible += int((broken & ~failed).sum())
@@ -130,7 +130,8 @@ class RecordedFunction(MoveFunction):
         if len(afforded):
             usable = np.logical_not(failed | broken)
             repeated = self._evaluate_again(objectives, true, usable, remaining - count)
-            self.archive.add(afforded, objectives, usable, true, repeated)
+            without_noise = true if self.noise else None
+            self.archive.add(afforded, objectives, usable, without_noise, repeated)
         if len(afforded) < len(table):
             raise BudgetSpentError
         return objectives, violations

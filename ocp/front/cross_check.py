@@ -14,6 +14,7 @@ from quietarm.ocp.front.curve import Curve, Progress, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.certify import OVERRUN, by_cvodes
 from quietarm.ocp.record import number_of_points
 from quietarm.ocp.solvers.choice import other_solver, stated_solver
@@ -88,8 +89,14 @@ def cross_check(
     Raises
     ------
     ValueError
-        When the front has no point, or `checked_points` is out of range.
+        When the front has no point, or other objectives than residual and energy, or
+        `checked_points` is out of range.
     """
+    if front.objectives != RESIDUAL_AND_ENERGY:
+        raise ValueError(
+            "a cross check is of residual and energy; find the front again by the other solver, "
+            "and compare the two"
+        )
     count = min(number_of_points(checked_points), len(front.points))
     if solver is None:
         solver = other_solver(stated_solver(front.record.settings) or Sqp())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,8 +18,12 @@ from quietarm.ocp.front.curve import (
     no_report,
 )
 from quietarm.ocp.front.front import Front
-from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.record import Setting
+from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
+from quietarm.ocp.front.surface import Surface
+from quietarm.ocp.limits import RESIDUAL
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
+from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.record import Setting, versions
 from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.solver import NAME, Solver
 from quietarm.ocp.solvers.sqp import Sqp
@@ -66,7 +71,7 @@ def polish_front(
     solver: Solver = Sqp(),
     report: Progress = no_report,
 ) -> Polish:
-    """Start the gradient from every point of a front, with the point's residual as the limit.
+    """Start the gradient from every point of a front, within the point's residual and peaks.
 
     Parameters
     ----------
@@ -89,33 +94,77 @@ def polish_front(
         When the front has no point.
     """
     began = time.perf_counter()
-    curve = curve_of(front, starts=1, steps=steps, solver=solver)
-    problems = [curve.problem(point.residual) for point in front.points]
-    starts = [np.array(point.coefficients) for point in front.points]
-    solutions = solver.solve(problems, starts)
-    improved: list[list[Certificate]] = []
-    for point, solution in zip(front.points, solutions):
-        improved.append(_improve(curve, point, solution))
-        report(len(improved), len(front.points))
+    if front.objectives == RESIDUAL_AND_ENERGY:
+        curve = curve_of(front, starts=1, steps=steps, solver=solver)
+        improved = list(_along(curve, front, report))
+        steps_taken = {"steps": curve.transcription.steps}
+    else:
+        front.smallest_residual()  # refuses an empty front
+        setup = Setup(solver, front.record.bound, 1, front.record.seed or 0, steps)
+        surface = Surface.of_front(front, setup)
+        improved = list(_on_surface(surface, front, report))
+        steps_taken = {"steps": surface.transcription.steps}
     certificates = [certificate for of_point in improved for certificate in of_point]
-    polished = curve.to_front("polish", certificates, len(front.points))
-    steps_taken = {"steps": curve.transcription.steps}
+    failures = tuple(
+        certificate.point
+        for certificate in certificates
+        if isinstance(certificate.point, FailedPoint)
+    )
+    points = [
+        certificate.point
+        for certificate in certificates
+        if isinstance(certificate.point, FrontPoint)
+    ]
+    iterations = sum(certificate.iterations for certificate in certificates)
     record = replace(
         front.record,
         method=f"{front.record.method}, polished",
         settings={**front.record.settings, **_stated(solver), **steps_taken},
-        iterations=front.record.iterations + polished.record.iterations,
-        versions=polished.record.versions,
+        iterations=front.record.iterations + iterations,
+        versions=versions(),
         seconds=front.record.seconds + time.perf_counter() - began,
     )
     polished = replace(
-        polished,
-        reference=front.reference,
-        history=front.history,
-        entries=front.entries,
+        front,
+        points=non_dominated(points, front.objectives),
         record=record,
+        failed=len(failures),
+        infeasible=0,
+        failures=failures,
+        gaps=(),
     )
     return Polish(polished, tuple(map(_gain, front.points, improved)))
+
+
+def _along(curve: Curve, front: Front, report: Progress) -> Iterator[list[Certificate]]:
+    """Each point or a better one of no larger residual."""
+    problems = [curve.problem(point.residual) for point in front.points]
+    starts = [np.array(point.coefficients) for point in front.points]
+    solutions = curve.solver.solve(problems, starts)
+    for done, (point, solution) in enumerate(zip(front.points, solutions), start=1):
+        yield _improve(curve, point, solution)
+        report(done, len(front.points))
+
+
+def _on_surface(surface: Surface, front: Front, report: Progress) -> Iterator[list[Certificate]]:
+    """Each point or a better one of no larger residual and no larger peaks."""
+    sizes = [{RESIDUAL: point.residual, **point.peaks} for point in front.points]
+    problems = [surface.problem(of_point) for of_point in sizes]
+    starts = [np.array(point.coefficients) for point in front.points]
+    solutions = surface.setup.solver.solve(problems, starts)
+    rows = zip(front.points, problems, solutions)
+    for done, (point, problem, solution) in enumerate(rows, start=1):
+        outcome = solution.status.text
+        if solution.status.solved:
+            limits = problem.scalarization.limits
+            (outcome,) = surface.certify([solution], [problem], limits)
+        if isinstance(outcome, FrontPoint):
+            better = outcome.energy < point.energy
+            yield [Certificate(outcome if better else point, solution.iterations)]
+        else:
+            failed = FailedPoint({RESIDUAL_LIMIT: point.residual}, str(outcome))
+            yield [Certificate(point, 0), Certificate(failed, solution.iterations)]
+        report(done, len(front.points))
 
 
 def _stated(solver: Solver) -> dict[str, Setting]:

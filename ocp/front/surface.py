@@ -105,17 +105,27 @@ class Surface:
         """The best solution of each problem from its starts."""
         return best_of_starts(problems, starts, self.setup.solver)
 
+    @classmethod
+    def of_front(cls, front: Front, setup: Setup) -> Surface:
+        """The surface of a front that is there already."""
+        measured = with_peaks_measured(front.task, peak_quantities(front.objectives))
+        transcription = Transcription.of(measured, front.profile, setup.steps)
+        return cls(front.task, front.objectives, transcription, setup)
+
     def certify(
-        self, solutions: Sequence[Solution], problems: Sequence[NonlinearProgram]
+        self,
+        solutions: Sequence[Solution],
+        problems: Sequence[NonlinearProgram],
+        limits: Sequence[Limit] | None = None,
     ) -> list[FrontPoint | SolverFailedError]:
-        """Solutions as points by CVODES, within the limits of the task."""
+        """Solutions as points by CVODES, within these limits or those of the task alone."""
         tip_unit = self.task.plant.tip_unit
         outcomes = certify(
             problems,
             solutions,
             self.setup.solver,
             Tolerances(energy=1e-4, most_steps=2 * self.transcription.steps),
-            (Limit.of_residual(inf, tip_unit), *self.task.limits),
+            limits or (Limit.of_residual(inf, tip_unit), *self.task.limits),
         )
         return [self._point_of(outcome) for outcome in outcomes]
 
@@ -212,20 +222,20 @@ def surface_front(
     }
     dimensions = len(surface.axes)
     count = max(3, _count(points / 4, dimensions))
-    iterations = 0
+    grid = _solved_grid(surface, payoffs, cheapest, count, residuals)
     # a coarse grid tells which share of the cells has a motion of its own, and so how fine the next
     # has to be
-    grids = 3
+    finer_grids = 2
     enough = 0.8
-    for _ in range(grids):
-        grid = _solved_grid(surface, payoffs, cheapest, count, residuals)
-        iterations += grid.iterations
-        report(min(grid.distinct, points), points)
+    for _ in range(finer_grids):
         if grid.distinct >= enough * points:
             break
+        report(min(grid.distinct, points), points)
         share = max(grid.distinct, 1) / int(np.prod(grid.shape))
         count = max(count + 1, _count(points / share, dimensions))
-    grid.iterations = iterations
+        iterations = grid.iterations
+        grid = _solved_grid(surface, payoffs, cheapest, count, residuals)
+        grid.iterations += iterations
     report(points, points)
     return _front_of(surface, grid, cheapest, points, residuals)
 

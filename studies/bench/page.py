@@ -85,6 +85,7 @@ def bench_report(results: Results, line: str, template: str | Path = "bench/repo
         "ranking": ranking,
         "label_of": bench_label,
         "accuracy": ACCURACY,
+        "noisy": any("noise" in run.front.record.settings for run in results.runs),
         "indicators": INDICATORS,
         "target": f"{100 * SHOWN_TARGET:g}",
         "moves": len(moves_of(results.problems)),

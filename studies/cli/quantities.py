@@ -307,7 +307,7 @@ def parse_objectives(text: str) -> tuple[str, ...]:
 def parse_noise(text: str) -> float:
     """Read a standard deviation of noise as a share: ``1%`` or ``0.01``."""
     value = parse_quantity(text, "-", "a noise")
-    if value >= 1 and is_number(text):
+    if 1 <= value <= 100 and is_number(text):
         raise ValueError(
             f"{text} is {100 * value:g} %; was {text} % meant? give {text}%, or less than 1"
         )

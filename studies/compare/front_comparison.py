@@ -18,9 +18,11 @@ from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.saved import plain
 from quietarm.studies.compare.staircase import best_of, evenly_spaced
 from quietarm.studies.report.methods import is_gradient, label_of
+from quietarm.studies.report.words import objective_words
 
 Array = NDArray[np.float64]
 
@@ -90,13 +92,17 @@ class Comparison:
         Methods, in the order in which they were given.
     reference : str
         What IGD+ and additive epsilon are measured against.
+    objectives : tuple of str
+        Names of the objectives of all fronts. Indicators are of all of them; attainment surfaces,
+        the best front and energies within a residual are of residual and energy, whatever the
+        peaks are.
     corner : tuple of float
-        Residual [m] and energy [J] up to which hypervolumes are measured, as in a bench: a tenth
-        of its extent beyond the ends of the reference front. They are shares of the box from there
-        to the least residual and energy of that front.
+        Residual [m], energy [J] and peaks up to which hypervolumes are measured, as in a bench: a
+        tenth of its extent beyond the ends of the reference front. They are shares of the box from
+        there to the least values of that front.
     extent : tuple of float
-        Residual [m] and energy [J] between the ends of the reference front: the units of IGD+ and
-        additive epsilon, so that both objectives have the same weight.
+        The same between the ends of the reference front: the units of IGD+ and additive epsilon, so
+        that all objectives have the same weight.
     levels : tuple of float
         Residuals [m] at which energies are compared.
     best_front : ndarray, shape (n, 2), read-only
@@ -112,8 +118,9 @@ class Comparison:
     task: PointToPoint
     groups: tuple[Group, ...]
     reference: str
-    corner: tuple[float, float]
-    extent: tuple[float, float]
+    objectives: tuple[str, ...]
+    corner: tuple[float, ...]
+    extent: tuple[float, ...]
     levels: tuple[float, ...]
     best_front: Array
     best: tuple[float, ...]
@@ -167,7 +174,8 @@ def compare_fronts(
     Raises
     ------
     ValueError
-        When there is no front, one has no point, is given twice or is of another task.
+        When there is no front, one has no point, is given twice, or is of another task or other
+        objectives.
     """
     names = names or [f"front {i}" for i in range(1, len(fronts) + 1)]
     if not fronts or len(names) != len(fronts):
@@ -181,8 +189,8 @@ def compare_fronts(
     )
     points = [objectives(front) for front in fronts]
     between = [best_of([filled(front)]) for front in fronts] if fill else points
-    best_front = best_of(between)
-    known = best_front if reference is None else best_of([filled(reference)])
+    best_front = best_of([_curve(cloud) for cloud in between])
+    known = best_of(between) if reference is None else best_of([filled(reference)])
     smallest_extent = np.max([front.reference for front in fronts], axis=0)
     scale = _scale_of(known, smallest_extent)
     corner = scale.ideal + CORNER * (scale.nadir - scale.ideal)
@@ -194,7 +202,7 @@ def compare_fronts(
         Group(
             label,
             tuple(measured[i] for i in members),
-            *_surfaces([points[i] for i in members]),
+            *_surfaces([_curve(points[i]) for i in members]),
         )
         for label, members in grouped(fronts).items()
     ]
@@ -202,13 +210,19 @@ def compare_fronts(
         task=fronts[0].task,
         groups=tuple(groups),
         reference="the best of all fronts" if reference is None else reference_name,
-        corner=(float(corner[0]), float(corner[1])),
-        extent=(float(extent[0]), float(extent[1])),
+        objectives=fronts[0].objectives,
+        corner=tuple(corner.tolist()),
+        extent=tuple(extent.tolist()),
         levels=tuple(levels),
         best_front=_frozen(best_front),
         best=tuple(best.tolist()),
         fill=fill,
     )
+
+
+def _curve(points: Array) -> Array:
+    """Residuals and energies of points, whatever their peaks."""
+    return points[:, : len(RESIDUAL_AND_ENERGY)]
 
 
 def _scale_of(known: Array, single: Array) -> Scale:
@@ -217,7 +231,7 @@ def _scale_of(known: Array, single: Array) -> Scale:
     extent = np.ptp(known, axis=0)
     extent = np.where(extent > 0, extent, single)
     stations = evenly_spaced((known - ideal) / extent)
-    return Scale(ideal, ideal + extent, stations, whole=CORNER**2)
+    return Scale(ideal, ideal + extent, stations, whole=CORNER ** known.shape[1])
 
 
 class _Cloud(NamedTuple):
@@ -236,7 +250,7 @@ def _measured(cloud: _Cloud, scale: Scale, levels: Sequence[float], best: Array)
     return Measured(
         name=cloud.name,
         front=cloud.front,
-        between=cloud.between,
+        between=best_of([_curve(cloud.between)]),
         scores=scale.scores(cloud.between),
         scores_found=scale.scores(cloud.points),
         energies=tuple(energies.tolist()),
@@ -271,6 +285,11 @@ def _refuse(fronts: Sequence[Front], names: Sequence[str], apart: int) -> None:
                 remedy = f"find it again with --residual-window {task.residual_window:.10g}s"
             raise ValueError(
                 f"{name} is of another task than {names[0]}: its {difference}; {remedy}"
+            )
+        if front.objectives != fronts[0].objectives:
+            raise ValueError(
+                f"{name} has the objectives {objective_words(front.objectives)}, and {names[0]} "
+                f"{objective_words(fronts[0].objectives)}; compare fronts of the same objectives"
             )
         if i < apart and front in fronts[:i]:
             first = names[list(fronts).index(front)]

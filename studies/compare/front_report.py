@@ -11,6 +11,7 @@ import pandas as pd
 from quietarm.metaheuristics.score import BETWEEN, INDICATORS
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
+from quietarm.ocp.objectives import objectives_on
 from quietarm.studies import figures
 from quietarm.studies.compare.front_comparison import (
     Comparison,
@@ -21,9 +22,11 @@ from quietarm.studies.compare.front_comparison import (
 from quietarm.studies.figures.comparison import KnownPoint
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import (
+    objective_words,
     residual_place,
     spread_words,
     title_of,
+    values_words,
     window_words,
 )
 from quietarm.studies.tips import tip_scale, tip_words
@@ -70,6 +73,11 @@ def _apart_by_window(comparisons: Sequence[Comparison]) -> list[str]:
         if differ_in_window_alone(first.task, second.task)
     }
     return [words for _, words in sorted(windows.items())]
+
+
+def _in_words(comparison: Comparison, values: Sequence[float]) -> str:
+    """A value of each objective of a comparison."""
+    return values_words(objectives_on(comparison.task.plant, comparison.objectives), values)
 
 
 def methods_table(comparison: Comparison) -> pd.DataFrame:
@@ -168,7 +176,8 @@ def fronts_report(
         {
             "parts": list(zip(comparisons, map(_shown, tables), pictures)),
             "title_of": title_of,
-            "tip_words": tip_words,
+            "in_words": _in_words,
+            "objective_words": objective_words,
             "residual_place": residual_place,
             "fill": BETWEEN if comparisons[0].fill else 0,
             "apart": _apart_by_window(comparisons),

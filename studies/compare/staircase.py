@@ -6,6 +6,9 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.metaheuristics.thinning import farthest_apart
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
+
 Array = NDArray[np.float64]
 
 
@@ -16,7 +19,12 @@ def best_of(fronts: list[Array]) -> Array:
 
 
 def evenly_spaced(points: Array, stations: int = 101) -> Array:
-    """The points of a front nearest to stations at even distances along it, shape (few, 2)."""
+    """The points of a front nearest to stations at even distances along it, shape (few, 2).
+
+    Of three objectives and more as many that are far from each other.
+    """
+    if points.shape[1] > len(RESIDUAL_AND_ENERGY):
+        return points[farthest_apart(points, stations)]
     ordered = points[np.argsort(points[:, 0])]
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ordered, axis=0).T))])
     wanted = np.linspace(0.0, along[-1], stations)

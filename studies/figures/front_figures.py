@@ -14,6 +14,7 @@ from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, Spread, energies_at,
 from quietarm.ocp import Front, Polish
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
     TITLE,
@@ -25,6 +26,7 @@ from quietarm.studies.figures.axes import (
     side_by_side,
 )
 from quietarm.studies.figures.looks import BLUE, RED, look
+from quietarm.studies.figures.surface_figures import draw_parallel, draw_peak
 from quietarm.studies.report.methods import is_gradient, label_of
 from quietarm.studies.report.words import spread_words, title_of_picture
 from quietarm.studies.tips import tip_scale, tip_words
@@ -49,7 +51,7 @@ def draw_fronts(
     ----------
     fronts : sequence of Front
         Of one task, by any methods. Residual limits that failed are crosses, and ranges that no
-        weight reaches are grey.
+        weight reaches are grey. Of three objectives and more the points stand without lines.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
     labels : sequence of str, optional
@@ -79,6 +81,12 @@ def draw_fronts(
         raise ValueError(f"{len(fronts)} fronts have {len(names)} labels; give each front one")
     for i, (front, name) in enumerate(zip(fronts, names)):
         look_of_front = look(i)
+        if len(front.objectives) > len(RESIDUAL_AND_ENERGY):  # of a surface no line joins points
+            ax.plot(
+                np.maximum(front.residuals, REST) * scale, front.energies, look_of_front.mark,
+                color=look_of_front.colour, markersize=3, alpha=0.8, label=name,
+            )  # fmt: skip
+            continue
         middles = [(begin + end) / 2 for begin, end in front.gaps]
         places = np.searchsorted(front.residuals, middles)  # no line crosses a gap
         draw_front(
@@ -139,7 +147,7 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
         The axes; the box that the hypervolume is a share of is named beside them.
     """
     ax = axes_or_new(ax)
-    residual, energy = fronts[0].reference
+    residual, energy, *peaks = fronts[0].reference
     length = min(len(front.history) for front in fronts)
     evaluations = [mark.evaluations for mark in fronts[0].history[:length]]
     shares = np.array([shares_of_box(front)[:length] for front in fronts])
@@ -156,6 +164,8 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     ax.set_title(f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')}", **TITLE)
     ax.set_xlabel("candidates evaluated")
     corner = f"{tip_words(residual, _tip_unit(fronts))} and {energy:.4g} J"
+    if peaks:
+        corner = f"twice the plain cycloid's energy and peak{'s' * (len(peaks) > 1)}"
     ax.set_ylabel(f"share of the box\nup to {corner}")
     ax.xaxis.set_major_locator(MaxNLocator(5, integer=True))
     return ax
@@ -215,14 +225,25 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     matplotlib.figure.Figure
         Energy against residual, of a single front with its knee; of searches the median
         hypervolume with its quartiles against candidates; for several seeds also the least energy
-        of each within 1 mm.
+        of each within 1 mm. Of three objectives the third is the colour; of four and more there
+        are parallel coordinates as well.
     """
     method = fronts[0].record.method
     gradient = is_gradient(method)
     panels = 1 + (not gradient and all(front.history for front in fronts))
     panels += panels > 1 and len(fronts) > 1
+    peaks = len(fronts[0].objectives) - len(RESIDUAL_AND_ENERGY)
+    parallel = int(peaks > 1)
+    panels += parallel
     title = f"{label_of(method)}: {title_of_picture(fronts[0].task)}"
     figure, axes = side_by_side(panels, title, width=4.2 if panels > 1 else 6.4)
+    if peaks:
+        draw_peak(fronts, axes[0])
+        if parallel:
+            draw_parallel(fronts, axes[1])
+        for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1 + parallel :]):
+            draw(fronts, ax)
+        return figure
     draw_fronts(fronts, axes[0], linear=gradient)
     tip_unit = fronts[0].task.plant.tip_unit
     name_objectives(axes[0], tip_unit, fronts[0].task.residual_window)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from quietarm.metaheuristics.objective.stated_figures import FIGURES, agrees
 from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError, TermProfile
 from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import refuse_beyond_box
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.plan import evaluate_coefficients
 from quietarm.ocp.record import REST
 from quietarm.ocp.window import DefaultWindow
@@ -37,6 +38,7 @@ def import_front(
     terms: int | None = None,
     bound: float | None = None,
     evaluations: int | None = None,
+    objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
 ) -> tuple[Front, list[str]]:
     """The front of a file's coefficients, and how what it states compares, in sentences."""
     imported = read_found(file)
@@ -49,7 +51,9 @@ def import_front(
             f"{family(terms).size}; leave --terms out, or transpose the table"
         )
     try:
-        front, notes = _evaluated(file, task, family.of_size(columns), imported, bound, evaluations)
+        front, notes = _evaluated(
+            file, task, family.of_size(columns), imported, bound, evaluations, objectives
+        )
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from None
     if not notes:
@@ -67,6 +71,7 @@ def _evaluated(
     imported: Found,
     bound: float | None,
     evaluations: int | None,
+    objectives_of_front: Sequence[str],
 ) -> tuple[Front, list[str]]:
     """The front, and how the claims compare."""
     table = imported.coefficients
@@ -76,7 +81,8 @@ def _evaluated(
     rows = np.array([_checked(i, row, profile, task) for i, row in enumerate(table, start=1)])
     refuse_beyond_box(profile, rows, bound)
     widest = max(float(np.abs(rows).max()), 1e-3)  # any box: the function needs one
-    objectives, violations = MoveFunction(task, profile, bound=min(widest, 1e6))(rows)
+    function = MoveFunction(task, profile, bound=min(widest, 1e6), objectives=objectives_of_front)
+    objectives, violations = function(rows)
     failed = np.asarray((objectives >= UNUSABLE).any(axis=1))
     broken = ~failed & (violations > _NEAR).any(axis=1)
     usable = np.flatnonzero(~failed & ~broken)
@@ -86,6 +92,7 @@ def _evaluated(
     front = Front.from_coefficients(
         task, rows[near], method=file.stem, profile=profile, bound=bound,
         settings={"imported": file.name}, evaluations=evaluations or len(rows),
+        objectives=objectives_of_front,
     )  # fmt: skip
     front = replace(
         front,
@@ -135,6 +142,8 @@ def _not_beaten(F: Array) -> NDArray[np.bool_]:
 
     if not len(F):
         return np.zeros(0, dtype=bool)
+    if F.shape[1] > len(RESIDUAL_AND_ENERGY):  # peaks at the nodes say little of near ones
+        return np.asarray(moocore.is_nondominated(F, keep_weakly=True))
     best = F[moocore.is_nondominated(F)]
     best = best[np.argsort(best[:, 0])] * (1 + _NEAR) + np.array([REST, 0.0])
     # energies fall along the front: the last point within a residual has the least

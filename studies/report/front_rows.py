@@ -7,10 +7,12 @@ from math import isfinite
 
 import numpy as np
 
+from quietarm.metaheuristics.objective.noise import belief_of
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
 from quietarm.ocp import Candidate, CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.robustness import worst_of
 from quietarm.studies.report.moves import worst_in_words
 from quietarm.studies.report.words import (
@@ -19,6 +21,7 @@ from quietarm.studies.report.words import (
     residual_place,
     residual_words,
     spread_words,
+    values_words,
 )
 from quietarm.studies.tips import tip_words
 
@@ -41,6 +44,7 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
         _residual_line(front.task)
         + "; between them more may remain, as quietarm plan says" * bool(front.task.ranges),
         *([] if check is None else [_check_line(check)]),
+        *_grid_lines(front),
         *failure_lines(front, asked_for),
         *(
             f"no weight reaches residuals from {residual_words(begin, tip_unit)} to "
@@ -62,15 +66,18 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
             f"{counted(record.evaluations, 'candidate')} in {record.seconds:.1f} s, "
             f"{front.failed} failed",
             *_chosen_points(front),
+            *_noise_lines(front),
         ]
     lines.append(_residual_line(fronts[0].task))
     if len(fronts) > 1:
         energies = energies_at(fronts)
         level = tip_words(SEARCH_RESIDUAL, tip_unit)
-        corner = fronts[0].reference
+        corner = values_words(
+            objectives_on(fronts[0].task.plant, fronts[0].objectives), fronts[0].reference
+        )
         lines += [
-            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to "
-            f"{tip_words(corner[0], tip_unit)} and {corner[1]:.3g} J, median (quartiles)",
+            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to {corner}, "
+            "median (quartiles)",
             f"energy at {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles); "
             f"{energies.count} of {energies.seeds} seeds reach {level}",
         ]
@@ -127,15 +134,59 @@ def _chosen_points(front: Front) -> list[str]:
         return []
     chosen = {"least residual": front.smallest_residual(), "knee": front.knee(),
               "least energy": front.cheapest()}  # fmt: skip
+    for objective in _peaks_of(front):
+        quantity = objective.quantity
+        least = min(front.points, key=lambda point, name=quantity: point.peaks[name])
+        chosen[f"least {quantity}"] = least
     if len(front.points) < 3:
         del chosen["knee"]
-    return [f"  {name:15}{_point_in_words(front, point)}" for name, point in chosen.items()]
+    width = max(15, *(len(name) + 1 for name in chosen))
+    return [f"  {name:{width}}{_point_in_words(front, point)}" for name, point in chosen.items()]
+
+
+def _peaks_of(front: Front) -> list[Objective]:
+    """The peaks that are objectives of a front."""
+    objectives = objectives_on(front.task.plant, front.objectives)
+    return [objective for objective in objectives if objective.quantity]
+
+
+def _grid_lines(front: Front) -> list[str]:
+    """What became of the cells of a grid of limits; nothing where there was none."""
+    settings = front.record.settings
+    if "grid" not in settings:
+        return []
+    return [
+        f"grid of {settings['grid']} limits on the residual and the peaks: "
+        f"{settings['infeasible_cells']} cells have no motion, and {settings['cells_left_out']} "
+        "were not solved, as their neighbours tell"
+    ]
+
+
+def _noise_lines(front: Front) -> list[str]:
+    """What the search believed, and what is true; nothing without noise."""
+    noise = front.record.settings.get("noise")
+    if not isinstance(noise, float):
+        return []
+    times = front.record.settings["reevaluate"]
+    again = f", {times} evaluations of what is kept" if times != 1 else ""
+    belief = belief_of(front)
+    if belief is None:
+        return [f"noise {noise:.3g} of residual and energy{again}"]
+    return [
+        f"noise {noise:.3g} of residual and energy{again}: at {counted(belief.points, 'point')} "
+        f"that it took for the best it believed energies {belief.energy:+.2%} and residuals "
+        f"{belief.residual:+.2%} of their size (medians); {belief.dominated} are dominated in truth"
+    ]
 
 
 def _point_in_words(front: Front, point: FrontPoint) -> str:
     """Energy and residual; of an uncertain plant also the worst case."""
     tip_unit = front.task.plant.tip_unit
     words = f"{point.energy:.4g} J at {residual_words(point.residual, tip_unit)}"
+    words += "".join(
+        f", {objective.quantity} {tip_words(point.peaks[objective.quantity], objective.unit)}"
+        for objective in _peaks_of(front)
+    )
     worst = worst_of(Candidate.of_profile(front.task, front.profile, point.coefficients))
     return words if worst is None else f"{words}; worst case {worst_in_words(worst, tip_unit)}"
 
@@ -156,5 +207,10 @@ def _check_line(check: CrossCheck) -> str:
 
 def _asked(failure: FailedPoint, tip_unit: str) -> str:
     if RESIDUAL_LIMIT in failure.asked:
-        return f"residual <= {tip_words(failure.asked[RESIDUAL_LIMIT], tip_unit)}"
+        peaks = "".join(
+            f" and {name.removesuffix('_limit')} <= {size:.3g}"
+            for name, size in failure.asked.items()
+            if name != RESIDUAL_LIMIT
+        )
+        return f"residual <= {tip_words(failure.asked[RESIDUAL_LIMIT], tip_unit)}{peaks}"
     return ":".join(f"{weight:.3g}" for weight in failure.asked.values()) + " (residual:energy)"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import degrees, isfinite
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,8 @@ from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR, joint_unit
 from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
+from quietarm.ocp.limits import RESIDUAL
+from quietarm.ocp.objectives import Objective
 from quietarm.ocp.record import REST
 from quietarm.studies.tips import tip_scale, tip_words
 
@@ -141,6 +143,17 @@ def title_of_picture(task: PointToPoint) -> str:
 def objective_words(names: Sequence[str]) -> str:
     """Objectives as they are typed: residual, energy, peak-torque."""
     return ", ".join(names).replace("_", "-")
+
+
+def values_words(objectives: Sequence[Objective], values: Iterable[float]) -> str:
+    """A value of each objective: 5 mm, 0.04 J and 0.1 N m."""
+    words = [
+        tip_words(value, objective.unit)
+        if objective.name == RESIDUAL
+        else f"{value:.4g} {objective.unit}"
+        for objective, value in zip(objectives, values)
+    ]
+    return f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def limit_words(task: PointToPoint) -> list[str]:

@@ -16,6 +16,7 @@ from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
     LINE,
+    OBJECTIVES,
     SENSITIVITIES,
     TASK,
     busy,
@@ -45,6 +46,7 @@ def _coefficients(text: str) -> list[float] | Path:
     *LINE,
     BOUND,
     option("--evaluations", type=int, help="Candidates that it took to find a file's rows."),
+    OBJECTIVES,
     SENSITIVITIES,
     output_option({".json": "the plan or front", ".csv": "the path at 1 kHz or the front",
                    PICTURE: "a picture"}),
@@ -75,7 +77,7 @@ def evaluate(given: Given) -> None:
 def _evaluate_coefficients(given: Given) -> None:
     """A plan of coefficients, or of an input shaper."""
     task = given.read_task()
-    given.refuse(["bound", "evaluations"], "is for a table of results")
+    given.refuse(["bound", "evaluations", "objectives"], "is for a table of results")
     if given.profile in SHAPERS:
         given.refuse(["coefficients", "terms"], f"is not for {given.profile}")
         profile = given.read_profile(task)
@@ -113,7 +115,7 @@ def _evaluate_table(given: Given) -> None:
             f"{given.profile} has no coefficients; give one of {', '.join(families())}"
         )
     family = families()[given.profile]
-    stated = given.pick("terms", "bound", "evaluations")
+    stated = given.pick("terms", "bound", "evaluations", "objectives")
     with busy("evaluating"):
         front, notes = import_front(given.coefficients, task, family, **stated)
     files = answer_files(given.output, lambda: figures.front_figure([front]), front)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from functools import partial
 
 from quietarm.metaheuristics import PRESETS
-from quietarm.metaheuristics.gradient import refuse_more_objectives
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.studies import figures
 from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_option
 from quietarm.studies.cli.given import Given

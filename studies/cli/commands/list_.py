@@ -59,6 +59,7 @@ def list_(given: Given) -> None:
         fronts = dict[str, Front]()
         for name in problems:
             fronts |= zip(PROBLEMS[name].tasks(), PROBLEMS[name].fronts())
+            fronts[name] = PROBLEMS[name].front()  # of all objectives
         for name, front in fronts.items():
             front.save(folder / f"{name}.json")
         shown.append(f"wrote {counted(len(fronts), 'front')} to {folder}")

@@ -14,6 +14,8 @@ from quietarm.metaheuristics import Job, LostJobsError, finished_jobs, run_jobs
 from quietarm.studies.bench.planned_jobs import jobs_of, problems_of
 from quietarm.studies.bench.results import Results
 
+THREE = "single-link-30deg-0.8s-torque"
+
 pytestmark = pytest.mark.slow
 
 
@@ -109,7 +111,11 @@ def test_a_search_leaves_numpys_error_state_as_it_was():
         (lambda: run_jobs([Job(NAME, "nsga2")] * 2, "x"), "is given twice; give it once"),
         (lambda: problems_of([NAME, NAME]), "is given twice; give it once"),
         (lambda: jobs_of(problems_of([NAME]), ["nsga2", "nsga2"], 1, 100), "is given twice"),
-        (lambda: problems_of(["single-link-30deg-0.8s-torque"]), "third objective"),
+        (lambda: Job(THREE, "weighted"), "weighted is for residual and energy alone, not for 3"),
+        (lambda: Job(NAME, "epsilon", noise=0.01), "the gradient of the model, which has no noise"),
+        (lambda: Job(NAME, "nsga2", noise=1.5), "noise is 1.5, not a share from 0 to 1"),
+        (lambda: Job(NAME, "nsga2", noise="1%"), "noise is '1%', not a share from 0 to 1"),
+        (lambda: Job(NAME, "nsga2", reevaluate=2), "reevaluate is 2, and without noise"),
         (lambda: Results([]), "no run was done"),
     ],
 )
