@@ -67,6 +67,17 @@ def test_a_straight_line_in_space(call):
     assert plan.task.plant.path.joints == UR5_JOINTS
 
 
+def test_a_plan_is_corrected_by_the_whole_equations(call):
+    code, out, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 --in-full --output move.json")
+    assert code == 0
+    words = " ".join(out.split())
+    assert "on arrival W -0.0" in words  # what makes up for the modes
+    assert "as wanted (below 0.001 mm) at the tip" in words
+    plan = qa.Plan.load("move.json")
+    assert plan.task.final is not None
+    assert plan.candidate.in_full.residual <= 1e-5
+
+
 def test_waypoints_of_another_planner(call):
     """A JointTrajectory, joints in another order, is followed without its times."""
     message = {
@@ -193,6 +204,9 @@ def test_a_robot_is_listed_with_what_was_read(call):
     ("plan ur5_bar.yaml --line-by 0,0,0.1 --duration 1", "a line begins somewhere; give --start"),
     (f"plan ur5_bar.yaml {ENDS} --link tool0 --duration 1", "--link is for --line-to and"),
     ("plan single-link --line-by 0,0,1 --target 1 --duration 1", "--line-by is for a robot"),
+    ("plan single-link --target 1 --duration 1 --in-full", "only plans of robots are corrected"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --in-full --error frequency=5%", "leave the errors"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --in-full --profile free", "is not for free"),
     ("plan single-link --path corner.csv --target 1 --duration 1", "--path is for a robot"),
 ])  # fmt: skip
 def test_what_is_refused_in_one_line(refused, line, words):
