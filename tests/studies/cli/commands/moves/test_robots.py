@@ -122,9 +122,27 @@ def test_ruckig_does_not_follow_a_curved_path(call):
     assert call(f"{line} --output move.json")[0] == 0
     code, out, _ = call("compare move.json --baselines ruckig")
     assert code == 0
-    assert "ruckig goes straight in joint space, and the path of the plan is curved" in " ".join(
-        out.split()
+    words = " ".join(out.split())
+    assert "ruckig goes straight in joint space, and the path of the plan is curved" in words
+    assert "with cycloid, shapers and toppra" in words
+
+
+def test_toppra_follows_a_curved_path_within_the_limits_of_all_joints(call):
+    """Speeds and accelerations are kept; what swings is left behind."""
+    pytest.importorskip("toppra")
+    Path("curved.csv").write_text(
+        "0,-1.4,1.7,-1.8,-1.5,0\n0.8,-1.3,1.4,-1.4,-1.3,0\n1.4,-1,1.2,-1.3,-1.2,0.6\n"
     )
+    limits = "--acceleration-limit 30 --speed-limit elbow_joint=1.2"
+    line = f"plan ur5_bar.yaml --path curved.csv --duration 1 {limits} --terms 6"
+    assert call(f"{line} --output move.json")[0] == 0
+    code, out, _ = call("compare move.json --baselines toppra --output compared")
+    assert code == 0
+    assert "none of the jerk: its acceleration jumps" in " ".join(out.split())
+    with open("compared/motions.csv", newline="") as file:
+        rows = {row["motion"]: row for row in csv.DictReader(file)}
+    assert float(rows["toppra"]["residual [mm]"]) > 5.0
+    assert "exceeds" not in rows["toppra"] or not rows["toppra"]["exceeds"]
 
 
 def test_durations_are_swept_and_points_are_searched(call):
