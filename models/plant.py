@@ -72,6 +72,10 @@ class FullEquations(Protocol):
         """Where the tip is [m], a column."""
         ...
 
+    def modal_state(self, place: float, state: np.ndarray) -> np.ndarray:
+        """W [m], then W' [m/s] of the plant that a state of angles and rates comes nearest to."""
+        ...
+
 
 class Plant(ABC):
     """Joints with flexible modes: subclass it as a frozen dataclass, in one file.

@@ -24,6 +24,7 @@ from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
 from .front.weighted import weighted_front as weighted_front
+from .planning.correct import correct_in_full as correct_in_full
 from .planning.fastest import Fastest as Fastest
 from .planning.fastest import fastest_move as fastest_move
 from .planning.many import Moves as Moves

@@ -11,6 +11,8 @@ import numpy as np
 from quietarm.models.joint_motion import Array, JointMotion
 from quietarm.models.robot.modes import sag_at
 from quietarm.models.robot.piecewise import Place
+from quietarm.models.robot.reduction import Reduction
+from quietarm.models.robot.tables import modes_on
 
 if TYPE_CHECKING:
     from quietarm.models.robot.robot import RobotOnPath
@@ -28,6 +30,7 @@ class FullRobot:
     """
 
     def __init__(self, plant: RobotOnPath) -> None:
+        self._plant = plant
         self._path = plant.path.extended
         self._dynamics = plant.robot.dynamics_with(plant.stiffness, plant.payload)
         self._tip = plant.robot.tip_place
@@ -72,6 +75,28 @@ class FullRobot:
         positions = ca.vertcat(*(joint.angle for joint in self.joints(path)), angles)
         _, origin = self._dynamics.place(self._tip, positions)
         return origin
+
+    def modal_state(self, place: float, state: Array) -> Array:
+        """W [m], then W' [m/s] of the modes that are followed, by the masses at a place.
+
+        Parameters
+        ----------
+        place : float
+            On the path, where the driven joints rest.
+        state : ndarray, shape (2 * springs,)
+            Angles of the springs [rad, or m], and their rates.
+        """
+        plant = self._plant
+        numbers = modes_on(plant.robot, plant.path)
+        shapes = Reduction(plant.robot.dynamics, self._tip, plant.path, numbers).shapes
+        sag = self.at_rest(place)
+        positions = np.concatenate([self._path([place])[0], sag])
+        driven = self._dynamics.driven
+        masses = self._dynamics.masses(positions).full()[driven:, driven:]
+        along = shapes.T @ masses
+        angles, rates = np.split(state, 2)
+        moving = np.column_stack([angles - sag, rates])
+        return np.linalg.solve(along @ shapes, along @ moving).T.ravel()
 
     def _torques(
         self, path: JointMotion, angles: ca.SX, rates: ca.SX, accelerations: ca.SX

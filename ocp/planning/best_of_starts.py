@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.limits import Limit, Ranged
 from quietarm.ocp.objectives import ENERGY
-from quietarm.ocp.planning.certify import by_cvodes, certify_one
+from quietarm.ocp.planning.certify import OF_A_PLAN, by_cvodes, certify_one
 from quietarm.ocp.solvers.choice import stand_in
 from quietarm.ocp.solvers.problem import STILL, NonlinearProgram, Scalarization, Solution
 from quietarm.ocp.solvers.solver import Solver
@@ -229,13 +229,20 @@ def _widened(problem: NonlinearProgram, limit: Limit, peak: float) -> NonlinearP
     return _with_scalarization(problem, limits=replaced)
 
 
-def _has_a_plan(problem: NonlinearProgram, start: Array, solver: Solver) -> bool:
-    """Whether a plan is found from one start, and CVODES confirms it."""
+def _has_a_plan(
+    problem: NonlinearProgram, start: Array, solver: Solver, most_refined: int = 2
+) -> bool:
+    """Whether a plan is found from one start, and CVODES confirms it.
+
+    It may take so many times the steps: where a remedy needs finer ones, it is at its own edge, and
+    every doubling takes as long as all before.
+    """
     (solution,) = solver.solve([problem], [start])
     if not solution.status.solved:
         return False
+    steps = min(most_refined * problem.transcription.steps, OF_A_PLAN.most_steps)
     try:
-        certify_one(problem, solution, solver)
+        certify_one(problem, solution, solver, replace(OF_A_PLAN, most_steps=steps))
     except SolverFailedError:
         return False
     return True

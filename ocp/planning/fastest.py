@@ -210,36 +210,56 @@ def _narrow(tried: _Tried, tolerance: float, shares: tuple[float, ...] = (0.97, 
                 high = middle
             else:
                 low = middle
-        below = (share * low for share in shares if share * low > least)
-        shorter = next(
-            (duration for duration in below if tried.succeeds(duration, thorough=False)), None
-        )
-        if shorter is None:
-            return
-        low = least or shorter / _GROWTH
-        high = shorter
+        if low > least and tried.succeeds_after_all(low):
+            high = low
+        else:
+            below = (share * low for share in shares if share * low > least)
+            shorter = next((duration for duration in below if tried.succeeds(duration)), None)
+            if shorter is None:
+                return
+            high = shorter
+        low = least or high / _GROWTH
 
 
 class _Tried:
-    """Durations that were tried for a request."""
+    """Durations that were tried for a request.
+
+    Each is tried by the solver alone. What stands in for the solver, and the search for a limit
+    that, if wider, would do, take many times as long: they are for the longest one that failed.
+    Where a stand-in succeeds, the solver alone says little, and all that follow are tried so.
+    """
 
     def __init__(self, request: PlanRequest) -> None:
         self.request = request
         self.best: Plan | None = None
         self.failed: dict[float, str] = {}
+        self._thorough = False
+        self._explained: set[float] = set()
 
-    def succeeds(self, duration: float, thorough: bool = True) -> bool:
-        """Whether there is a plan for a duration, by the solver alone if not thorough."""
+    def succeeds(self, duration: float) -> bool:
+        """Whether there is a plan for a duration."""
         task = replace(self.request.task, duration=duration)
         guess = None if self.best is None else self.best.coefficients
         request = self.request.on(task)
-        request = replace(request, setup=replace(request.setup, thorough=thorough))
+        request = replace(request, setup=replace(request.setup, thorough=self._thorough))
+        if self._thorough:
+            self._explained.add(duration)
         try:
             self.best = plan_along(request.along(self.request.profile, guess))
         except SolverFailedError as error:
             self.failed[duration] = str(error)
             return False
         return True
+
+    def succeeds_after_all(self, duration: float) -> bool:
+        """Whether there is a plan for a duration that failed, by the stand-in as well."""
+        if duration in self._explained:
+            return False
+        before = self._thorough
+        self._thorough = True
+        succeeds = self.succeeds(duration)
+        self._thorough = before or succeeds
+        return succeeds
 
     def bracket(self, least: float) -> tuple[float, float]:
         """Two durations, of which the longer one succeeds and the shorter one does not."""
@@ -249,12 +269,14 @@ class _Tried:
         high = max(self.request.task.duration, 1.01 * least)
         longest = self._longest()
         while not self.succeeds(high):
+            if _GROWTH * high > longest:
+                if self.succeeds_after_all(high):
+                    break
+                raise InfeasibleTaskError(
+                    f"no duration up to {high:.3g} s will do: {self.failed[high]}"
+                )
             low = high
             high = _GROWTH * high
-            if high > longest:
-                raise InfeasibleTaskError(
-                    f"no duration up to {low:.3g} s will do: {self.failed[low]}"
-                )
         while low < high / _GROWTH and self.succeeds(high / _GROWTH):
             high /= _GROWTH
         return max(low, high / _GROWTH), high

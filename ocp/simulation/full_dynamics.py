@@ -28,11 +28,15 @@ Array = NDArray[np.float64]
 
 
 class FullFigures(NamedTuple):
-    """F2 [J], F1 as a distance [m], and the peak torque of every joint [N m]."""
+    """F2 [J], F1 as a distance [m], and the peak torque of every joint [N m].
+
+    On arrival: angles of the springs and their rates, shape (2 * springs,).
+    """
 
     energy: float
     residual: float
     peak_torques: Array
+    arrival: Array
 
 
 def follow_in_full(
@@ -100,7 +104,7 @@ def follow_in_full(
     angles = np.column_stack([rest, later[: equations.springs]])
     places = _tip_places(tip, target, angles)
     away = np.linalg.norm(places[1:] - places[0], axis=1)
-    return FullFigures(work, float(away.max()), np.max(peaks, axis=0))
+    return FullFigures(work, float(away.max()), np.max(peaks, axis=0), state)
 
 
 def _followed(

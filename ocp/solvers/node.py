@@ -47,17 +47,24 @@ def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
     }
 
 
-def hessian(expression: Any, by: Sequence[ca.MX]) -> Table:
-    """Second derivatives of an expression."""
+def hessian(expression: Any, by: Sequence[ca.MX], earlier_first: bool = False) -> Table:
+    """Second derivatives of an expression, of which one of each pair is computed.
+
+    It is the derivative along the later symbol of that by the earlier one, or else the other way
+    round: that costs less where the expression is costly to differentiate by the earlier symbols.
+    """
     (gradient,) = ca.reverse(
         [expression],
         [*by],
         [[ca.MX.ones(*expression.shape)]],
     )
-    upper = {
-        place: entry for place, entry in jacobian(gradient, by).items() if place[0] <= place[1]
+    twice = jacobian(gradient, by)
+    half = {
+        (row, column): entry
+        for (row, column), entry in twice.items()
+        if (row >= column if earlier_first else row <= column)
     }
-    return upper | transpose(upper)
+    return half | transpose(half)
 
 
 def transpose(table: Table) -> Table:
@@ -208,7 +215,9 @@ class Node:
         self._first = Tables(inputs, outputs, jacobian(f, y), jacobian(o, v))
         multipliers = symbols(m + self.count, shape)
         lagrangian = sum(w * x for w, x in zip(multipliers, [*f, *o]))
-        self._second = Tables([*inputs, *multipliers], hessian(lagrangian, v))
+        # the place on a path of several joints, the first of v, enters through tables
+        by_place_first = len(sample.joints) > 1
+        self._second = Tables([*inputs, *multipliers], hessian(lagrangian, v, by_place_first))
 
     def evaluate(self, point: Sequence[ca.MX]) -> tuple[list[ca.MX], Table, Table]:
         """The outputs, the Jacobian of f by y, and that of the outputs by v.

@@ -1,4 +1,4 @@
-"""What is used today in place of a plan: the cycloid, input shapers, ruckig, shaped ruckig."""
+"""What is used today in place of a plan: the cycloid, input shapers, ruckig, toppra."""
 
 from __future__ import annotations
 
@@ -14,10 +14,12 @@ from quietarm.ocp.limits import Limit, Shares
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS, Impulses, convolved
 from quietarm.ocp.simulation.free_vibration import FreeVibration
+from quietarm.studies.compare.toppra_motion import toppra_motion
 
 CYCLOID = "cycloid"
 RUCKIG = "ruckig"
-BASELINES = (CYCLOID, *SHAPERS, RUCKIG, *(f"{name}-{RUCKIG}" for name in SHAPERS))
+TOPPRA = "toppra"
+BASELINES = (CYCLOID, *SHAPERS, RUCKIG, *(f"{name}-{RUCKIG}" for name in SHAPERS), TOPPRA)
 """Their names; a shaper alone shapes the cycloid."""
 ALL = "all"
 _SHORTEST = 1e-9
@@ -50,6 +52,8 @@ def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
         return evaluate_coefficients(task, [])
     if name in SHAPERS:
         return evaluate_coefficients(task, [], profile=shaped_cycloid(task, name))
+    if name == TOPPRA:
+        return Candidate.of_free_motion(task, toppra_motion(task))
     shaper = name.removesuffix(RUCKIG).removesuffix("-")
     impulses = _impulses(task, shaper) if shaper else Impulses((1.0,), (0.0,))
     remaining = task.duration - impulses.times[-1]
@@ -122,7 +126,7 @@ def _bounds_along(task: PointToPoint) -> dict[str, tuple[float, float]]:
     if np.abs(bends).max() > _STRAIGHT * np.abs(slopes).max():
         raise ValueError(
             "ruckig goes straight in joint space, and the path of the plan is curved; compare it "
-            "with cycloid and shapers"
+            "with cycloid, shapers and toppra"
         )
     along = dict[str, tuple[float, float]]()
     for limit in task.limits:

@@ -14,7 +14,7 @@ from quietarm.ocp import Plan, PointToPoint, QuietarmError
 from quietarm.ocp.checks import takes
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies import figures
-from quietarm.studies.compare.baselines import baseline, choose_baselines
+from quietarm.studies.compare.baselines import TOPPRA, baseline, choose_baselines
 from quietarm.studies.compare.judged_motions import (
     SAMPLES,
     JudgedMotion,
@@ -181,6 +181,7 @@ def plans_report(
             "robust": robust,
             "tolerated": f"{100 * TOLERATED:g} %",
             "ruckig": any("ruckig" in motion.name for motion in motions),
+            "toppra": any(motion.name == TOPPRA for motion in motions),
         },
         {"motions": table},
         {

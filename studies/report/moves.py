@@ -201,13 +201,21 @@ def _full_rows(plan: Plan) -> list[Row]:
         return []
     share = abs(figures.energy / plan.energy - 1)
     residual = tip_words(figures.residual, plan.task.plant.tip_unit)
+    more = figures.residual - plan.residual
+    certain = plan.task.uncertainty is None
+    remedy = "; --in-full corrects the plan for that" if certain and more > _LEFT else ""
     return [
         (
             "in full",
             f"{figures.energy:.6g} J ({share:.0e} from F2) and {residual} left, by CVODES on the "
-            "whole equations, without modes and tables",
+            f"whole equations, without modes and tables{remedy}",
         )
     ]
+
+
+_LEFT = 1e-4
+"""What a plan may leave by the whole equations, beyond its residual, before a remedy is named [m]:
+the figure that paths are held to."""
 
 
 def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:

@@ -47,8 +47,9 @@ def compare(given: Given) -> None:
     IGD+, additive epsilon, candidates and time; several seeds of a method as median and quartiles.
 
     Plans: energy, residual, the worst case within parameter errors, insensitivity, percentiles,
-    peaks, and the limits that they exceed, beside the cycloid, input shapers and ruckig. Ruckig
-    needs quietarm[ruckig] and an acceleration limit.
+    peaks, and the limits that they exceed, beside the cycloid, input shapers, ruckig and toppra.
+    Ruckig needs quietarm[ruckig] and an acceleration limit, toppra quietarm[toppra] and one of
+    acceleration or torque.
 
     \b
     Examples:

@@ -17,10 +17,12 @@ from quietarm.ocp import (
     PointToPoint,
     Solver,
     SolverFailedError,
+    correct_in_full,
     energy_floor,
     fastest_move,
     plan_move,
 )
+from quietarm.ocp.planning.correct import refuse_correction
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
 from quietarm.studies.cli.files import (
@@ -72,6 +74,8 @@ _OF_SOLVES = ("starts", "seed", *(param.name or "" for param in SOLVER))
     BOUND, RESIDUAL_LIMIT, STARTS, SEED, *SOLVER,
     option("--from", "dataset", type=INPUT, help="Take the move from this dataset of quietarm "
            "sweep, between its cells, without solving."),
+    option("--in-full", is_flag=True, help="Correct the plan of a robot until hardly anything is "
+           "left by its whole equations, every spring nonlinear."),
     SENSITIVITIES, YES,
     output_option({
         ".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture",
@@ -107,6 +111,8 @@ def plan(given: Given) -> None:
         fastest = given.duration == _FASTEST
         first_duration = {"duration": 1.0} if fastest else {}  # the search begins from it
         task = given.read_task(**first_duration)
+        if given.in_full:
+            refuse_correction(task)
         free = given.profile in FREE
         chosen = free or chooses_terms(given.profile, given.terms)
         profile = None if chosen else given.read_profile(task)
@@ -120,6 +126,10 @@ def plan(given: Given) -> None:
             answer = _find_fastest(task, profile, **within, **solves)
         else:
             answer = _find_least_energy(task, profile, starts=given.starts, **within, **solves)
+        if given.in_full and isinstance(answer.motion, Plan):
+            with busy("correcting by the whole equations"):
+                corrected = correct_in_full(answer.motion, solver=solves["solver"])
+            answer = replace(answer, motion=corrected)
         if isinstance(task.plant, RobotOnPath):
             straightness = line_note(given, task.plant)
             if straightness is not None:
@@ -139,7 +149,7 @@ def _refuse_meaningless(given: Given) -> None:
         why = f"is not for {given.profile}, only for profiles with coefficients"
         free = given.profile in FREE
         given.refuse(of_coefficients, why)
-        given.refuse(["sensitivities"] if free else _OF_SOLVES, why)
+        given.refuse(["sensitivities", "in_full"] if free else _OF_SOLVES, why)
         if fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
         if free and any(ending_of(path) == ".csv" for path in given.output):

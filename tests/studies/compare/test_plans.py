@@ -1,5 +1,6 @@
 """Plans of one move beside shapers and ruckig, on the nominal plant and under errors."""
 
+import math
 import re
 import sys
 from dataclasses import replace
@@ -8,13 +9,14 @@ from math import pi
 import numpy as np
 import pytest
 
-from quietarm.models import FlexibleBeam
+from quietarm.models import FlexibleBeam, JointMotion, SingleLinkManipulator
 from quietarm.ocp import PointToPoint, Uncertainty, evaluate_coefficients, plan_move
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies.compare import compare_plans
 from quietarm.studies.compare.baselines import ruckig_motion, shaped
 from quietarm.studies.compare.plan_comparison import plans_report
+from quietarm.studies.compare.toppra_motion import toppra_motion
 
 BEAM = FlexibleBeam(omega=2 * pi * 3.2, zeta=0.01)
 MOVE = PointToPoint(BEAM, pi / 3, 0.7, torque_limit=1.5, acceleration_limit=80.0)
@@ -122,6 +124,48 @@ def test_a_baseline_without_a_row_of_figures_says_why_and_what_to_do(task, why):
             assert motion.why in report.markdown()
     (ruckig,) = [motion for motion in judged if motion.name == "ruckig"]
     assert ruckig.why.startswith(why)
+
+
+def test_toppra_is_as_fast_as_the_limits_allow_and_stretched_to_the_duration():
+    """A rigid joint from rest to rest: bang-bang in 2 sqrt(span / acceleration), a closed form."""
+    pytest.importorskip("toppra")
+    task = replace(MOVE, jerk_limit=None, speed_limit=None, torque_limit=None)
+    task = replace(task, acceleration_limit=80.0)
+    least = 2 * math.sqrt(task.span / 80.0)
+    fastest = toppra_motion(replace(task, duration=1.001 * least))
+    assert np.abs(fastest.acceleration).max() == pytest.approx(80.0, rel=3e-3)
+    with pytest.raises(ValueError, match="within the limits it takes"):
+        toppra_motion(replace(task, duration=0.99 * least))
+    motion = toppra_motion(task)
+    assert motion.times[-1] == pytest.approx(task.duration)
+    angles, speeds = motion.boundaries(task.start)
+    assert angles[-1] == pytest.approx(task.target, abs=1e-9)
+    assert speeds[-1] == pytest.approx(0.0, abs=1e-9)
+    stretched = 80.0 * (least / task.duration) ** 2
+    assert np.abs(motion.acceleration).max() == pytest.approx(stretched, rel=3e-3)
+
+
+def test_toppra_keeps_a_torque_and_goes_backwards():
+    """The rigid joint's torque stays below its limit; the link, which swings, takes more."""
+    pytest.importorskip("toppra")
+    plant = SingleLinkManipulator()
+    task = PointToPoint(plant, start=0.5, target=-0.2, duration=0.8, torque_limit=0.12)
+    free = toppra_motion(task)
+    still = [0.0] * plant.modes
+    pushed = [JointMotion(0.0, 0.0, push) for push in free.acceleration.tolist()]
+    torques = [plant.torques(motion, still, still, still)[0] for motion in pushed]
+    assert np.abs(torques).max() <= 0.12 * (1 + 1e-6)
+    assert free.boundaries(task.start)[0][-1] == pytest.approx(-0.2)
+
+
+def test_toppra_needs_a_limit_and_to_be_installed(monkeypatch):
+    (found,) = compare_plans(
+        {}, ["toppra"], task=replace(MOVE, acceleration_limit=None, torque_limit=None)
+    )
+    assert found.why.startswith("toppra moves within a limit of acceleration or torque, and")
+    monkeypatch.setitem(sys.modules, "toppra.algorithm", None)
+    (found,) = compare_plans({}, ["toppra"], task=MOVE)
+    assert found.why.startswith("toppra is not installed; install it: pip install")
 
 
 def test_ruckig_that_is_not_installed_says_how_to_install_it(monkeypatch):

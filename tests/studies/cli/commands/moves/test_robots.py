@@ -67,6 +67,17 @@ def test_a_straight_line_in_space(call):
     assert plan.task.plant.path.joints == UR5_JOINTS
 
 
+def test_a_plan_is_corrected_by_the_whole_equations(call):
+    code, out, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 --in-full --output move.json")
+    assert code == 0
+    words = " ".join(out.split())
+    assert "on arrival W -0.0" in words  # what makes up for the modes
+    assert "as wanted (below 0.001 mm) at the tip" in words
+    plan = qa.Plan.load("move.json")
+    assert plan.task.final is not None
+    assert plan.candidate.in_full.residual <= 1e-5
+
+
 def test_waypoints_of_another_planner(call):
     """A JointTrajectory, joints in another order, is followed without its times."""
     message = {
@@ -111,9 +122,27 @@ def test_ruckig_does_not_follow_a_curved_path(call):
     assert call(f"{line} --output move.json")[0] == 0
     code, out, _ = call("compare move.json --baselines ruckig")
     assert code == 0
-    assert "ruckig goes straight in joint space, and the path of the plan is curved" in " ".join(
-        out.split()
+    words = " ".join(out.split())
+    assert "ruckig goes straight in joint space, and the path of the plan is curved" in words
+    assert "with cycloid, shapers and toppra" in words
+
+
+def test_toppra_follows_a_curved_path_within_the_limits_of_all_joints(call):
+    """Speeds and accelerations are kept; what swings is left behind."""
+    pytest.importorskip("toppra")
+    Path("curved.csv").write_text(
+        "0,-1.4,1.7,-1.8,-1.5,0\n0.8,-1.3,1.4,-1.4,-1.3,0\n1.4,-1,1.2,-1.3,-1.2,0.6\n"
     )
+    limits = "--acceleration-limit 30 --speed-limit elbow_joint=1.2"
+    line = f"plan ur5_bar.yaml --path curved.csv --duration 1 {limits} --terms 6"
+    assert call(f"{line} --output move.json")[0] == 0
+    code, out, _ = call("compare move.json --baselines toppra --output compared")
+    assert code == 0
+    assert "none of the jerk: its acceleration jumps" in " ".join(out.split())
+    with open("compared/motions.csv", newline="") as file:
+        rows = {row["motion"]: row for row in csv.DictReader(file)}
+    assert float(rows["toppra"]["residual [mm]"]) > 5.0
+    assert "exceeds" not in rows["toppra"] or not rows["toppra"]["exceeds"]
 
 
 def test_durations_are_swept_and_points_are_searched(call):
@@ -193,6 +222,9 @@ def test_a_robot_is_listed_with_what_was_read(call):
     ("plan ur5_bar.yaml --line-by 0,0,0.1 --duration 1", "a line begins somewhere; give --start"),
     (f"plan ur5_bar.yaml {ENDS} --link tool0 --duration 1", "--link is for --line-to and"),
     ("plan single-link --line-by 0,0,1 --target 1 --duration 1", "--line-by is for a robot"),
+    ("plan single-link --target 1 --duration 1 --in-full", "only plans of robots are corrected"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --in-full --error frequency=5%", "leave the errors"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --in-full --profile free", "is not for free"),
     ("plan single-link --path corner.csv --target 1 --duration 1", "--path is for a robot"),
 ])  # fmt: skip
 def test_what_is_refused_in_one_line(refused, line, words):
