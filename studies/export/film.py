@@ -22,8 +22,9 @@ from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, WIDTHS, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
+from quietarm.studies.figures.grammar import AFTER_ARRIVAL, FAINT, GREY, INK
 from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
-from quietarm.studies.figures.structure import GROUND, Structure, structures_of
+from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.saving import as_written
 from quietarm.studies.report.words import (
     move_of,
@@ -235,7 +236,7 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
         draw_quantity([structure.line for structure in structures], quantity, ax)
         ax.set_xlim(0.0, film.end)
         ax.xaxis.label.set_fontsize(9)
-        cursor = ax.axvline(0.0, color="0.2", linewidth=1.2)
+        cursor = ax.axvline(0.0, color=INK, linewidth=1.2)
         updates.append(lambda k, cursor=cursor: cursor.set_xdata([times[k], times[k]]))
     with as_written(figure):
         figure.draw_without_rendering()
@@ -271,13 +272,13 @@ def _draw_structure(ax: Axes, structure: Structure) -> Iterator[Update]:
         return lambda k: artist.set_data(*points[k].T)
 
     for points, colour, _ in structure.unbent:
-        if colour == GROUND:
+        if colour == FAINT:
             continue
-        yield part(points, color="0.55", linewidth=1.0, linestyle="--")
+        yield part(points, color=GREY, linewidth=1.0, linestyle="--")
     begun = int(np.searchsorted(structure.times, structure.trail_begins))
     for path in structure.paths:
         trail = [path[begun : k + 1] for k in range(len(path))]
-        yield part(trail, color=structure.line.colour, linewidth=2.0, alpha=0.5)
+        yield part(trail, color=structure.line.colour, linewidth=2.0, alpha=AFTER_ARRIVAL)
     for points, colour, width in structure.bent:
         disc = np.ptp(points[0], axis=0).max() < _DISC
         yield part(points, color=colour, linewidth=_THIN * width, marker="o" if disc else "",

@@ -25,7 +25,7 @@ from quietarm.studies.figures.axes import (
     new_figure,
     residual_label,
 )
-from quietarm.studies.figures.looks import Look, look
+from quietarm.studies.figures.grammar import FAINT, PAPER, Look, looks
 from quietarm.studies.report.words import title_of_picture
 from quietarm.studies.tips import tip_scale
 
@@ -136,10 +136,11 @@ def draw_comparison(
             )  # fmt: skip
     for point, mark in zip(known, cycle("*Pv")):
         if point.residual is None:
-            ax.axhline(point.energy, color="black", lw=1, ls=":", label=point.label)
+            ax.axhline(point.energy, color=PAPER.colour, lw=PAPER.width, ls=PAPER.dash,
+                       label=point.label)  # fmt: skip
         else:
             ax.plot(
-                point.residual * scale, point.energy, mark, color="black", markersize=11,
+                point.residual * scale, point.energy, mark, color=PAPER.colour, markersize=11,
                 markeredgecolor="white", label=point.label, zorder=5,
             )  # fmt: skip
     if comparison.floor is not None:
@@ -185,8 +186,9 @@ def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
 def _drawn(comparison: Comparison) -> Iterator[tuple[Group, Look, float]]:
     """Every group, its look, and how much wider it is drawn, to be seen below the next ones."""
     last = len(comparison.groups) - 1
-    for place, group in enumerate(comparison.groups):
-        yield group, look(place), 0.35 * (last - place)
+    meanings = ["plan" if group.by_gradient else "search" for group in comparison.groups]
+    for place, (group, look) in enumerate(zip(comparison.groups, looks(meanings))):
+        yield group, look, 0.35 * (last - place)
 
 
 def _up_to(points: Array, right: float) -> Array:
@@ -214,4 +216,4 @@ def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
     ax.set_xlabel(f"{residual_label(tip_unit, comparison.task.residual_window)}, logarithmic")
     for level in comparison.levels:
         if least_residual <= level <= right:
-            ax.axvline(level * scale, color="0.75", linewidth=0.8, zorder=0)
+            ax.axvline(level * scale, color=FAINT, linewidth=0.8, zorder=0)

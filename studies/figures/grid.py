@@ -16,7 +16,7 @@ from quietarm.studies.figures.axes import (
     new_figure,
     residual_label,
 )
-from quietarm.studies.figures.looks import look
+from quietarm.studies.figures.grammar import BROWN, FAINT, GREY, HEAT, PALE, PINK, PLAN, RED, SKY
 from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.grid import Axis
 from quietarm.studies.sweep.store import Store
@@ -48,8 +48,8 @@ def grid_figure(store: Store) -> Figure:
         norm = _norm(values)
         panels[0, column].set_title(label)
         for ax, (place, _) in zip(panels[:, column], slices):
-            ax.patch.set(hatch="///", edgecolor="0.75", facecolor="white")
-            ax.pcolormesh(x, y, values[place], norm=norm, cmap="viridis", shading="nearest")
+            ax.patch.set(hatch="///", edgecolor=FAINT, facecolor="white")
+            ax.pcolormesh(x, y, values[place], norm=norm, cmap=HEAT, shading="nearest")
             if not (values > least).any():
                 words = f"at most {least:g}"
                 ax.text(0.5, 0.5, words, transform=ax.transAxes, ha="center", color="white")
@@ -57,7 +57,7 @@ def grid_figure(store: Store) -> Figure:
             known = values[values > 0]
             few = known.max() < 1e3 * known.min()
             ticks = LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,))
-            bar = figure.colorbar(ScalarMappable(norm, "viridis"), ax=list(panels[:, column]),
+            bar = figure.colorbar(ScalarMappable(norm, HEAT), ax=list(panels[:, column]),
                                   ticks=ticks, format="{x:g}")  # fmt: skip
             bar.minorticks_off()
     _states(figure, panels[:, -1], x, y, store, places)
@@ -79,7 +79,7 @@ def fronts_figure(store: Store) -> Figure:
     panels = figure.subplots(1, len(places), squeeze=False, sharey=True)[0]
     values, name = _shown(axes[-1])
     norm = Normalize(float(values.min()), float(values.max()))
-    colours = ScalarMappable(norm, "viridis")
+    colours = ScalarMappable(norm, HEAT)
     for ax, place in zip(panels, places):
         for k, value in enumerate(values):
             shown_residual = tip_scale(tip_unit)[1] * residual[(*place, k)]
@@ -98,11 +98,10 @@ def _over_one(store: Store, axis: Axis) -> Figure:
     panels = figure.subplots(len(variables), 1, sharex=True)
     values, name = _shown(axis)
     without = np.isnan(store.read("energy"))
-    for number, (ax, (label, shown, _)) in enumerate(zip(panels, variables)):
-        look_of_front = look(number)
-        ax.plot(values, shown, look_of_front.mark + "-", color=look_of_front.colour)
+    for ax, (label, shown, _) in zip(panels, variables):
+        ax.plot(values, shown, marker=PLAN.mark, color=PLAN.colour)
         logarithmic(ax, shown, "y")
-        ax.plot(values[without], np.full(without.sum(), 0.02), "x", color="0.4",
+        ax.plot(values[without], np.full(without.sum(), 0.02), "x", color=RED,
                 transform=ax.get_xaxis_transform())  # fmt: skip
         ax.set_ylabel(label)
         ax.grid(alpha=0.25)
@@ -151,10 +150,10 @@ def _states(
 ) -> None:  # fmt: skip
     """How cells ended, in colours of their own."""
     # how cells ended, in the order of `STATES`; told apart in print by their lightness as well
-    greys = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")
+    colours = (PALE, PLAN.colour, SKY, RED, PINK, BROWN, GREY)
     status = store.read(STATUS)
     present = sorted({*np.unique(status).astype(int).tolist()})
-    cmap = ListedColormap([greys[k] for k in present])
+    cmap = ListedColormap([colours[k] for k in present])
     numbers = np.searchsorted(present, status)
     norm = BoundaryNorm(np.arange(len(present) + 1) - 0.5, len(present))
     panels[0].set_title("how it ended")

@@ -25,7 +25,8 @@ from quietarm.studies.figures.axes import (
     letter,
     new_figure,
 )
-from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
+from quietarm.studies.figures.grammar import AFTER_ARRIVAL, ARRIVAL, LIMIT, PLAN, Dash, Look, looks
+from quietarm.studies.figures.meaning import is_plain_cycloid, meaning_of
 from quietarm.studies.report.words import raised, title_of_picture
 from quietarm.studies.tips import tip_scale
 
@@ -66,7 +67,8 @@ class Line:
     label : str
         What the legend calls it.
     colour : str, optional
-        Any of matplotlib's; by default one of `COLOURS`, with dashes to match.
+        Any of matplotlib's; by default that of what the motion is, with dashes to match: a plan,
+        the plain cycloid, a robust plan, a floor.
     style : str or tuple
         Its dashes, where there is a colour.
     """
@@ -127,19 +129,35 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
             style = line.style if alone else other_styles[(i - 1) % len(other_styles)]
             label = line.label + ("" if curve is not None else _which(plant, quantity, i))
             drawn.append(values)
-            ax.plot(line.plan.trajectory.time, values, color=line.colour, linestyle=style,
-                    linewidth=1.6, label=label)  # fmt: skip
+            _draw_curve(ax, line, values, style, label)
     for duration in {line.plan.task.duration for line in lines}:
-        ax.axvline(duration, color="0.6", linewidth=0.8, linestyle="--")
+        draw_arrival(ax, duration)
     for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn), curve)):
         label = "_" if k else "limit"  # once in the legend
-        ax.axhline(level, color="black", linewidth=1.1, linestyle=":", label=label)
+        ax.axhline(level, color=LIMIT.colour, linewidth=LIMIT.width, linestyle=LIMIT.dash,
+                   label=label)  # fmt: skip
     if _cut_off_pulses(ax, lines, quantity, curve):
         title += ", pulses cut off"
     ax.set_title(title, **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
     ax.margins(x=0)
     return ax
+
+
+def _draw_curve(ax: Axes, line: Line, values: Array, style: Dash, label: str) -> None:
+    """Draw a quantity over time, lighter after arrival."""
+    time = line.plan.trajectory.time
+    after = int(np.searchsorted(time, line.plan.task.duration))
+    width = PLAN.width
+    ax.plot(time[: after + 1], values[: after + 1], color=line.colour, linestyle=style,
+            linewidth=width, label=label)  # fmt: skip
+    ax.plot(time[after:], values[after:], color=line.colour, linestyle=style,
+            linewidth=width, alpha=AFTER_ARRIVAL, label="_")  # fmt: skip
+
+
+def draw_arrival(ax: Axes, duration: float) -> None:
+    """Draw the moment of arrival [s], a thin dashed line."""
+    ax.axvline(duration, color=ARRIVAL.colour, linewidth=ARRIVAL.width, linestyle=ARRIVAL.dash)
 
 
 def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
@@ -298,33 +316,37 @@ def _in_two_lines(name: str) -> str:
 @takes(floor=Floor, plan=Plan)
 def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
     """The panels of a floor, over the plan where there is one."""
-    lines = [Line(floor, f"floor, {floor.energy:.4g} J", BLUE)]
+    lines = [Line(floor, f"floor, {floor.energy:.4g} J")]
     if plan is not None:
-        label = f"plan of {plan.profile.size} terms, {plan.energy:.4g} J"
-        lines.insert(0, Line(plan, label, RED, "--"))
+        lines.insert(0, Line(plan, f"plan of {plan.profile.size} terms, {plan.energy:.4g} J"))
     return motion_figure(lines)
 
 
 def lines_of(motions: Motions) -> list[Line]:
     """The lines of a picture, each with a colour; ValueError where there is none."""
     if isinstance(motions, Plan):
-        cycloid = evaluate_coefficients(motions.task, [])
-        motions = [Line(cycloid, "plain cycloid", GREY), Line(motions, "this plan", BLUE)]
+        motions = _beside_the_cycloid(motions)
     elif isinstance(motions, Floor):
-        motions = [Line(motions, f"floor, {motions.energy:.4g} J", BLUE)]
+        motions = [Line(motions, f"floor, {motions.energy:.4g} J")]
     if not isinstance(motions, Sequence) or isinstance(motions, str):
         instance("motions", motions, Plan)  # which is what was meant
     if not motions:
         raise ValueError("no motion is given; give one or more")
     for i, line in enumerate(motions, start=1):
         instance(f"motion {i}", line, Line)
-    looks = map(look, range(len(motions)))
-    return [
-        line
-        if line.colour
-        else replace(line, colour=look_of_motion.colour, style=look_of_motion.dash)
-        for line, look_of_motion in zip(motions, looks)
-    ]
+    of_meaning = iter(looks([meaning_of(line.plan) for line in motions if not line.colour]))
+    return [line if line.colour else _as(line, next(of_meaning)) for line in motions]
+
+
+def _beside_the_cycloid(plan: Plan) -> list[Line]:
+    """A plan over the plain cycloid of its task; of that cycloid itself no second one."""
+    if is_plain_cycloid(plan):
+        return [Line(plan, "plain cycloid")]
+    return [Line(evaluate_coefficients(plan.task, []), "plain cycloid"), Line(plan, "this plan")]
+
+
+def _as(line: Line, look: Look) -> Line:
+    return replace(line, colour=look.colour, style=look.dash)
 
 
 def limits_in_sight(
