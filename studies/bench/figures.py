@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from quietarm.studies.bench.results import Results, bench_label, derivative_free
 from quietarm.studies.bench.statistics import ALPHA, Ranking
 from quietarm.studies.figures.axes import TITLE, legend_below, logarithmic, new_figure
-from quietarm.studies.figures.grammar import Look, looks
+from quietarm.studies.figures.grammar import PLAN, SEARCH, Look, looks
 
 _COSTS = {"seconds": "processor time [s]", "evaluations": "candidates simulated"}
 
@@ -149,5 +149,9 @@ def ranks_figure(ranking: Ranking) -> Figure:
             p_values,
             ax=figure.subplots(),
             label_props={"size": 8},
+            color_palette={
+                bench_label(method): (SEARCH if derivative_free(method) else PLAN).colour
+                for method in ranking.methods
+            },
         )
     return figure

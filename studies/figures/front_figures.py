@@ -24,9 +24,11 @@ from quietarm.studies.figures.axes import (
     residual_label,
     side_by_side,
 )
-from quietarm.studies.figures.grammar import INK, PALE, PLAN, RED, Look, looks, variants
+from quietarm.studies.figures.grammar import PALE, PLAN, RED, Look, looks, variants
+from quietarm.studies.figures.marked_points import mark_points
+from quietarm.studies.report.captions import caption_of_fronts, caption_of_polish
 from quietarm.studies.report.methods import is_gradient, label_of
-from quietarm.studies.report.words import spread_words, title_of_picture
+from quietarm.studies.report.words import raised, spread_words, title_of_picture
 from quietarm.studies.tips import tip_scale, tip_words
 
 _MOST_NAMED = 10
@@ -223,25 +225,22 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Energy against residual, of a single front with its knee; of searches the median
-        hypervolume with its quartiles against candidates; for several seeds also the least energy
-        of each within 1 mm.
+        Energy against residual, of a single front with its ends, its knee and 1 mm; of searches the
+        median hypervolume with its quartiles against candidates; for several seeds also the least
+        energy of each within 1 mm.
     """
     method = fronts[0].record.method
     gradient = is_gradient(method)
     panels = 1 + (not gradient and all(front.history for front in fronts))
     panels += panels > 1 and len(fronts) > 1
-    title = f"{label_of(method)}: {title_of_picture(fronts[0].task)}"
-    figure, axes = side_by_side(panels, title, width=4.2 if panels > 1 else 6.4)
+    facts = f"{label_of(method)}: {raised(title_of_picture(fronts[0].task))}"
+    width = 4.2 if panels > 1 else 6.4
+    figure, axes = side_by_side(panels, caption_of_fronts(fronts), facts, width)
     draw_fronts(fronts, axes[0], linear=gradient)
     tip_unit = fronts[0].task.plant.tip_unit
     name_objectives(axes[0], tip_unit, fronts[0].task.residual_window)
-    if len(fronts) == 1 and len(fronts[0].points) > 2:
-        knee = fronts[0].knee()
-        label = f"knee: {knee.energy:.4g} J at {tip_words(knee.residual, tip_unit)}"
-        shown_residual = tip_scale(tip_unit)[1] * max(knee.residual, REST)
-        axes[0].plot(shown_residual, knee.energy, "o", color=INK,
-                     fillstyle="none", label=label)  # fmt: skip
+    if len(fronts) == 1:
+        mark_points(axes[0], np.column_stack([fronts[0].residuals, fronts[0].energies]), tip_unit)
         axes[0].legend(fontsize=8)
     for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:]):
         draw(fronts, ax)
@@ -251,8 +250,8 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
 @takes(before=Front)
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """Draw a front before and after polishing, and the energy that this saved point by point."""
-    name = label_of(polish.front.record.method)
-    figure, (ax, saved) = side_by_side(2, f"{name}: {title_of_picture(before.task)}", width=5.6)
+    facts = f"{label_of(polish.front.record.method)}: {raised(title_of_picture(before.task))}"
+    figure, (ax, saved) = side_by_side(2, caption_of_polish(polish), facts, width=5.6)
     draw_fronts([before, polish.front], ax, ("before", "after"))
     tip_unit = before.task.plant.tip_unit
     name_objectives(ax, tip_unit, before.task.residual_window)

@@ -118,7 +118,10 @@ def _over_parts(row: Any, machine: Identified) -> None:
         ax.axhspan(*ends, color=BLUE, alpha=0.35, linewidth=0, label="mean, 95 %")
         ax.errorbar(number, values, spread, fmt="o", color=INK, markersize=3, linewidth=0.8)
         ax.set_xlabel("ring-down", fontsize=8)
-        ax.set_ylabel("frequency [Hz]" if hertz else estimate.parameter, fontsize=8)
+        ax.set_ylabel(
+            "frequency [Hz]" if hertz else f"{estimate.parameter} [{units[estimate.parameter]}]",
+            fontsize=8,
+        )
         ax.xaxis.get_major_locator().set_params(integer=True)
         ax.ticklabel_format(axis="y", useOffset=False)
         ax.tick_params(labelsize=7)

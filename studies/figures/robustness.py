@@ -20,6 +20,8 @@ from quietarm.studies.figures.axes import (
     side_by_side,
 )
 from quietarm.studies.figures.grammar import LIMIT, looks
+from quietarm.studies.report.captions import caption_of_judged
+from quietarm.studies.report.words import raised
 from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
@@ -120,7 +122,8 @@ def motions_figure(motions: Sequence[JudgedMotion], title: str, tip_unit: str = 
     curves = {motion.name: motion.robustness for motion in with_curve}
     meanings = [motion.meaning for motion in with_curve]
     names = list(next(iter(curves.values())).ranges) if curves else []
-    figure, axes = side_by_side(1 + len(names), title, width=6.0)
+    caption = caption_of_judged(motions, tip_unit)
+    figure, axes = side_by_side(1 + len(names), caption, raised(title), width=6.0)
     draw_motions(motions, axes[0], tip_unit)
     if any(judged.worst for judged in motions):
         label = residual_label(tip_unit, _window(motions))
