@@ -16,6 +16,8 @@ from sphinx.application import Sphinx
 TEXTS = "page_texts.js"
 _FRAME = "const PAGE_TEXTS = {};\n"
 """Around the texts in their file."""
+_BLOCKS = ("p", "h1", "h2", "h3", "h4", "li", "dt", "dd", "td", "th", "pre", "div")
+"""After these the next word begins."""
 
 
 class _Sections(HTMLParser):
@@ -39,6 +41,8 @@ class _Sections(HTMLParser):
             self._hidden += 1
 
     def handle_endtag(self, tag: str) -> None:
+        if tag in _BLOCKS:
+            self.texts[self._anchors[-1]].append(" ")
         if tag == "section":
             self._anchors.pop()
         elif self._hidden and tag in ("script", "style", "a"):

@@ -22,8 +22,11 @@ const snippet = (texts, terms) => {
   return (texts[0] || "").slice(0, wordsInAll);
 };
 
-// As many letters of a term as its forms share: vibrates, vibration.
-const stem = (term) => (term.length > 5 ? term.slice(0, term.length - 2) : term);
+// As many letters of a term as its forms share: vibrates, vibration; tip, tips.
+const stem = (term) => {
+  if (term.length > 5) return term.slice(0, -2);
+  return term.length > 3 ? term.replace(/s$/, "") : term;
+};
 
 const mark = (paragraph, words, terms) => {
   const escaped = terms.map((term) => term.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"));

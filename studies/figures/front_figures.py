@@ -193,13 +193,14 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
         else:
             ax.plot(place, 0.02, "x", color=seed.colour, transform=ax.get_xaxis_transform())
     figures = ""
+    quartiles = ""
     if np.isfinite(spread.median):
         ax.axhline(spread.median, color=colour, linewidth=1.0)
         figures = f": {spread.median:.4g} J"
     if np.isfinite(spread.upper):
         ax.axhspan(spread.lower, spread.upper, alpha=0.2, color=colour)
-        figures += f" ({spread.lower:.4g} to {spread.upper:.4g})"
-    words = f"{spread.count} of {spread.seeds} seeds reach {level}"
+        quartiles = f"{spread.lower:.4g} to {spread.upper:.4g} J, "
+    words = f"{quartiles}{spread.count} of {spread.seeds} seeds reach it"
     ax.set_title(f"energy at {level}{figures}\n{words}", **TITLE)
     ax.set_xlabel(f"seed (x: never within {level})")
     ax.set_ylabel("energy F2 [J]")

@@ -321,9 +321,9 @@ def _in_two_lines(name: str) -> str:
 @takes(floor=Floor, plan=Plan)
 def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
     """The panels of a floor, over the plan where there is one."""
-    lines = [Line(floor, f"floor, {floor.energy:.4g} J")]
+    lines = [Line(floor, "floor")]
     if plan is not None:
-        lines.insert(0, Line(plan, f"plan of {plan.profile.size} terms, {plan.energy:.4g} J"))
+        lines.insert(0, Line(plan, f"plan of {plan.profile.size} terms"))
     return motion_figure(lines)
 
 
@@ -332,7 +332,7 @@ def lines_of(motions: Motions) -> list[Line]:
     if isinstance(motions, Plan):
         motions = _beside_the_cycloid(motions)
     elif isinstance(motions, Floor):
-        motions = [Line(motions, f"floor, {motions.energy:.4g} J")]
+        motions = [Line(motions, "floor")]
     if not isinstance(motions, Sequence) or isinstance(motions, str):
         instance("motions", motions, Plan)  # which is what was meant
     if not motions:

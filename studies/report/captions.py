@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.ocp import Floor, Front, Plan, Polish
 from quietarm.ocp.record import REST
@@ -61,7 +64,7 @@ def _caption(said: Mapping[str, tuple[float, str]], most_left: float, tip_unit: 
 def _named(name: str) -> str:
     """A name within a sentence: the plain cycloid."""
     articled = ("plain cycloid", "cycloid", "plan", "robust plan", "floor")
-    return f"the {name}" if name in articled else name
+    return f"the {name}" if name in articled or name.startswith("plan of") else name
 
 
 def _ending(motion: Plan | Floor) -> str:
@@ -129,3 +132,20 @@ def caption_of_polish(polish: Polish) -> str:
     if not shares:
         return "No point was polished"
     return f"Polishing saves up to {max(shares):.2g} % of the energy of a point"
+
+
+def caption_of_cells(
+    energies: NDArray[np.float64], residuals: NDArray[np.float64], tip_unit: str
+) -> str:
+    """How many cells of a grid have a plan, what these take, and what they leave."""
+    planned = np.isfinite(energies)
+    words = f"{planned.sum()} of {planned.size} moves have a plan"
+    if not planned.any():
+        return words
+    low = energies[planned].min()
+    high = energies[planned].max()
+    left = residuals[planned].max()
+    words = f"{words}, of {low:.3g} to {high:.3g} J"
+    if left < REST:
+        return f"{words}; all arrive at rest"
+    return f"{words}; they leave up to {tip_words(float(left), tip_unit)}"
