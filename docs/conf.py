@@ -31,6 +31,7 @@ extensions = [
     "sphinx_inline_tabs",
     "glossary_links",
     "search_snippets",
+    "whole_words",
 ]
 root_doc = "docs/index"
 include_patterns = [
