@@ -29,6 +29,7 @@ from quietarm.ocp.front.points import (
     FrontPoint,
     Mark,
     evaluated,
+    knee_of,
     non_dominated,
 )
 from quietarm.ocp.objectives import (
@@ -317,12 +318,7 @@ class Front(Answer):
     def knee(self) -> FrontPoint:
         """The point farthest below the plane through the ends, all objectives scaled."""
         points = self._nonempty()
-        values = self.objective_values
-        spans = np.ptp(values, axis=0)
-        if len(points) < 3 or not np.all(spans > 0):
-            return points[0]
-        scaled = values / spans
-        return points[int(np.argmin(scaled.sum(axis=1)))]
+        return points[knee_of(self.objective_values)]
 
     def _nonempty(self) -> Sequence[FrontPoint]:
         if len(self.points) == 0:

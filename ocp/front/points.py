@@ -287,3 +287,14 @@ def point_of(motion: Candidate, objectives: Sequence[str]) -> FrontPoint:
     names = peak_quantities(objectives)
     peaks = {name: motion.motion.peak(name) for name in names} if names else {}
     return FrontPoint(motion.coefficients, motion.residual, motion.energy, peaks=peaks)
+
+
+def knee_of(points: NDArray[np.float64]) -> int:
+    """Which of the points, a column an objective, is farthest below the plane through the ends.
+
+    All objectives are scaled; the first one where there are fewer than three or no trade-off.
+    """
+    spans = np.ptp(points, axis=0)
+    if len(points) < 3 or not np.all(spans > 0):
+        return 0
+    return int(np.argmin((points / spans).sum(axis=1)))

@@ -15,7 +15,7 @@ from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import axes_or_new, logarithmic, name_objectives
-from quietarm.studies.figures.looks import look
+from quietarm.studies.figures.grammar import look
 from quietarm.studies.tips import tip_scale
 
 _LOGARITHMIC_FROM = 5.0

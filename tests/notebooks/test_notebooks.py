@@ -5,7 +5,6 @@ import pytest
 from claims import numbers_of, stated_in, unsupported
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from notebook_files import (
-    NOTEBOOKS,
     PATHS,
     code_cells,
     differences,
@@ -58,10 +57,6 @@ def test_it_is_committed_as_refresh_writes_it(path):
         assert ("jupyter" in cell.metadata) == ("hide-input" in tags)
     assert path.stat().st_size < 700_000
     assert min(map(len, pictures(notebook))) > 10_000  # something is drawn in each
-
-
-def test_the_picture_of_the_documentation_is_one_of_the_first_notebook():
-    assert (NOTEBOOKS / "move.png").read_bytes() in pictures(read(PATHS[0]))
 
 
 @pytest.mark.parametrize(
