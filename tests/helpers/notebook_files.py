@@ -30,6 +30,7 @@ sys.path.insert(0, {here!r})
 import described  # gives pictures their alternative texts
 
 sys.path.remove({here!r})
+sys.path.append({notebooks!r})  # for their checks; a reader's folder is in the clone
 warnings.simplefilter("error")
 warnings.filterwarnings("ignore", module="ipykernel")  # of its own ways, when it shuts down
 """
@@ -93,7 +94,7 @@ def execute(path, folder, client):
     Raises nbclient's CellExecutionError, with the cell and its traceback, where one fails.
     """
     notebook = read(path)
-    begin, extra = new_code_cell(STRICT.format(folder=str(folder), here=HERE)), []
+    begin, extra = new_code_cell(STRICT.format(folder=str(folder), here=HERE, notebooks=str(NOTEBOOKS))), []
     cells = [begin]
     for cell in notebook.cells:
         found = [new_code_cell(each["code"]) for each in solutions(cell)]
