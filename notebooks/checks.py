@@ -203,7 +203,7 @@ def _as_numbers(answer, count):
     if values.dtype.kind not in "iuf":
         raise Nonsense(_described(answer))
     if values.ndim > 1 or values.size != count:
-        what = "one number" if values.size == 1 else f"numbers of the shape {values.shape}"
+        what = "one number" if values.size == 1 else f"{values.size} numbers"
         raise Nonsense(f"{what} in place of {'one' if count == 1 else count}")
     if not np.isfinite(values).all():
         raise Nonsense("not finite")
@@ -220,8 +220,10 @@ def _how_far(value, right):
     if right == 0:
         return "too large" if value > 0 else "too small"
     ratio = value / right
-    if ratio <= 0:
-        return "of the other sign" if ratio < 0 else "not 0"
+    if ratio == 0:
+        return "too small: it is not 0"
+    if ratio < 0:
+        return "of the wrong sign"
     direction = "large" if ratio > 1 else "small"
     if 1 / TIMES < ratio < TIMES:
         share = 100 * abs(ratio - 1)
