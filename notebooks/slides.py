@@ -160,7 +160,8 @@ def _slides_of(unit):
     """The slides of a unit, one or more, each a list of cells."""
     slides = [[new_markdown_cell(unit.shown)]]
     for piece in unit.pieces:
-        if sum(map(_height, [*slides[-1], piece])) > FULL:
+        first_exercise = piece.cell_type == "markdown" and slides[-1][-1].cell_type == "code"
+        if first_exercise or sum(map(_height, [*slides[-1], piece])) > FULL:
             slides.append([new_markdown_cell(_title(unit.shown))])
         slides[-1].append(piece)
     sentences = unit.said

@@ -1,5 +1,8 @@
 """The notebooks and their exercises run as they stand, and are committed with what they show."""
 
+import re
+from typing import NamedTuple
+
 import nbformat
 import pytest
 from claims import numbers_of, stated_in, unsupported
@@ -18,6 +21,24 @@ from notebook_files import (
 )
 
 each_notebook = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
+
+
+class Row(NamedTuple):
+    """What the table of the course says of a notebook."""
+
+    number: str
+    title: str
+    question: str
+
+
+TABLE = {
+    file: Row(number, title, question)
+    for number, title, file, question in re.findall(
+        r"^\| \[(\d\d\w?) ([^\]]+)\]\(([^)]+)\) \| (.+) \|$",
+        (NOTEBOOKS / "README.md").read_text(),
+        re.MULTILINE,
+    )
+}
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +79,39 @@ def test_it_is_committed_as_refresh_writes_it(path):
         assert ("jupyter" in cell.metadata) == ("hide-input" in tags)
     assert path.stat().st_size < 700_000
     assert min(map(len, pictures(notebook))) > 10_000  # something is drawn in each
+
+
+def test_the_table_of_the_course_has_every_notebook_in_its_order():
+    assert list(TABLE) == [path.name for path in PATHS]
+
+
+@each_notebook
+def test_it_begins_with_its_question_and_ends_with_what_was_seen(path):
+    first, *_, last = read(path).cells
+    assert first.source.split("\n\n")[0].startswith("# ")
+    assert first.source.split("\n\n")[1] == f"**{TABLE[path.name].question}**"
+    heading, sentences, following = last.source.split("\n\n")
+    assert heading == "## What you saw"
+    lines = sentences.split("\n")
+    assert len(lines) == 3
+    for line in lines:
+        assert re.fullmatch(r"- [A-Z](?:(?!\. [A-Z]).)*\.", line), "one sentence"
+    if path == PATHS[-1]:
+        assert following.startswith("**Next:** [") and "](../docs/choose.md)" in following
+    else:
+        after = PATHS[PATHS.index(path) + 1].name
+        number, title, question = TABLE[after]
+        assert following == f"**Next:** notebook {number}, [{title}]({after}). {question}"
+
+
+@each_notebook
+def test_its_headings_begin_cells_and_its_questions_sentences(path):
+    for cell in read(path).cells:
+        if cell.cell_type == "markdown":
+            text = re.sub(r"<details>.*?</details>", "", cell.source, flags=re.DOTALL)
+            assert "\n#" not in text
+            for question in re.findall(r"\*\*([^*]+\?)\*\*", text):
+                assert question[0].isupper() or question[0] in "0123456789`$", question
 
 
 def test_the_picture_of_the_documentation_is_one_of_the_first_notebook():
