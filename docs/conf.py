@@ -18,6 +18,8 @@ from latex2mathml.converter import convert
 from quietarm import __version__
 from quietarm.studies.cli.application import COMMANDS
 
+sys.path.insert(0, str(Path(__file__).with_name("_extensions")))
+
 project, author, release = "quietarm", "The quietarm developers", __version__
 copyright = f"2026, {author}"  # noqa: A001  # as Sphinx calls it
 extensions = [
@@ -27,6 +29,8 @@ extensions = [
     "sphinx_click",
     "sphinx_copybutton",
     "sphinx_inline_tabs",
+    "glossary_links",
+    "search_snippets",
 ]
 root_doc = "docs/index"
 include_patterns = [
@@ -42,6 +46,7 @@ html_theme, html_title = "furo", "quietarm"
 html_static_path, html_extra_path = ["_static"], ["_root"]
 html_css_files = ["site.css"]
 html_show_sphinx, html_copy_source, smartquotes = False, False, False
+html_show_search_summary = False  # search_snippets.js has them without a server
 html_theme_options = {"top_of_page_buttons": []}
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 4

@@ -64,7 +64,9 @@ def plate_front():
 
 def quiet_duration():
     durations = np.linspace(0.5, 1.6, 111)
-    residuals = [qa.evaluate_coefficients(replace(MOVE, duration=T), []).residual for T in durations]
+    residuals = [
+        qa.evaluate_coefficients(replace(MOVE, duration=T), []).residual for T in durations
+    ]
     return durations[np.argmax(np.array(residuals) < 1e-3)]
 
 
@@ -468,9 +470,7 @@ def residuals_with_a_heavy_load():
 
 
 def energies_by_duration():
-    return [
-        qa.plan_move(robot_task(duration), starts=1).energy for duration in (0.8, 1.0, 1.4)
-    ]
+    return [qa.plan_move(robot_task(duration), starts=1).energy for duration in (0.8, 1.0, 1.4)]
 
 
 def energy_straight_in_space():
@@ -485,22 +485,24 @@ EXERCISES = {
             "the energies with 2, 4, 6 and 8 terms", "mJ", energy_by_pairs_of_coefficients, count=4
         ),
         Numbers(
-            "the residual of the plan on the stiffer plate", "mm", residual_on_a_stiffer_plate,
+            "the residual of the plan on the stiffer plate",
+            "mm",
+            residual_on_a_stiffer_plate,
             tolerance=0.05,
         ),
     ),
     "02": (
         Numbers("the angle without excitation", "degrees", angle_without_excitation),
         Numbers("the duration with the smallest residual", "s", duration_for_two_links),
-        Numbers(
-            "the energies within 40, 20 and 10 rad/s^2", "mJ", energy_by_acceleration, count=3
-        ),
+        Numbers("the energies within 40, 20 and 10 rad/s^2", "mJ", energy_by_acceleration, count=3),
     ),
     "03": (
         AtRest("a1 and a2 of the plate", MOVE, count=2, limit=1e-4),
         Numbers(
-            "the largest a1, the lowest a2 and the largest a2 without turning back", "-",
-            bounds_of_turning_back, count=3,
+            "the largest a1, the lowest a2 and the largest a2 without turning back",
+            "-",
+            bounds_of_turning_back,
+            count=3,
         ),
         AtRest("a1 and a2 of the arm", TURN, count=2, limit=5e-4),
     ),
@@ -518,47 +520,59 @@ EXERCISES = {
     ),
     "05b": (
         Numbers(
-            "the energies within 9 and 11 mm", "mJ", energies_beside_ten_millimetres, count=2,
+            "the energies within 9 and 11 mm",
+            "mJ",
+            energies_beside_ten_millimetres,
+            count=2,
             tolerance=0.01,
         ),
         Numbers(
-            "the shadow prices of the torque at 0.13 and 0.3 N m", "mJ/(N m)", prices_of_torque,
-            count=2, tolerance=0.1,
+            "the shadow prices of the torque at 0.13 and 0.3 N m",
+            "mJ/(N m)",
+            prices_of_torque,
+            count=2,
+            tolerance=0.1,
         ),
         Numbers(
-            "the numbers of starts for q = 0.5 and 0.25", "-", starts_needed, count=2,
+            "the numbers of starts for q = 0.5 and 0.25",
+            "-",
+            starts_needed,
+            count=2,
             tolerance=1e-9,
         ),
     ),
     "06": (
+        Numbers("epsilon of every third point", "-", epsilon_of_a_thin_front, tolerance=0.1),
+        Numbers("the two ends of the gap", "mm", gap_of_the_second_move, count=2, tolerance=0.05),
         Numbers(
-            "epsilon of every third point", "-", epsilon_of_a_thin_front, tolerance=0.1
-        ),
-        Numbers(
-            "the two ends of the gap", "mm", gap_of_the_second_move, count=2, tolerance=0.05
-        ),
-        Numbers(
-            "the energy of the polished points over that of the front by limits, at most", "-",
-            distance_after_polishing, tolerance=0.01,
+            "the energy of the polished points over that of the front by limits, at most",
+            "-",
+            distance_after_polishing,
+            tolerance=0.01,
         ),
     ),
     "07": (
+        Numbers("the ratios at 2.0 s with 6 and 14 terms", "-", ratios_to_the_bound, count=2),
         Numbers(
-            "the ratios at 2.0 s with 6 and 14 terms", "-", ratios_to_the_bound, count=2
-        ),
-        Numbers(
-            "the energies within 4000, 1000 and 300 rad/s^3 with 18 terms", "mJ",
-            energies_by_jerk, count=3,
+            "the energies within 4000, 1000 and 300 rad/s^3 with 18 terms",
+            "mJ",
+            energies_by_jerk,
+            count=3,
         ),
         Numbers("the energy with six terms over the bound", "-", ratio_of_the_arm),
     ),
     "08": (
         Numbers(
-            "the 95th percentiles of the plan, ZVD and the robust plan", "mm", percentiles,
-            count=3, tolerance=0.1,
+            "the 95th percentiles of the plan, ZVD and the robust plan",
+            "mm",
+            percentiles,
+            count=3,
+            tolerance=0.1,
         ),
         Numbers(
-            "the residual of the old plan with the payload", "mm", residual_with_a_payload,
+            "the residual of the old plan with the payload",
+            "mm",
+            residual_with_a_payload,
             tolerance=0.05,
         ),
         Numbers(
@@ -571,52 +585,69 @@ EXERCISES = {
         ),
         Numbers("the energy of the plan with the mast", "mJ", energy_with_a_mast),
         Choice(
-            "the first that refuses it", ("creation", "validate", "plan"),
+            "the first that refuses it",
+            ("creation", "validate", "plan"),
             when_a_parameter_is_refused,
         ),
     ),
     "10": (
         Numbers(
-            "the smallest and the largest residual with other last digits", "mm",
-            residuals_of_rounding, count=2, tolerance=0.03,
+            "the smallest and the largest residual with other last digits",
+            "mm",
+            residuals_of_rounding,
+            count=2,
+            tolerance=0.03,
         ),
         Numbers(
             "the residuals of plate and arm from 1 rad", "mm", residuals_from_elsewhere, count=2
         ),
         Choice(
-            "n of the a_n whose correction fits the energy best", (1, 2, 3, 4, 5, 6),
+            "n of the a_n whose correction fits the energy best",
+            (1, 2, 3, 4, 5, 6),
             misprinted_coefficient,
         ),
     ),
     "11": (
         Numbers(
-            "half the width of the frequency's interval, of one long and of three recordings", "%",
-            widths_of_frequency, count=2, tolerance=0.2,
+            "half the width of the frequency's interval, of one long and of three recordings",
+            "%",
+            widths_of_frequency,
+            count=2,
+            tolerance=0.2,
         ),
         Numbers(
-            "half the widths for the mean and for the next recording", "%",
-            widths_of_two_machines, count=2, tolerance=0.1,
+            "half the widths for the mean and for the next recording",
+            "%",
+            widths_of_two_machines,
+            count=2,
+            tolerance=0.1,
         ),
         Numbers(
-            "half the widths of the damping's interval after 1, 2 and 3 s", "%", errors_of_damping,
-            count=3, tolerance=0.1,
+            "half the widths of the damping's interval after 1, 2 and 3 s",
+            "%",
+            errors_of_damping,
+            count=3,
+            tolerance=0.1,
         ),
     ),
     "12": (
         Numbers(
             "the energies with 6, 9, 12, 15 and 18 terms", "mJ", energies_until_enough, count=5
         ),
+        Numbers("the powers of the length with 6 and 18 terms", "-", powers_of_the_length, count=2),
         Numbers(
-            "the powers of the length with 6 and 18 terms", "-", powers_of_the_length, count=2
-        ),
-        Numbers(
-            "the shares of energy that 5 mm save at 2 and at 5 Hz", "%",
-            shares_for_five_millimetres, count=2, tolerance=0.1,
+            "the shares of energy that 5 mm save at 2 and at 5 Hz",
+            "%",
+            shares_for_five_millimetres,
+            count=2,
+            tolerance=0.1,
         ),
     ),
     "13": (
         Numbers(
-            "the residuals of plan and cycloid with 600 g", "mm", residuals_with_a_heavy_load,
+            "the residuals of plan and cycloid with 600 g",
+            "mm",
+            residuals_with_a_heavy_load,
             count=2,
         ),
         Numbers("the energies in 0.8, 1.0 and 1.4 s", "J", energies_by_duration, count=3),

@@ -37,7 +37,7 @@ TIMES = 3.0
 """From this ratio on a factor is said in place of per cent."""
 
 
-class Nonsense(ValueError):
+class NonsenseError(ValueError):
     """An answer that is not of the kind that is asked for; says what it is instead."""
 
 
@@ -112,7 +112,7 @@ class Choice:
     def verdict(self, answer):
         plain = answer.strip().lower() if isinstance(answer, str) else answer
         if isinstance(plain, bool) or plain not in self.among:
-            raise Nonsense(_described(answer))
+            raise NonsenseError(_described(answer))
         return "right" if plain == self.solution else f"it is not {plain!r}"
 
 
@@ -190,7 +190,7 @@ def checks_of(notebook):
 def _verdict(exercise, answer):
     try:
         return exercise.verdict(answer)
-    except Nonsense as error:
+    except NonsenseError as error:
         return f"asks for {exercise.asked}; this is {error}"
 
 
@@ -199,14 +199,14 @@ def _as_numbers(answer, count):
     try:
         values = np.squeeze(np.asarray(answer))
     except ValueError:  # of unequal lengths
-        raise Nonsense(_described(answer)) from None
+        raise NonsenseError(_described(answer)) from None
     if values.dtype.kind not in "iuf":
-        raise Nonsense(_described(answer))
+        raise NonsenseError(_described(answer))
     if values.ndim > 1 or values.size != count:
         what = "one number" if values.size == 1 else f"{values.size} numbers"
-        raise Nonsense(f"{what} in place of {'one' if count == 1 else count}")
+        raise NonsenseError(f"{what} in place of {'one' if count == 1 else count}")
     if not np.isfinite(values).all():
-        raise Nonsense("not finite")
+        raise NonsenseError("not finite")
     return np.atleast_1d(values).astype(float)
 
 

@@ -1,7 +1,7 @@
 """Which cells of a notebook stand on which slide, so that none is nearly blank and none overflows.
 
-A slide begins at every heading, and at most questions and equations: a short one goes on below what is
-there already. What does not fit goes on, below its question, on the next slide. Sentences are
+A slide begins at every heading, and at most questions and equations: a short one goes on below what
+is there already. What does not fit goes on, below its question, on the next slide. Sentences are
 speaker notes, unless a slide has room for them.
 """
 

@@ -29,6 +29,7 @@ from quietarm.ocp.front.points import (
     FrontPoint,
     Mark,
     evaluated,
+    knee_of,
     non_dominated,
 )
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -267,11 +268,7 @@ class Front(Answer):
     def knee(self) -> FrontPoint:
         """The point farthest below the straight line between the ends, both objectives scaled."""
         points = self._nonempty()
-        spans = np.array([np.ptp(self.residuals), np.ptp(self.energies)])
-        if len(points) < 3 or not np.all(spans > 0):
-            return points[0]
-        scaled = np.column_stack([self.residuals, self.energies]) / spans
-        return points[int(np.argmin(scaled.sum(axis=1)))]
+        return points[knee_of(np.column_stack([self.residuals, self.energies]))]
 
     def _nonempty(self) -> Sequence[FrontPoint]:
         if len(self.points) == 0:

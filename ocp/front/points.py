@@ -236,3 +236,14 @@ def evaluated(
         else:
             points.append(point)
     return Evaluated(non_dominated(points), failed, infeasible)
+
+
+def knee_of(points: NDArray[np.float64]) -> int:
+    """Which of the points, residuals and energies, is farthest below the line between the ends.
+
+    Both objectives are scaled; the first one where there are fewer than three or no trade-off.
+    """
+    spans = np.ptp(points, axis=0)
+    if len(points) < 3 or not np.all(spans > 0):
+        return 0
+    return int(np.argmin((points / spans).sum(axis=1)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from quietarm.studies.bench.results import Results, bench_label, derivative_free
 from quietarm.studies.bench.statistics import ALPHA, Ranking
 from quietarm.studies.figures.axes import TITLE, legend_below, logarithmic, new_figure
-from quietarm.studies.figures.looks import look
+from quietarm.studies.figures.grammar import PLAN, SEARCH, Look, looks
 
 _COSTS = {"seconds": "processor time [s]", "evaluations": "candidates simulated"}
 
@@ -26,14 +27,14 @@ def curves_figure(results: Results, by: str = "seconds") -> Figure:
     figure = new_figure(max(4.2 * columns, 5.5), 3.0 * rows + 0.8)
     axes = list(figure.subplots(rows, columns, squeeze=False).flat)
     methods = [m for m in results.methods if by == "seconds" or derivative_free(m)]
+    styles = _looks_of(methods)
     for ax, problem in zip(axes, problems):
         costs = [0.0]
-        for number, method in enumerate(methods):
+        for method, style in zip(methods, styles):
             if not results.of(problem.name, method):
                 continue
             at, missing = results.missing(problem.name, method, by)
             median = np.median(missing, axis=0)
-            style = look(number)
             few = len(at) <= len(missing)  # it ends by itself: a point a run
             ax.plot(
                 at,
@@ -73,7 +74,7 @@ def profiles_figure(results: Results) -> Figure:
     random = np.random.default_rng(0)
     costs = np.concatenate([run.history.seconds for run in results.runs])
     places = np.geomspace(costs[costs > 0].min(), costs.max(), 200)
-    for number, method in enumerate(results.methods):
+    for method, style in zip(results.methods, _looks_of(results.methods)):
         # of each problem, how many of a run's targets were reached by then: (runs, places)
         reached = [
             np.array(
@@ -96,7 +97,6 @@ def profiles_figure(results: Results) -> Figure:
             for _ in range(200)
         ]
         share = sum(counts.sum(axis=0) for counts in reached) / total
-        style = look(number)
         ax.plot(
             places,
             share,
@@ -116,6 +116,11 @@ def profiles_figure(results: Results) -> Figure:
     ax.grid(alpha=0.25)
     figure.legend(loc="outside right center", fontsize=8, frameon=False)
     return figure
+
+
+def _looks_of(methods: Sequence[str]) -> list[Look]:
+    """Looks of methods: the first by the gradient is a plan's, the first other one a search's."""
+    return looks(["search" if derivative_free(method) else "plan" for method in methods])
 
 
 def _drawn_again(counts: NDArray[np.int64], random: np.random.Generator) -> NDArray[np.int64]:
@@ -144,5 +149,9 @@ def ranks_figure(ranking: Ranking) -> Figure:
             p_values,
             ax=figure.subplots(),
             label_props={"size": 8},
+            color_palette={
+                bench_label(method): (SEARCH if derivative_free(method) else PLAN).colour
+                for method in ranking.methods
+            },
         )
     return figure

@@ -21,6 +21,7 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.robustness import worst_case, worst_of
+from quietarm.studies.figures.meaning import meaning_of
 
 SAMPLES = 2000
 """Random plants for the percentiles."""
@@ -49,6 +50,8 @@ class JudgedMotion:
         took to find [s].
     why : str
         Why there is no such motion.
+    meaning : str
+        What it is in the grammar of pictures, as ``"plan"``; empty of an input shaper's motion.
     """
 
     name: str
@@ -61,6 +64,7 @@ class JudgedMotion:
     turns_back: float | None = None
     seconds: float | None = None
     why: str = ""
+    meaning: str = ""
 
 
 @takes(task=PointToPoint)
@@ -83,6 +87,7 @@ def judge_motion(
         nominal.motion,
         float(task.residual_window),
         exceeded=tuple(limit.label for limit in task.limits if limit.name in exceeded),
+        meaning=meaning_of(moved),
     )
     if isinstance(moved, Plan):
         uncertain = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)

@@ -32,7 +32,7 @@ from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
 from quietarm.studies.explore.move import FILES, Dial, Explored
 from quietarm.studies.explore.plots import GREY, PANELS, Plots
-from quietarm.studies.figures.looks import RED
+from quietarm.studies.figures.grammar import RED
 from quietarm.studies.reading.profiles import families
 from quietarm.studies.report.moves import HARD_REMEDIES, plan_rows
 

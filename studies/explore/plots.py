@@ -17,7 +17,7 @@ from quietarm.models import Plant
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.axes import residual_label
-from quietarm.studies.figures.looks import BLUE, ORANGE, RED
+from quietarm.studies.figures.grammar import BLUE, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
 from quietarm.studies.figures.structure import INK, structures_of
 from quietarm.studies.report.words import residual_words

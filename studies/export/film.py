@@ -22,12 +22,14 @@ from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, WIDTHS, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
+from quietarm.studies.figures.grammar import AFTER_ARRIVAL, FAINT, GREY, INK
 from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
-from quietarm.studies.figures.structure import GROUND, Structure, structures_of
+from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.saving import as_written
 from quietarm.studies.report.words import (
     move_of,
     moved,
+    raised,
     residual_words,
     title_of_picture,
     window_words,
@@ -35,12 +37,17 @@ from quietarm.studies.report.words import (
 
 _COLUMNS = {1: 1, 2: 2, 4: 2}
 """Panels in a row, by how many there are; else 3."""
-_PANEL = 4.0
-_HIGH = 2.6
-_CURVES_HIGH = 2.0
+_PANEL = 2.7
+_HIGH = 2.1
+_CURVES_HIGH = 1.6
 _LINE = 0.2
 _LETTERS = 11.5
-"""Width and height of a panel, heights of curves and of a line [inch]; letters an inch."""
+"""Width and height of a panel, heights of curves and of a line [inch]; letters an inch.
+
+A film of two panels is 5.4 inch wide: on a phone of 390 pixels a letter of 10 points is 10 high.
+"""
+_SMALL = 9
+"""Points of the letters at axes."""
 _THIN = 0.8
 _DISC = 1e-5
 """Of the widths of parts; a part as small as this [m] is a disc."""
@@ -118,8 +125,8 @@ def animate(
     """Animate structures side by side in the same time.
 
     Every link bends in the shape of its mode (`Plant.structure`); dashed is the rigid link. After
-    arrival the path of the tips is drawn. Below are the joint angle, the tip displacements and the
-    power, with a cursor. The film ends with the last residual window, or in it where it would have
+    arrival the path of the tips is drawn. Below are the tip displacements and the power, with a
+    cursor. The film ends with the last residual window, or in it where it would have
     too many frames.
 
     Parameters
@@ -202,7 +209,7 @@ _WRITERS: Mapping[str, Callable[..., AbstractMovieWriter]] = {
 
 def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     """The figure, laid out, and what brings it to a frame."""
-    curves = ("angle", "deflection", "power")
+    curves = ("deflection", "power")
     structures = film.structures
     times = film.structures[0].times
     columns = _COLUMNS.get(len(structures), 3)
@@ -210,13 +217,12 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     inches = _PANEL * max(columns, 2)
     same = len({structure.line.plan.task for structure in structures}) == 1
     titles = [_title(structure, same, int(_LETTERS * inches / columns)) for structure in structures]
-    words = title_of_picture(structures[0].line.plan.task) if same else "several moves on one clock"
-    heading = wrap(words, int(_LETTERS * inches) - 24)  # the clock stands beside it
+    heading = wrap(_heading(structures[0], same), int(_LETTERS * inches) - 16)  # beside the clock
     above = _LINE * len(heading) + rows * (_HIGH + _LINE * max(map(len, titles)))
     figure = new_figure(inches, above + _CURVES_HIGH)
     figure.set_dpi(film.width / inches)
-    figure.suptitle("\n".join(heading), x=0.01, ha="left", fontsize=11)
-    clock = figure.text(0.99, 0.99, "", ha="right", va="top", fontsize=11)
+    figure.suptitle("\n".join(heading), x=0.01, ha="left", fontsize=10)
+    clock = figure.text(0.99, 0.99, "", ha="right", va="top", fontsize=10)
     at_speed = f", speed x {film.speed:g}" if film.speed != 1 else ""
     updates: list[Update] = [lambda k: clock.set_text(f"t = {times[k]:.2f} s{at_speed}")]
     subfigures: Any = figure.subfigures(2, 1, height_ratios=[above, _CURVES_HIGH])
@@ -234,8 +240,8 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     for ax, quantity in zip(lower.subplots(1, len(curves)), curves):
         draw_quantity([structure.line for structure in structures], quantity, ax)
         ax.set_xlim(0.0, film.end)
-        ax.xaxis.label.set_fontsize(9)
-        cursor = ax.axvline(0.0, color="0.2", linewidth=1.2)
+        ax.tick_params(labelsize=_SMALL)
+        cursor = ax.axvline(0.0, color=INK, linewidth=1.2)
         updates.append(lambda k, cursor=cursor: cursor.set_xdata([times[k], times[k]]))
     with as_written(figure):
         figure.draw_without_rendering()
@@ -243,41 +249,50 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     return figure, lambda k: [update(k) for update in updates]
 
 
+def _heading(structure: Structure, same: bool) -> str:
+    """What is above all panels: the move, where it is one, and until when residuals are seen."""
+    if not same:
+        return "several moves on one clock"
+    task = structure.line.plan.task
+    return raised(f"{title_of_picture(task)}; residual {window_words(task.residual_window)}")
+
+
 def _title(structure: Structure, same: bool, room: int) -> list[str]:
     """The lines above a panel."""
     plan = structure.line.plan
     task = structure.line.plan.task
     residual = residual_words(plan.residual, task.plant.tip_unit)
-    if residual == "rest":
-        residual = "at rest"
+    residual = "at rest" if residual == "rest" else residual
     lines = [
         f"{structure.line.label}, {structure.scale_words}",
         *([] if same else [f"{moved(task)}, {move_of(task)}"]),
-        f"energy {plan.energy:.3g} J, residual: {residual} {window_words(task.residual_window)}",
+        f"{plan.energy:.3g} J, residual: {residual}",
     ]
     return [part for line in lines for part in wrap(line, room)]
 
 
 def _draw_structure(ax: Axes, structure: Structure) -> Iterator[Update]:
     """Set up a structure's panel, in metres; what brings its parts to a frame."""
-    ax.tick_params(labelsize=8)
+    ax.tick_params(labelsize=_SMALL)
     ax.autoscale_view()
     ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("x [m]", fontsize=_SMALL)
+    ax.set_ylabel("y [m]", fontsize=_SMALL)
     if structure.line.plan.task.plant.in_space:  # lengths along the axes are not those of the robot
-        ax.set(xticks=[], yticks=[])
+        ax.set(xticks=[], yticks=[], xlabel="seen from one side, not to scale", ylabel="")
 
     def part(points: Sequence[NDArray[np.float64]] | NDArray[np.float64], **look: Any) -> Update:
         (artist,) = ax.plot([], [], solid_capstyle="round", **look)
         return lambda k: artist.set_data(*points[k].T)
 
     for points, colour, _ in structure.unbent:
-        if colour == GROUND:
+        if colour == FAINT:
             continue
-        yield part(points, color="0.55", linewidth=1.0, linestyle="--")
+        yield part(points, color=GREY, linewidth=1.0, linestyle="--")
     begun = int(np.searchsorted(structure.times, structure.trail_begins))
     for path in structure.paths:
         trail = [path[begun : k + 1] for k in range(len(path))]
-        yield part(trail, color=structure.line.colour, linewidth=2.0, alpha=0.5)
+        yield part(trail, color=structure.line.colour, linewidth=2.0, alpha=AFTER_ARRIVAL)
     for points, colour, width in structure.bent:
         disc = np.ptp(points[0], axis=0).max() < _DISC
         yield part(points, color=colour, linewidth=_THIN * width, marker="o" if disc else "",

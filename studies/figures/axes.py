@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import fill
 from typing import Any, Literal
 
 import numpy as np
@@ -37,11 +38,21 @@ def axes_or_new(ax: Axes | None) -> Axes:
     return ax
 
 
-def side_by_side(panels: int, title: str, width: float = 4.2) -> tuple[Figure, list[Axes]]:
-    """A figure with a title and this many panels side by side."""
-    figure = new_figure(width * panels, 4.0)
-    if title:
-        figure.suptitle(title, fontsize=11)
+def head(figure: Figure, sentence: str, facts: str = "") -> None:
+    """Set what is seen, and below it of what, at the left above a figure."""
+    letters_an_inch = 12
+    room = int(letters_an_inch * figure.get_figwidth())
+    paragraphs = [fill(words, room) for words in (sentence, facts) if words]
+    if paragraphs:
+        figure.suptitle("\n".join(paragraphs), x=0.01, ha="left", fontsize=11, linespacing=1.35)
+
+
+def side_by_side(
+    panels: int, sentence: str, facts: str = "", width: float = 4.2
+) -> tuple[Figure, list[Axes]]:
+    """A figure with its head and this many panels side by side."""
+    figure = new_figure(width * panels, 4.3)
+    head(figure, sentence, facts)
     return figure, list(figure.subplots(1, panels, squeeze=False).flat)
 
 

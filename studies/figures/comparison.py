@@ -13,11 +13,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from quietarm.metaheuristics.score import within
+from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
     draw_front,
+    head,
     legend_of,
     letter,
     logarithmic,
@@ -25,9 +28,10 @@ from quietarm.studies.figures.axes import (
     new_figure,
     residual_label,
 )
-from quietarm.studies.figures.looks import Look, look
-from quietarm.studies.report.words import title_of_picture
-from quietarm.studies.tips import tip_scale
+from quietarm.studies.figures.grammar import FAINT, FLOOR, PAPER, Look, looks
+from quietarm.studies.figures.marked_points import mark_points
+from quietarm.studies.report.words import raised, title_of_picture
+from quietarm.studies.tips import tip_scale, tip_words
 
 if TYPE_CHECKING:
     from quietarm.studies.compare.front_comparison import Comparison, Group
@@ -63,7 +67,7 @@ def comparison_figure(comparison: Comparison, known: Sequence[KnownPoint] = ()) 
         Three panels: whole fronts; small residuals, logarithmic; points above the best of all. The
         legend stands beside the third.
     """
-    figure = new_figure(10, 7.4)
+    figure = new_figure(10, 7.6)
     axes: list[Axes] = list(figure.subplots(2, 2).flat)
     draw_comparison(comparison, known, axes[0])
     draw_comparison(comparison, known, axes[1], small=True)
@@ -78,7 +82,8 @@ def comparison_figure(comparison: Comparison, known: Sequence[KnownPoint] = ()) 
         title="Several seeds: the line is what half of them reach\n"
         "(of two, the better one), the band best to worst" if several else None,
     )  # fmt: skip
-    figure.suptitle(title_of_picture(comparison.task), fontsize=12)
+    facts = raised(title_of_picture(comparison.task))
+    head(figure, _caption(comparison), facts)
     return figure
 
 
@@ -136,15 +141,17 @@ def draw_comparison(
             )  # fmt: skip
     for point, mark in zip(known, cycle("*Pv")):
         if point.residual is None:
-            ax.axhline(point.energy, color="black", lw=1, ls=":", label=point.label)
+            ax.axhline(point.energy, color=PAPER.colour, lw=PAPER.width, ls=PAPER.dash,
+                       label=point.label)  # fmt: skip
         else:
             ax.plot(
-                point.residual * scale, point.energy, mark, color="black", markersize=11,
+                point.residual * scale, point.energy, mark, color=PAPER.colour, markersize=11,
                 markeredgecolor="white", label=point.label, zorder=5,
             )  # fmt: skip
     if comparison.floor is not None:
-        label = f"any joint motion at rest{' (nominal plant)' * bool(comparison.task.ranges)}"
-        ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
+        _draw_floor(ax, comparison, scale * _left(comparison) if small else 0.0)
+    if not small:
+        mark_points(ax, comparison.best_front, tip_unit)
     highest = max(
         [tallest * comparison.best_front[0, 1], *(1.05 * point.energy for point in known)]
     )
@@ -156,6 +163,41 @@ def draw_comparison(
     else:
         ax.set_xlim(0, right * scale)
     return ax
+
+
+def _draw_floor(ax: Axes, comparison: Comparison, rest: float) -> None:
+    """Mark the best motion without parametrisation where it is: at rest, on the left edge."""
+    assert comparison.floor is not None
+    nominal = ", nominal plant" * bool(comparison.task.ranges)
+    stillest = float(comparison.best_front[0, 1])
+    ax.plot(rest, comparison.floor, FLOOR.mark, color=FLOOR.colour, markersize=7, clip_on=False,
+            zorder=6, label=f"best without parametrisation, at rest{nominal}")  # fmt: skip
+    share = 100 * (1 - comparison.floor / stillest)
+    side = "less" if share > 0 else "more"
+    words = f"{comparison.floor:.4g} J at rest,\n{abs(share):.2g} % {side}"
+    ax.annotate(words, (rest, comparison.floor), (10, -1), textcoords="offset points",
+                color=FLOOR.colour, fontsize=8, va="top")  # fmt: skip
+
+
+def _caption(comparison: Comparison) -> str:
+    """What the methods take at a level that all or some of them reach."""
+    level = next((level for level in comparison.levels if level >= SEARCH_RESIDUAL), None)
+    if level is None:
+        level = comparison.levels[-1]
+    least = {
+        group.label: float(within(group.runs[0].between if group.by_gradient else group.median,
+                                  [level])[0])
+        for group in comparison.groups
+    }  # fmt: skip
+    known = {name: energy for name, energy in least.items() if np.isfinite(energy)}
+    words = tip_words(level, comparison.task.plant.tip_unit)
+    if not known:
+        return f"No front comes within {words}"
+    best = min(known, key=lambda name: known[name])
+    rest = [f"{name} {energy:.3g} J" for name, energy in known.items() if name != best][:3]
+    return f"Within {words}, {best} takes {known[best]:.3g} J" + "".join(
+        f", {words_of_group}" for words_of_group in rest
+    )
 
 
 def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
@@ -185,8 +227,9 @@ def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
 def _drawn(comparison: Comparison) -> Iterator[tuple[Group, Look, float]]:
     """Every group, its look, and how much wider it is drawn, to be seen below the next ones."""
     last = len(comparison.groups) - 1
-    for place, group in enumerate(comparison.groups):
-        yield group, look(place), 0.35 * (last - place)
+    meanings = ["plan" if group.by_gradient else "search" for group in comparison.groups]
+    for place, (group, look) in enumerate(zip(comparison.groups, looks(meanings))):
+        yield group, look, 0.35 * (last - place)
 
 
 def _up_to(points: Array, right: float) -> Array:
@@ -214,4 +257,4 @@ def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
     ax.set_xlabel(f"{residual_label(tip_unit, comparison.task.residual_window)}, logarithmic")
     for level in comparison.levels:
         if least_residual <= level <= right:
-            ax.axvline(level * scale, color="0.75", linewidth=0.8, zorder=0)
+            ax.axvline(level * scale, color=FAINT, linewidth=0.8, zorder=0)

@@ -24,9 +24,11 @@ from quietarm.studies.figures.axes import (
     residual_label,
     side_by_side,
 )
-from quietarm.studies.figures.looks import BLUE, RED, look
+from quietarm.studies.figures.grammar import PALE, PLAN, RED, Look, looks, variants
+from quietarm.studies.figures.marked_points import mark_points
+from quietarm.studies.report.captions import caption_of_fronts, caption_of_polish
 from quietarm.studies.report.methods import is_gradient, label_of
-from quietarm.studies.report.words import spread_words, title_of_picture
+from quietarm.studies.report.words import raised, spread_words, title_of_picture
 from quietarm.studies.tips import tip_scale, tip_words
 
 _MOST_NAMED = 10
@@ -73,12 +75,11 @@ def draw_fronts(
     scale = tip_scale(tip_unit)[1]
     for k, (begin, end) in enumerate(gap for front in fronts for gap in front.gaps):
         label = "_" if k else "no weight reaches these"  # once in the legend
-        ax.axvspan(begin * scale, end * scale, color="0.5", alpha=0.15, linewidth=0, label=label)
+        ax.axvspan(begin * scale, end * scale, color=PALE, linewidth=0, label=label)
     names = _names(fronts) if labels is None else labels
     if len(names) != len(fronts):
         raise ValueError(f"{len(fronts)} fronts have {len(names)} labels; give each front one")
-    for i, (front, name) in enumerate(zip(fronts, names)):
-        look_of_front = look(i)
+    for front, name, look_of_front in zip(fronts, names, _looks_of(fronts)):
         middles = [(begin + end) / 2 for begin, end in front.gaps]
         places = np.searchsorted(front.residuals, middles)  # no line crosses a gap
         draw_front(
@@ -102,6 +103,15 @@ def draw_fronts(
     if len(fronts) <= _MOST_NAMED and len(ax.get_legend_handles_labels()[1]) > 1:
         ax.legend(fontsize=8)
     return ax
+
+
+def _looks_of(fronts: Sequence[Front]) -> list[Look]:
+    """Looks of fronts; runs of one method have one colour."""
+    methods = [front.record.method for front in fronts]
+    searches = not any(is_gradient(method) for method in methods)
+    if searches and len(set(methods)) == 1:
+        return variants("search", len(fronts))
+    return looks(["plan" if is_gradient(method) else "search" for method in methods])
 
 
 def _tip_unit(fronts: Sequence[Front]) -> str:
@@ -144,13 +154,14 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     evaluations = [mark.evaluations for mark in fronts[0].history[:length]]
     shares = np.array([shares_of_box(front)[:length] for front in fronts])
     spreads = [Spread.of(column) for column in shares.T.tolist()]
+    colour = _looks_of(fronts)[0].colour
     ax.plot(
-        evaluations, [spread.median for spread in spreads], color=BLUE, marker=".", label="median"
+        evaluations, [spread.median for spread in spreads], color=colour, marker=".", label="median"
     )
     if len(fronts) > 1:
         low = [spread.lower for spread in spreads]
         high = [spread.upper for spread in spreads]
-        ax.fill_between(evaluations, low, high, color=BLUE, alpha=0.3, linewidth=0,
+        ax.fill_between(evaluations, low, high, color=colour, alpha=0.3, linewidth=0,
                         label="quartiles")  # fmt: skip
         ax.legend(fontsize=8, loc="lower right")
     ax.set_title(f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')}", **TITLE)
@@ -173,21 +184,23 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     ax = axes_or_new(ax)
     spread = energies_at(fronts)
     level = tip_words(SEARCH_RESIDUAL, _tip_unit(fronts))
-    for place, front in enumerate(fronts):
+    look_of_fronts = _looks_of(fronts)
+    colour = look_of_fronts[0].colour
+    for place, (front, seed) in enumerate(zip(fronts, look_of_fronts)):
         energy = front.least_energy(SEARCH_RESIDUAL)
-        colour = look(place).colour
         if np.isfinite(energy):
-            ax.plot(place, energy, "o", color=colour, markersize=6)
+            ax.plot(place, energy, seed.mark, color=seed.colour, markersize=6)
         else:
-            ax.plot(place, 0.02, "x", color=colour, transform=ax.get_xaxis_transform())
+            ax.plot(place, 0.02, "x", color=seed.colour, transform=ax.get_xaxis_transform())
     figures = ""
+    quartiles = ""
     if np.isfinite(spread.median):
-        ax.axhline(spread.median, color=BLUE, linewidth=1.0)
+        ax.axhline(spread.median, color=colour, linewidth=1.0)
         figures = f": {spread.median:.4g} J"
     if np.isfinite(spread.upper):
-        ax.axhspan(spread.lower, spread.upper, alpha=0.2, color=BLUE)
-        figures += f" ({spread.lower:.4g} to {spread.upper:.4g})"
-    words = f"{spread.count} of {spread.seeds} seeds reach {level}"
+        ax.axhspan(spread.lower, spread.upper, alpha=0.2, color=colour)
+        quartiles = f"{spread.lower:.4g} to {spread.upper:.4g} J, "
+    words = f"{quartiles}{spread.count} of {spread.seeds} seeds reach it"
     ax.set_title(f"energy at {level}{figures}\n{words}", **TITLE)
     ax.set_xlabel(f"seed (x: never within {level})")
     ax.set_ylabel("energy F2 [J]")
@@ -213,25 +226,22 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Energy against residual, of a single front with its knee; of searches the median
-        hypervolume with its quartiles against candidates; for several seeds also the least energy
-        of each within 1 mm.
+        Energy against residual, of a single front with its ends, its knee and 1 mm; of searches the
+        median hypervolume with its quartiles against candidates; for several seeds also the least
+        energy of each within 1 mm.
     """
     method = fronts[0].record.method
     gradient = is_gradient(method)
     panels = 1 + (not gradient and all(front.history for front in fronts))
     panels += panels > 1 and len(fronts) > 1
-    title = f"{label_of(method)}: {title_of_picture(fronts[0].task)}"
-    figure, axes = side_by_side(panels, title, width=4.2 if panels > 1 else 6.4)
+    facts = f"{label_of(method)}: {raised(title_of_picture(fronts[0].task))}"
+    width = 4.2 if panels > 1 else 6.4
+    figure, axes = side_by_side(panels, caption_of_fronts(fronts), facts, width)
     draw_fronts(fronts, axes[0], linear=gradient)
     tip_unit = fronts[0].task.plant.tip_unit
     name_objectives(axes[0], tip_unit, fronts[0].task.residual_window)
-    if len(fronts) == 1 and len(fronts[0].points) > 2:
-        knee = fronts[0].knee()
-        label = f"knee: {knee.energy:.4g} J at {tip_words(knee.residual, tip_unit)}"
-        shown_residual = tip_scale(tip_unit)[1] * max(knee.residual, REST)
-        axes[0].plot(shown_residual, knee.energy, "o", color=BLUE,
-                     fillstyle="none", label=label)  # fmt: skip
+    if len(fronts) == 1:
+        mark_points(axes[0], np.column_stack([fronts[0].residuals, fronts[0].energies]), tip_unit)
         axes[0].legend(fontsize=8)
     for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:]):
         draw(fronts, ax)
@@ -241,15 +251,15 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
 @takes(before=Front)
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """Draw a front before and after polishing, and the energy that this saved point by point."""
-    name = label_of(polish.front.record.method)
-    figure, (ax, saved) = side_by_side(2, f"{name}: {title_of_picture(before.task)}", width=5.6)
+    facts = f"{label_of(polish.front.record.method)}: {raised(title_of_picture(before.task))}"
+    figure, (ax, saved) = side_by_side(2, caption_of_polish(polish), facts, width=5.6)
     draw_fronts([before, polish.front], ax, ("before", "after"))
     tip_unit = before.task.plant.tip_unit
     name_objectives(ax, tip_unit, before.task.residual_window)
     residuals = [max(gain.residual, REST) for gain in polish.gains]
     shown_residuals = np.multiply(tip_scale(tip_unit)[1], residuals)
     shares = [100 * gain.share for gain in polish.gains]
-    axes_or_new(saved).plot(shown_residuals, shares, "o", color=BLUE, markersize=3)
+    axes_or_new(saved).plot(shown_residuals, shares, PLAN.mark, color=PLAN.colour, markersize=3)
     label = residual_label(tip_unit, before.task.residual_window)
     saved.set(xlabel=label, ylabel="energy saved [%]")
     saved.set_ylim(bottom=0)

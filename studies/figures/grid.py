@@ -11,12 +11,16 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.record import REST
 from quietarm.studies.figures.axes import (
+    TITLE,
+    head,
     logarithmic,
     name_objectives,
     new_figure,
     residual_label,
 )
-from quietarm.studies.figures.looks import look
+from quietarm.studies.figures.grammar import BROWN, FAINT, GREY, HEAT, PALE, PINK, PLAN, RED, SKY
+from quietarm.studies.report.captions import caption_of_cells
+from quietarm.studies.report.words import limit_words, moved, raised
 from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.grid import Axis
 from quietarm.studies.sweep.store import Store
@@ -38,18 +42,22 @@ def grid_figure(store: Store) -> Figure:
         return _over_one(store, axes[0])
     places = [*np.ndindex(*store.definition.grid.shape[:-2])][:_MOST_SLICES]
     slices = [(place, _words(axes, place)) for place in places]
-    variables = _variables(store)
-    count = len(variables) + 1
-    figure = new_figure(0.6 + 3.6 * count, 0.6 + 3.1 * len(slices))
+    all_variables = _variables(store)
+    variables = [known for known in all_variables if (known[1] > known[2]).any()]
+    variables = variables or all_variables[:1]
+    several_states = len(np.unique(store.read(STATUS))) > 1
+    count = len(variables) + several_states
+    figure = new_figure(1.2 + 3.6 * count, 1.2 + 3.1 * len(slices))
+    _head(figure, store)
     panels = figure.subplots(len(slices), count, squeeze=False, sharex=True, sharey=True)
     (x, x_name) = _shown(axes[-1])
     (y, y_name) = _shown(axes[-2])
     for column, (label, values, least) in enumerate(variables):
         norm = _norm(values)
-        panels[0, column].set_title(label)
+        panels[0, column].set_title(label, **TITLE)
         for ax, (place, _) in zip(panels[:, column], slices):
-            ax.patch.set(hatch="///", edgecolor="0.75", facecolor="white")
-            ax.pcolormesh(x, y, values[place], norm=norm, cmap="viridis", shading="nearest")
+            ax.patch.set(hatch="///", edgecolor=FAINT, facecolor="white")
+            ax.pcolormesh(x, y, values[place], norm=norm, cmap=HEAT, shading="nearest")
             if not (values > least).any():
                 words = f"at most {least:g}"
                 ax.text(0.5, 0.5, words, transform=ax.transAxes, ha="center", color="white")
@@ -57,10 +65,11 @@ def grid_figure(store: Store) -> Figure:
             known = values[values > 0]
             few = known.max() < 1e3 * known.min()
             ticks = LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,))
-            bar = figure.colorbar(ScalarMappable(norm, "viridis"), ax=list(panels[:, column]),
+            bar = figure.colorbar(ScalarMappable(norm, HEAT), ax=list(panels[:, column]),
                                   ticks=ticks, format="{x:g}")  # fmt: skip
             bar.minorticks_off()
-    _states(figure, panels[:, -1], x, y, store, places)
+    if several_states:
+        _states(figure, panels[:, -1], x, y, store, places)
     for row, (_, words) in zip(panels, slices):
         row[0].set_ylabel(f"{words}\n{y_name}" if words else y_name)
     for ax in panels[-1]:
@@ -75,11 +84,12 @@ def fronts_figure(store: Store) -> Figure:
     energy = store.read("front_energy")
     tip_unit = store.definition.grid.task.plant.tip_unit
     places = [*np.ndindex(*residual.shape[:-2])][:_MOST_SLICES]
-    figure = new_figure(1.0 + 4.0 * len(places), 3.8)
+    figure = new_figure(1.8 + 4.0 * len(places), 4.2)
+    _head(figure, store)
     panels = figure.subplots(1, len(places), squeeze=False, sharey=True)[0]
     values, name = _shown(axes[-1])
     norm = Normalize(float(values.min()), float(values.max()))
-    colours = ScalarMappable(norm, "viridis")
+    colours = ScalarMappable(norm, HEAT)
     for ax, place in zip(panels, places):
         for k, value in enumerate(values):
             shown_residual = tip_scale(tip_unit)[1] * residual[(*place, k)]
@@ -92,17 +102,25 @@ def fronts_figure(store: Store) -> Figure:
     return figure
 
 
+def _head(figure: Figure, store: Store) -> None:
+    """What is seen of a grid: how many cells have a plan, its energies, and what they leave."""
+    task = store.definition.grid.task
+    plant = raised(", ".join([moved(task), *limit_words(task)]))
+    cells = caption_of_cells(store.read("energy"), store.read("residual"), task.plant.tip_unit)
+    head(figure, cells, plant)
+
+
 def _over_one(store: Store, axis: Axis) -> Figure:
-    figure = new_figure(5.5, 7.5)
+    figure = new_figure(5.5, 8.0)
+    _head(figure, store)
     variables = _variables(store)
     panels = figure.subplots(len(variables), 1, sharex=True)
     values, name = _shown(axis)
     without = np.isnan(store.read("energy"))
-    for number, (ax, (label, shown, _)) in enumerate(zip(panels, variables)):
-        look_of_front = look(number)
-        ax.plot(values, shown, look_of_front.mark + "-", color=look_of_front.colour)
+    for ax, (label, shown, _) in zip(panels, variables):
+        ax.plot(values, shown, marker=PLAN.mark, color=PLAN.colour)
         logarithmic(ax, shown, "y")
-        ax.plot(values[without], np.full(without.sum(), 0.02), "x", color="0.4",
+        ax.plot(values[without], np.full(without.sum(), 0.02), "x", color=RED,
                 transform=ax.get_xaxis_transform())  # fmt: skip
         ax.set_ylabel(label)
         ax.grid(alpha=0.25)
@@ -151,13 +169,13 @@ def _states(
 ) -> None:  # fmt: skip
     """How cells ended, in colours of their own."""
     # how cells ended, in the order of `STATES`; told apart in print by their lightness as well
-    greys = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")
+    colours = (PALE, PLAN.colour, SKY, RED, PINK, BROWN, GREY)
     status = store.read(STATUS)
     present = sorted({*np.unique(status).astype(int).tolist()})
-    cmap = ListedColormap([greys[k] for k in present])
+    cmap = ListedColormap([colours[k] for k in present])
     numbers = np.searchsorted(present, status)
     norm = BoundaryNorm(np.arange(len(present) + 1) - 0.5, len(present))
-    panels[0].set_title("how it ended")
+    panels[0].set_title("how it ended", **TITLE)
     for ax, place in zip(panels, places):
         ax.pcolormesh(x, y, numbers[place], norm=norm, cmap=cmap, shading="nearest")
     bar = figure.colorbar(ScalarMappable(norm, cmap), ax=list(panels), ticks=range(len(present)))

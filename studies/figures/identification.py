@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from quietarm.studies.figures.axes import new_figure
-from quietarm.studies.figures.looks import BLUE, GREY, RED
+from quietarm.studies.figures.grammar import BLUE, FAINT, GREY, INK, RED
 from quietarm.studies.identify import Identified, Part, Recording
 from quietarm.studies.identify.diagnosis import spectrum_of
 from quietarm.studies.identify.identification import curve_of
@@ -76,7 +76,7 @@ def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[R
     over.tick_params(labelbottom=False)
     gap = np.append(np.diff(time) > 3 * np.median(np.diff(time)), False)
     below.plot(time, np.where(gap, np.nan, 100 * residual / size), color=RED, linewidth=0.6)
-    below.axhline(0, color="0.3", linewidth=0.5)
+    below.axhline(0, color=FAINT, linewidth=0.5)
     below.set_ylabel("residual [%]", fontsize=8)
     below.set_xlabel("time [s]", fontsize=8)
     at, amplitude = spectrum_of(time[model.counts], residual[model.counts, None])
@@ -116,9 +116,12 @@ def _over_parts(row: Any, machine: Identified) -> None:
             ax.axhspan(*ends, color=GREY, alpha=0.35, linewidth=0, label="next swing, 95 %")
         ends = estimate.low / size, estimate.high / size
         ax.axhspan(*ends, color=BLUE, alpha=0.35, linewidth=0, label="mean, 95 %")
-        ax.errorbar(number, values, spread, fmt="o", color="0.15", markersize=3, linewidth=0.8)
+        ax.errorbar(number, values, spread, fmt="o", color=INK, markersize=3, linewidth=0.8)
         ax.set_xlabel("ring-down", fontsize=8)
-        ax.set_ylabel("frequency [Hz]" if hertz else estimate.parameter, fontsize=8)
+        ax.set_ylabel(
+            "frequency [Hz]" if hertz else f"{estimate.parameter} [{units[estimate.parameter]}]",
+            fontsize=8,
+        )
         ax.xaxis.get_major_locator().set_params(integer=True)
         ax.ticklabel_format(axis="y", useOffset=False)
         ax.tick_params(labelsize=7)

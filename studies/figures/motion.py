@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from textwrap import fill
 from typing import ClassVar
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import GridSpecFromSubplotSpec
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
@@ -20,12 +20,15 @@ from quietarm.ocp.limits import QUANTITIES, Shares, unit_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
+    head,
     legend_below,
     legend_of,
     letter,
     new_figure,
 )
-from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
+from quietarm.studies.figures.grammar import AFTER_ARRIVAL, ARRIVAL, LIMIT, PLAN, Dash, Look, looks
+from quietarm.studies.figures.meaning import is_plain_cycloid, meaning_of
+from quietarm.studies.report.captions import caption_of_motions, verified_words
 from quietarm.studies.report.words import raised, title_of_picture
 from quietarm.studies.tips import tip_scale
 
@@ -49,8 +52,6 @@ _ALWAYS_DRAWN = (
     *(name for name, quantity in QUANTITIES.items() if quantity.always_drawn),
 )
 """These are panels of every motion; others are where a task limits them."""
-LETTERS_A_PANEL = 48
-"""Of a title, that fit above each column of panels."""
 PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
@@ -66,7 +67,8 @@ class Line:
     label : str
         What the legend calls it.
     colour : str, optional
-        Any of matplotlib's; by default one of `COLOURS`, with dashes to match.
+        Any of matplotlib's; by default that of what the motion is, with dashes to match: a plan,
+        the plain cycloid, a robust plan, a floor.
     style : str or tuple
         Its dashes, where there is a colour.
     """
@@ -127,19 +129,35 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
             style = line.style if alone else other_styles[(i - 1) % len(other_styles)]
             label = line.label + ("" if curve is not None else _which(plant, quantity, i))
             drawn.append(values)
-            ax.plot(line.plan.trajectory.time, values, color=line.colour, linestyle=style,
-                    linewidth=1.6, label=label)  # fmt: skip
+            _draw_curve(ax, line, values, style, label)
     for duration in {line.plan.task.duration for line in lines}:
-        ax.axvline(duration, color="0.6", linewidth=0.8, linestyle="--")
+        draw_arrival(ax, duration)
     for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn), curve)):
         label = "_" if k else "limit"  # once in the legend
-        ax.axhline(level, color="black", linewidth=1.1, linestyle=":", label=label)
+        ax.axhline(level, color=LIMIT.colour, linewidth=LIMIT.width, linestyle=LIMIT.dash,
+                   label=label)  # fmt: skip
     if _cut_off_pulses(ax, lines, quantity, curve):
         title += ", pulses cut off"
     ax.set_title(title, **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
     ax.margins(x=0)
     return ax
+
+
+def _draw_curve(ax: Axes, line: Line, values: Array, style: Dash, label: str) -> None:
+    """Draw a quantity over time, lighter after arrival."""
+    time = line.plan.trajectory.time
+    after = int(np.searchsorted(time, line.plan.task.duration))
+    width = PLAN.width
+    ax.plot(time[: after + 1], values[: after + 1], color=line.colour, linestyle=style,
+            linewidth=width, label=label)  # fmt: skip
+    ax.plot(time[after:], values[after:], color=line.colour, linestyle=style,
+            linewidth=width, alpha=AFTER_ARRIVAL, label="_")  # fmt: skip
+
+
+def draw_arrival(ax: Axes, duration: float) -> None:
+    """Draw the moment of arrival [s], a thin dashed line."""
+    ax.axvline(duration, color=ARRIVAL.colour, linewidth=ARRIVAL.width, linestyle=ARRIVAL.dash)
 
 
 def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
@@ -190,7 +208,8 @@ def motion_figure(
     motions : sequence of Line, Plan or Floor
         As for `draw_quantity`.
     title : str, optional
-        Title of the picture; by default the plant, the move and its limits.
+        Title of the picture; by default what the motions take and leave, how that is verified, and
+        of which plant, move and limits.
     quantities : sequence of str, optional
         Names in `QUANTITIES_DRAWN`; by default all but the power, and the jerk where it is limited.
         `PAPER_PANELS` are those of the paper.
@@ -228,64 +247,68 @@ def motion_figure(
     for ax in spare:
         ax.axis("off")
         ax.margins(x=0)  # time is shared
+    for ax in spare[1:]:
+        ax.remove()
     if spare:
         spare[0].legend(*legend_of(panels), loc="center left", fontsize=10, frameon=False)
     else:
         legend_below(figure, axes, min(3, len(lines)), 9)
-    title = title_of_picture(lines[0].plan.task) if title is None else title
-    if title:
-        figure.suptitle(fill(title, LETTERS_A_PANEL * columns), fontsize=12)
+    _head(figure, lines, title)
     return figure
+
+
+def _head(figure: Figure, lines: Sequence[Line], title: str | None) -> None:
+    """Set a picture's title: by default what the motions take and leave, and of which move."""
+    if title is not None:
+        head(figure, title)
+        return
+    motions = {line.label: line.plan for line in lines}
+    facts = f"{title_of_picture(lines[0].plan.task)}; {verified_words([*motions.values()])}"
+    head(figure, caption_of_motions(motions), raised(facts))
 
 
 def _figure_of_joints(
     lines: Sequence[Line], title: str | None, quantities: Sequence[str]
 ) -> Figure:
-    """A row for each joint with what it does, and a last one with each tip, and with the power."""
+    """A row for each joint with what it does, and below them the tips, the power, the legend."""
     task = lines[0].plan.task
     names = task.plant.joint_names
     of_joints = [name for name in quantities if name == "angle" or QUANTITIES[name].of_joints]
     others = [name for name in quantities if name not in of_joints]
     below = [(name, curve) for name in others for curve in range(len(curves(lines[0].plan, name)))]
-    columns = max(len(of_joints), min(len(below), _MOST_COLUMNS))
-    last_rows = -(-len(below) // columns)
-    figure = new_figure(0.8 + 3.2 * columns, 1.0 + 1.3 * len(names) + 2.2 * last_rows)
-    heights = [1.0] * len(names) + [1.6] * last_rows
-    axes = figure.subplots(len(heights), columns, sharex=True, squeeze=False, height_ratios=heights)
-    for joint, (name, row) in enumerate(zip(names, axes)):
-        for quantity, ax in zip(of_joints, row):
-            _draw(lines, quantity, ax, joint).set(xlabel="")
-            ax.grid(alpha=0.25)
-            if joint:
-                ax.set_title("", loc="left")
-        row[0].set_ylabel(_in_two_lines(name), fontsize=9)
-    spare = [ax for row in axes[: len(names)] for ax in row[len(of_joints) :]]
-    last = list(axes[len(names) :].flat)
-    for (quantity, curve), ax in zip(below, last):
-        _draw(lines, quantity, ax, curve).grid(alpha=0.25)
+    figure = new_figure(0.8 + 3.2 * max(len(of_joints), 2), 3.2 + 1.3 * len(names))
+    grid = figure.add_gridspec(2, 1, height_ratios=(len(names), 1.7))
+    upper = grid[0].subgridspec(len(names), max(len(of_joints), 1))
+    axes = _panels_of_joints(figure, upper, lines, of_joints) if of_joints else []
+    lower = grid[1].subgridspec(1, len(below) + 1)  # the last one is the legend's
+    last = list[Axes]()
+    for (quantity, curve), place in zip(below, lower):
+        ax = _draw(lines, quantity, axes_or_new(figure.add_subplot(place)), curve)
         if sum(name == quantity for name, _ in below) > 1:
             ax.set_title(ax.get_title(loc="left") + _which_tip(task.plant, curve), **TITLE)
-        ax.tick_params(labelbottom=True)
-    spare += last[len(below) :]
-    for ax in spare:
-        ax.axis("off")
-        ax.margins(x=0)  # time is shared
-    for ax in axes[len(names) - 1, len(below) : len(of_joints)]:  # nothing stands below it
-        ax.tick_params(labelbottom=True)
-        ax.set_xlabel("time [s]  (dashed: arrival)")
-    entries = legend_of(list(axes.flat))
-    if last[len(below) :]:
-        last[len(below)].legend(*entries, loc="center left", fontsize=10, frameon=False)
-    else:
-        figure.legend(*entries, loc="outside lower center", ncols=3, fontsize=9, frameon=False)
-    title = title_of_picture(task) if title is None else title
-    if title:
-        figure.suptitle(fill(title, LETTERS_A_PANEL * columns), fontsize=12)
+        last.append(ax)
+    room = figure.add_subplot(lower[len(below)])
+    room.axis("off")
+    room.legend(*legend_of([*axes, *last]), loc="center left", fontsize=10, frameon=False)
+    _head(figure, lines, title)
     return figure
 
 
-_MOST_COLUMNS = 4
-"""Of tips and the power."""
+def _panels_of_joints(
+    figure: Figure, grid: GridSpecFromSubplotSpec, lines: Sequence[Line], quantities: Sequence[str]
+) -> list[Axes]:
+    """A row for each joint, whose name stands beside it, and a column for each quantity."""
+    names = lines[0].plan.task.plant.joint_names
+    panels = grid.subplots(sharex=True, squeeze=False)
+    for joint, (name, row) in enumerate(zip(names, panels)):
+        for quantity, ax in zip(quantities, row):
+            _draw(lines, quantity, axes_or_new(ax), joint)
+            if joint:
+                ax.set_title("", loc="left")
+            if joint < len(names) - 1:
+                ax.set_xlabel("")
+        row[0].set_ylabel(_in_two_lines(name), fontsize=9)
+    return list(panels.flat)
 
 
 def _in_two_lines(name: str) -> str:
@@ -298,33 +321,37 @@ def _in_two_lines(name: str) -> str:
 @takes(floor=Floor, plan=Plan)
 def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
     """The panels of a floor, over the plan where there is one."""
-    lines = [Line(floor, f"floor, {floor.energy:.4g} J", BLUE)]
+    lines = [Line(floor, "floor")]
     if plan is not None:
-        label = f"plan of {plan.profile.size} terms, {plan.energy:.4g} J"
-        lines.insert(0, Line(plan, label, RED, "--"))
+        lines.insert(0, Line(plan, f"plan of {plan.profile.size} terms"))
     return motion_figure(lines)
 
 
 def lines_of(motions: Motions) -> list[Line]:
     """The lines of a picture, each with a colour; ValueError where there is none."""
     if isinstance(motions, Plan):
-        cycloid = evaluate_coefficients(motions.task, [])
-        motions = [Line(cycloid, "plain cycloid", GREY), Line(motions, "this plan", BLUE)]
+        motions = _beside_the_cycloid(motions)
     elif isinstance(motions, Floor):
-        motions = [Line(motions, f"floor, {motions.energy:.4g} J", BLUE)]
+        motions = [Line(motions, "floor")]
     if not isinstance(motions, Sequence) or isinstance(motions, str):
         instance("motions", motions, Plan)  # which is what was meant
     if not motions:
         raise ValueError("no motion is given; give one or more")
     for i, line in enumerate(motions, start=1):
         instance(f"motion {i}", line, Line)
-    looks = map(look, range(len(motions)))
-    return [
-        line
-        if line.colour
-        else replace(line, colour=look_of_motion.colour, style=look_of_motion.dash)
-        for line, look_of_motion in zip(motions, looks)
-    ]
+    of_meaning = iter(looks([meaning_of(line.plan) for line in motions if not line.colour]))
+    return [line if line.colour else _as(line, next(of_meaning)) for line in motions]
+
+
+def _beside_the_cycloid(plan: Plan) -> list[Line]:
+    """A plan over the plain cycloid of its task; of that cycloid itself no second one."""
+    if is_plain_cycloid(plan):
+        return [Line(plan, "plain cycloid")]
+    return [Line(evaluate_coefficients(plan.task, []), "plain cycloid"), Line(plan, "this plan")]
+
+
+def _as(line: Line, look: Look) -> Line:
+    return replace(line, colour=look.colour, style=look.dash)
 
 
 def limits_in_sight(

@@ -19,14 +19,21 @@ from quietarm.studies.figures.axes import (
     residual_label,
     side_by_side,
 )
-from quietarm.studies.figures.looks import look
+from quietarm.studies.figures.grammar import LIMIT, looks
+from quietarm.studies.report.captions import caption_of_judged
+from quietarm.studies.report.words import raised
 from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
     from quietarm.studies.compare.judged_motions import JudgedMotion
 
 
-def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None = None) -> Axes:
+def draw_robustness(
+    plans: Mapping[str, Robustness],
+    name: str,
+    ax: Axes | None = None,
+    meanings: Sequence[str] | None = None,
+) -> Axes:
     """Draw residuals over the errors of one parameter.
 
     Parameters
@@ -37,6 +44,9 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
         The error: ``"frequency"``, ``"damping"`` or a parameter; each plan has a sweep of it.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
+    meanings : sequence of str, optional
+        What each of the plans is in the grammar of pictures, as ``"robust plan"``; by default what
+        its name says.
 
     Returns
     -------
@@ -46,19 +56,19 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     """
     ax = axes_or_new(ax)
     limit = 100 * TOLERATED
-    for number, (label, plan) in enumerate(plans.items()):
+    for (label, plan), how in zip(plans.items(), looks(meanings or list(plans))):
         (sweep,) = [candidate for candidate in plan.sweeps if candidate.name == name]
-        how = look(number)
         per_cent = 100 / plan.cycloid if plan.cycloid > 0 else 0.0  # a joint that moves no mode
         ax.plot(
             100 * sweep.errors, per_cent * sweep.figures.residual, color=how.colour,
-            linestyle=how.dash, linewidth=1.6, label=label,
+            linestyle=how.dash, linewidth=how.width, label=label,
         )  # fmt: skip
         if sweep.insensitivity is not None:
             both = zip(sweep.insensitivity, sweep.open_ends)
             ends = [100 * end for end, is_open in both if not is_open]
             ax.plot(ends, [limit] * len(ends), how.mark, color=how.colour, markersize=5)
-    ax.axhline(limit, color="0.3", linewidth=0.8, linestyle="--", label=f"{limit:g} %")
+    ax.axhline(limit, color=LIMIT.colour, linewidth=LIMIT.width, linestyle=LIMIT.dash,
+               label=f"{limit:g} %")  # fmt: skip
     ax.set(xlabel=f"error of {name} [%]", ylabel="residual [% of the plain cycloid's]")
     ax.set_ylim(bottom=0)
     ax.margins(x=0)
@@ -85,10 +95,9 @@ def draw_motions(
         The axes, residuals logarithmic; each motion has a label for a legend.
     """
     ax = axes_or_new(ax)
-    for number, judged in enumerate(motions):
+    for judged, how in zip(motions, looks([judged.meaning for judged in motions])):
         if judged.motion is None:
             continue
-        how = look(number)
         energy = judged.motion.energy
         worst = judged.motion.residual if judged.worst is None else judged.worst.residual
         scale = tip_scale(tip_unit)[1]
@@ -109,14 +118,17 @@ def _window(motions: Sequence[JudgedMotion]) -> float | None:
 
 def motions_figure(motions: Sequence[JudgedMotion], title: str, tip_unit: str = "m") -> Figure:
     """Draw motions over each other: `draw_motions`, and `draw_robustness` for each error."""
-    curves = {motion.name: motion.robustness for motion in motions if motion.robustness is not None}
+    with_curve = [motion for motion in motions if motion.robustness is not None]
+    curves = {motion.name: motion.robustness for motion in with_curve}
+    meanings = [motion.meaning for motion in with_curve]
     names = list(next(iter(curves.values())).ranges) if curves else []
-    figure, axes = side_by_side(1 + len(names), title, width=6.0)
+    caption = caption_of_judged(motions, tip_unit)
+    figure, axes = side_by_side(1 + len(names), caption, raised(title), width=6.0)
     draw_motions(motions, axes[0], tip_unit)
     if any(judged.worst for judged in motions):
         label = residual_label(tip_unit, _window(motions))
         axes[0].set_xlabel(f"{label} (open: nominal plant, filled: worst case)")
     for name, ax in zip(names, axes[1:]):
-        draw_robustness(curves, name, ax)
+        draw_robustness(curves, name, ax, meanings)
     figure.legend(*legend_of(axes), loc="outside lower center", ncols=4, fontsize=8)
     return figure

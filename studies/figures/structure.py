@@ -12,12 +12,10 @@ from numpy.typing import NDArray
 
 from quietarm.models import Body
 from quietarm.ocp import Candidate, Floor, Plan, Trajectory
+from quietarm.studies.figures.grammar import FAINT, INK
 from quietarm.studies.figures.motion import Line
 
 Array = NDArray[np.float64]
-INK = "#404040"
-GROUND = "0.8"
-"""Of the floor, and of shadows on it."""
 _SCALES = (1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0)
 _BENT = 0.2
 """Share of a structure's size up to which deflections are drawn larger than they are."""
@@ -105,7 +103,7 @@ class Structure:
             points = np.array([bent.points for bent in bodies])
             body = bodies[0]
             if body.ground:
-                parts.append(Part(points, GROUND, 1.5))
+                parts.append(Part(points, FAINT, 1.5))
                 continue
             if points.shape[1] == 1:
                 parts.append(Part(points + _DOT, INK, 16.0))

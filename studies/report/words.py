@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees, isfinite
+from math import ceil, degrees, isfinite, log10
 from typing import TYPE_CHECKING
 
 from quietarm.models import Plant
@@ -105,7 +105,17 @@ def ends_words(task: PointToPoint) -> str:
         whole = (task.start, task.target) == (0.0, 1.0)
         return "along its path" if whole else f"{task.start:.6g} to {task.target:.6g} of the path"
     factor, unit = (1e3, "mm") if task.plant.joint == LINEAR else (degrees(1.0), "deg")
-    return f"{factor * task.start:.6g} to {factor * task.target:.6g} {unit}"
+    start = factor * task.start
+    target = factor * task.target
+    longest = max(abs(start), abs(target))
+    # 0.5236 rad are 30 deg: five figures of the longer of both, and none of rounding errors
+    decimals = 5 - ceil(log10(longest)) if longest > 0 else 0
+    return f"{_rounded(start, decimals):.6g} to {_rounded(target, decimals):.6g} {unit}"
+
+
+def _rounded(value: float, decimals: int) -> float:
+    """A value rounded, and never a negative zero."""
+    return round(value, decimals) + 0.0
 
 
 def unit_of_way(plant: Plant) -> str:

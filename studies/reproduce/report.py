@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from quietarm.ocp import Plan
 from quietarm.ocp.window import EQ_11
 from quietarm.studies.compare.plan_comparison import motions_table, remarks, shown
-from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
-from quietarm.studies.figures.looks import ORANGE, PINK, WINE
+from quietarm.studies.figures import PAPER_PANELS, RED, Line, motion_figure
+from quietarm.studies.figures.grammar import PLAN, Look, variants
 from quietarm.studies.report import Report
 from quietarm.studies.report.words import spread_words, title_of
 from quietarm.studies.reproduce.claims import claims
@@ -129,7 +129,9 @@ def _redrawn(result: Reproduction, title: str, case: Case, against_earlier: bool
     """
     reference, name = case.earlier
     earlier = result.earlier(case)
-    lines = [Line(result.cycloid(case), "cycloid", "black")]
+    of_search, of_earlier_search = variants("search", 2)
+    two_terms, four_terms, six_terms = reversed(variants("paper", 3))
+    lines = [Line(result.cycloid(case), "cycloid")]
     if against_earlier and earlier is not None:
         label = f"{name} of ref. [{reference}] as read here, gradient"
         lines = [
@@ -137,17 +139,17 @@ def _redrawn(result: Reproduction, title: str, case: Case, against_earlier: bool
                 result,
                 case,
                 name,
-                ORANGE,
+                of_earlier_search,
             ),
             Line(earlier, label, RED, ":"),
         ]
     else:
-        lines += [_of_paper(case, 2, GREEN, "-."), _of_paper(case, 4, RED, "--")]
+        lines += [_of_paper(case, 2, two_terms), _of_paper(case, 4, four_terms)]
     gradient = result.in_box(case, SIX_TERMS)
     lines += [
-        _of_paper(case, SIX_TERMS, BLUE, "-"),
-        *_by_search(result, case, SIX_TERMS, PINK),
-        Line(gradient, "gradient, N = 6, same box", WINE, (0, (7, 2))),
+        _of_paper(case, SIX_TERMS, six_terms),
+        *_by_search(result, case, SIX_TERMS, of_search),
+        Line(gradient, "gradient, N = 6, same box", PLAN.colour, PLAN.dash),
     ]
     return motion_figure(
         lines,
@@ -156,18 +158,17 @@ def _redrawn(result: Reproduction, title: str, case: Case, against_earlier: bool
     )
 
 
-def _by_search(result: Reproduction, case: Case, which: Input, colour: str) -> list[Line]:
+def _by_search(result: Reproduction, case: Case, which: Input, look: Look) -> list[Line]:
     """The middle seed of the paper's search; none where that did not come near enough."""
     searched = result.searched.get((case, which))
     label = f"{f'N = {which}' if isinstance(which, int) else which}, {case.search_label}"
     middle = searched and searched.middle
-    return [Line(middle, label, colour, "--")] if middle else []
+    return [Line(middle, label, look.colour, look.dash)] if middle else []
 
 
-def _of_paper(case: Case, terms: int, colour: str, style: str) -> Line:
+def _of_paper(case: Case, terms: int, look: Look) -> Line:
     """The paper's own coefficients, a misprint mended."""
     plan: Plan | None = paper_plan(case, terms)
     assert plan is not None  # it prints those of these figures
-    return Line(
-        plan, f"paper, N = {terms}{', a_5 mended' * ((case, terms) in MENDED)}", colour, style
-    )
+    label = f"paper, N = {terms}{', a_5 mended' * ((case, terms) in MENDED)}"
+    return Line(plan, label, look.colour, look.dash)

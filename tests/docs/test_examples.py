@@ -242,8 +242,10 @@ def follow(tmp_path, capfd, monkeypatch, quick_pictures):
         yield run
 
 
-CALLED = [name for name in COMMAND_BLOCKS if not name.startswith((STARTED, "explore", "machine"))]
-"""The page of explore stays until Ctrl-C: tests/studies/explore opens it."""
+ELSEWHERE = (STARTED, "explore", "machine", "gallery", "start")
+"""The page of explore stays until Ctrl-C: tests/studies/explore opens it. The gallery's commands
+make its pictures: test_pictures.py."""
+CALLED = [name for name in COMMAND_BLOCKS if not name.startswith(ELSEWHERE)]
 
 
 @pytest.mark.slow
@@ -255,6 +257,23 @@ def test_the_commands_run_one_after_another(follow, block, request):
     if block == "sweeps-0":
         energy = float(request.getfixturevalue("run_python")(CELL).split()[0])
         assert 0.02 < energy < 0.03  # README: the link's first move takes 0.0237 J
+
+
+@pytest.mark.slow
+def test_the_first_commands_print_what_the_page_shows_with_the_warnings_that_it_expects(follow):
+    printed = [" ".join(text.split()) for text in follow("start-0")]
+    shown = [text for text in blocks("start", "text") if text.startswith(("move ", "energy "))]
+    assert len(shown) == 2
+    for page, now in zip(shown, printed[:2], strict=True):
+        for row in page.splitlines():
+            # last digits are others elsewhere, and so are differences between integrators
+            words = row.partition("which differs by")[0].split()
+            assert " ".join([*words[:2], *(word[:4] for word in words[2:3])]) in now
+        assert re.findall(r"warning: [^;]*?\d", page)[0] in now
+    for words in ("83.6 mm (warning: beyond 47.5 mm", "78.36 rad/s^2 (warning: 15 times"):
+        assert words in " ".join("".join(shown).split())
+        assert words in " ".join(printed)
+    assert "beyond" not in printed[1]  # the page: the plan stays below
 
 
 @pytest.mark.slow

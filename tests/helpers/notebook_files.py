@@ -94,7 +94,10 @@ def execute(path, folder, client):
     Raises nbclient's CellExecutionError, with the cell and its traceback, where one fails.
     """
     notebook = read(path)
-    begin, extra = new_code_cell(STRICT.format(folder=str(folder), here=HERE, notebooks=str(NOTEBOOKS))), []
+    begin, extra = (
+        new_code_cell(STRICT.format(folder=str(folder), here=HERE, notebooks=str(NOTEBOOKS))),
+        [],
+    )
     cells = [begin]
     for cell in notebook.cells:
         found = [new_code_cell(each["code"]) for each in solutions(cell)]

@@ -9,44 +9,53 @@ CHROMIUM = next(
 SIZE = {"width": 1280, "height": 720}
 
 MEASURE = """async () => {
+    const still = "<style>* { transition: none !important; }</style>";
+    document.head.insertAdjacentHTML("beforeend", still);
     Reveal.configure({transition: "none", backgroundTransition: "none"});
-    document.head.insertAdjacentHTML("beforeend", "<style>* { transition: none !important; }</style>");
-    const shown = [];
+
+    // what is seen of a slide: not its notes, not what is folded, equations as a whole
+    const isSeen = (part) => part.checkVisibility({visibilityProperty: true})
+        && !part.closest("aside.notes, svg")
+        && !part.parentElement.closest("math")
+        && !part.closest("details:not([open]) > :not(summary)");
+    const fills = (part) => part.matches("img, svg, pre, video, canvas, math, iframe, table")
+        || [...part.childNodes].some((node) => node.nodeType == 3 && node.data.trim());
+    const isCut = (part) => {
+        const {overflowX, overflowY} = getComputedStyle(part);
+        return overflowX != "visible" && part.scrollWidth > part.clientWidth + 2
+            || overflowY != "visible" && part.scrollHeight > part.clientHeight + 2;
+    };
+    const rowsCovered = (boxes) => {
+        const rows = new Uint8Array(innerHeight);
+        for (const {top, bottom} of boxes) {
+            const [from, to] = [Math.floor(top), Math.ceil(bottom)];
+            rows.fill(1, Math.max(0, from), Math.max(0, Math.min(innerHeight, to)));
+        }
+        return rows.reduce((sum, row) => sum + row, 0);
+    };
+
+    const measured = [];
     for (const slide of Reveal.getSlides()) {
         const {h, v} = Reveal.getIndices(slide);
-        const last = slide.querySelectorAll(".fragment").length - 1;
-        Reveal.slide(h, v, last);
+        Reveal.slide(h, v, slide.querySelectorAll(".fragment").length - 1);
         await fit({currentSlide: slide});
         await new Promise(requestAnimationFrame);
-        const wall = {width: innerWidth, height: innerHeight};
-        const parts = [...slide.querySelectorAll("*")].filter((part) =>
-            part.checkVisibility({visibilityProperty: true}) && !part.closest("aside.notes, math, svg")
-            && !part.closest("details:not([open]) > :not(summary)"));
-        const leaves = parts.filter((part) => part.matches("img, svg, pre, video, canvas, math, iframe, table")
-            || [...part.childNodes].some((node) => node.nodeType == 3 && node.data.trim()));
-        const boxes = leaves.map((part) => part.getBoundingClientRect())
+        const seen = [...slide.querySelectorAll("*")].filter(isSeen);
+        const boxes = seen.filter(fills).map((part) => part.getBoundingClientRect())
             .filter((box) => box.width && box.height);
-        const cut = parts.filter((part) => {
-            const {overflowX, overflowY} = getComputedStyle(part);
-            return overflowX != "visible" && part.scrollWidth > part.clientWidth + 2
-                || overflowY != "visible" && part.scrollHeight > part.clientHeight + 2;
-        }).map((part) => `${part.tagName} ${part.className} ${part.scrollWidth}x${part.scrollHeight} in ${part.clientWidth}x${part.clientHeight}`);
         const bottom = Math.max(0, ...boxes.map((box) => box.bottom));
         const right = Math.max(0, ...boxes.map((box) => box.right));
-        // lines of the wall that something covers
-        const rows = new Uint8Array(wall.height);
-        for (const box of boxes)
-            rows.fill(1, Math.max(0, Math.floor(box.top)), Math.max(0, Math.min(wall.height, Math.ceil(box.bottom))));
-        shown.push({
+        const title = slide.querySelector("h1, h2, h3, strong") ?? slide;
+        measured.push({
             place: `${h}/${v || 0}`,
-            begins: (slide.querySelector("h1, h2, h3, strong") ?? slide).innerText.trim().slice(0, 60),
-            used: rows.reduce((sum, row) => sum + row, 0) / wall.height,
+            begins: title.innerText.trim().slice(0, 60),
+            used: rowsCovered(boxes) / innerHeight,
             zoom: Number(slide.style.zoom),
-            cut: cut,
-            beyond: Math.max(0, bottom - wall.height, right - wall.width),
+            cut: seen.filter(isCut).map((part) => `${part.tagName} ${part.className}`),
+            beyond: Math.max(0, bottom - innerHeight, right - innerWidth),
         });
     }
-    return shown;
+    return measured;
 }"""
 
 
@@ -58,6 +67,7 @@ class Slide(NamedTuple):
     used: float
     """Share of the wall's height that something covers."""
     zoom: float
+    """By how much the slide is larger, or smaller, than it was written."""
     cut: list
     """What has more content than is seen of it."""
     beyond: float

@@ -61,9 +61,13 @@ def test_an_answer_is_right_or_off_by_so_much(exercise, answer, line, capsys):
         (LENGTH, np.inf, "asks for the length [m]; this is not finite"),
         (PAIR, 20.0, "asks for both energies [mJ]; this is one number in place of 2"),
         (METHOD, 3, "asks for the better method: 'gradient' or 'search'; this is 3"),
-        (PLATE_AT_REST, [0.1], "asks for a1 and a2, at rest within 0.1 mm; this is one number in place of 2"),
+        (
+            PLATE_AT_REST,
+            [0.1],
+            "asks for a1 and a2, at rest within 0.1 mm; this is one number in place of 2",
+        ),
     ],
-)  # fmt: skip
+)
 def test_nonsense_is_told_what_is_asked_for(exercise, answer, line, capsys):
     assert said(exercise, answer, capsys) == line
 

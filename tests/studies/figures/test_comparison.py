@@ -74,4 +74,8 @@ def test_the_picture_holds_floor_and_papers_points(front_of):
         np.testing.assert_allclose(
             drawn(axis, "paper, N = 6"), [[point.residual * 1e3, 0.1492]], rtol=1e-3
         )
-        assert set(drawn(axis, "any joint motion at rest")[:, 1]) == {0.09}
+        ((residual, energy),) = drawn(axis, "best without parametrisation, at rest")
+        # where it is, at rest: on the left edge of both panels, and its figures stand beside it
+        assert (residual, energy) == (axis.get_xlim()[0], 0.09)
+        # of the stillest motion of both fronts, 0.2 J
+        assert [text.get_text() for text in axis.texts] == ["0.09 J at rest,\n55 % less"]

@@ -1,0 +1,378 @@
+"""Make the pictures of the pages anew.
+
+    python docs/make_pictures.py [NAME.png ...]       all, if none is named
+
+A picture `images/NAME.png` of a page is what a command, or a block of Python, on a page writes as
+NAME.png, word for word; some have other makers (`MAKERS`). Beside them `images/shown.json` says
+what each of them shows: its command, its words, its lines with their looks and some of their
+values. A test makes them again without writing, and names those that are older than what they show.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from PIL import Image
+
+import quietarm as qa
+from quietarm.studies.cli import main
+
+DOCS = Path(__file__).parent
+IMAGES = DOCS / "images"
+SHOWN = IMAGES / "shown.json"
+OF_COMMAND = {"compared.png": "compared/motions.png", "robot.png": "move.png"}
+"""Files of commands that have another name as pictures."""
+SAMPLES = 9
+"""Of a line, whose values are kept."""
+NEAR = 0.02
+"""Share of the range of an axis by which a value may differ on another machine."""
+BY_CHANCE = ("search", "front.png")
+"""Their values depend on the last digits of libraries, by way of the random numbers."""
+
+Shown = dict[str, Any]
+
+
+class Command(NamedTuple):
+    """A line of a page, and the lines before it that write files which it reads."""
+
+    page: str
+    line: str
+    before: tuple[str, ...]
+
+
+# Which pictures there are, and what makes them
+
+
+def names() -> list[str]:
+    """Pictures that a page shows."""
+    pages = [*DOCS.glob("*.md"), DOCS.parent / "README.md"]
+    found = {name for page in pages for name in re.findall(r"images/([\w.-]+)\)", page.read_text())}
+    return sorted(found)
+
+
+@cache
+def command_of(name: str) -> Command | None:
+    """The command that writes a picture: on the page that shows it, or on another one."""
+    pages = sorted(DOCS.glob("*.md"), key=lambda page: f"images/{name})" not in page.read_text())
+    output = OF_COMMAND.get(name, name)
+    for page in pages:
+        lines = re.findall(r"^\.venv/bin/(quietarm .*)$", page.read_text(), re.MULTILINE)
+        for number, line in enumerate(lines):
+            if any(output in (word, f"{word}/motions.png") for word in outputs_of(line)):
+                return Command(page.stem, line, tuple(_needed(line, lines[:number])))
+    return None
+
+
+def outputs_of(line: str) -> list[str]:
+    """Files that a command writes."""
+    words = shlex.split(line)
+    return [file for option, file in pairwise(words) if option == "--output"]
+
+
+def _needed(line: str, before: list[str]) -> Iterator[str]:
+    """Commands before a line that write what it reads, first ones first, each once."""
+    unread = set(shlex.split(line)[2:]) - set(outputs_of(line))
+    needed = list[str]()
+    for earlier in reversed(before):
+        if unread & set(outputs_of(earlier)):
+            needed.append(earlier)
+            unread -= set(outputs_of(earlier))
+    for earlier in reversed(needed):
+        yield from _needed(earlier, before[: before.index(earlier)])
+        yield earlier
+
+
+# How they are made
+
+
+def made_by_command(command: Command, name: str, quick: bool) -> tuple[bytes, Shown]:
+    """Run a command in the folder where one stands; its picture, and what that shows."""
+    _put_files_of_page(command.page)
+    figure = None
+    for line in (*command.before, command.line):
+        with drawn_figures() as figures, ending_well():
+            main([*shlex.split(line)[1:], "--quiet", *(_quicker(line) if quick else [])])
+        figure = figures[-1] if figures else figure
+    assert figure is not None
+    return Path(OF_COMMAND.get(name, name)).read_bytes(), figure
+
+
+def _quicker(line: str) -> list[str]:
+    """Options by which a picture shows the same in less time, but for values of searches."""
+    if line.endswith(".gif"):
+        return ["--rate", "4", "--width", "240"]
+    return ["--population", "20", "--generations", "5"] if line.split()[1] == "search" else []
+
+
+def python_of(name: str) -> str | None:
+    """The block of Python that saves a picture of this name, on a page that shows it."""
+    for page in DOCS.glob("*.md"):
+        text = page.read_text()
+        for block in re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
+            if f'savefig("{name}")' in block and f"images/{name})" in text:
+                return block
+    return None
+
+
+def made_by_python(block: str, name: str) -> tuple[bytes, Shown]:
+    """Run a block of Python in the folder where one stands."""
+    with drawn_figures() as figures:
+        exec(compile(block, name, "exec"), {"__name__": "__main__"})
+    return Path(name).read_bytes(), figures[-1]
+
+
+@contextmanager
+def ending_well() -> Iterator[None]:
+    """A command's exit: good, or an error of this script."""
+    try:
+        yield
+    except SystemExit as ended:
+        if ended.code:
+            raise RuntimeError(f"the command ended with {ended.code}") from ended
+
+
+@contextmanager
+def drawn_figures() -> Iterator[list[Shown]]:
+    """What is drawn meanwhile, in the order in which it is saved."""
+    shown = list[Shown]()
+    save = Figure.savefig
+
+    def keep(figure: Figure, *arguments: Any, **settings: Any) -> None:
+        save(figure, *arguments, **settings)
+        shown[:] = [shown_by(figure)]
+
+    Figure.savefig = keep  # pyright: ignore[reportAttributeAccessIssue]
+    try:
+        yield shown
+    finally:
+        Figure.savefig = save
+
+
+def _put_files_of_page(page: str) -> None:
+    """Files that a page shows by a name in their first line, and the URDF that it speaks of."""
+    text = (DOCS / f"{page}.md").read_text()
+    for block in re.findall(r"^```text\n(# [\w.]+\n.*?)^```$", text, re.DOTALL | re.MULTILINE):
+        Path(block.split(maxsplit=2)[1]).write_text(block)
+    if "ur5_robot.urdf" in text:
+        import importlib.metadata
+
+        files = importlib.metadata.files("example-robot-data") or []
+        urdf = next(file.locate() for file in files if file.name == "ur5_robot.urdf")
+        Path("ur5_robot.urdf").write_bytes(Path(str(urdf)).read_bytes())
+
+
+def fronts_compared(quick: bool) -> tuple[bytes, Shown]:
+    """Fronts of the arm's first move: five seeds of the paper's searches, and the gradient's."""
+    from quietarm.studies.compare import compare_fronts
+    from quietarm.studies.figures import comparison_figure
+    from quietarm.studies.reproduce.paper import ARM_HALF, paper_points
+
+    task = ARM_HALF.task
+    fewer = {"generations": 5, "population": 20} if quick else {}
+    fronts = [qa.epsilon_front(task, bound=ARM_HALF.bound, points=10 if quick else 50)]
+    fronts += [
+        qa.search(task, algorithm=method, bound=ARM_HALF.bound, seed=seed, **fewer)
+        for method in ("vepso", "nsga2-paper")
+        for seed in range(5)
+    ]
+    comparison = replace(compare_fronts(fronts), floor=qa.energy_floor(task).energy)
+    figure = comparison_figure(comparison, paper_points(task, {6}))
+    figure.savefig("front.png", dpi=150)
+    return Path("front.png").read_bytes(), shown_by(figure)
+
+
+def page_of_sliders(quick: bool) -> tuple[bytes, Shown]:
+    """The page of explore, with a plan and a front, in the machine's own Chromium."""
+    from playwright.sync_api import expect, sync_playwright
+
+    browsers = map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))
+    line = [sys.executable, "-m", "quietarm", "explore", "--no-browser"]
+    process = subprocess.Popen(line, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    seconds = 240
+    expect.set_options(1e3 * seconds)
+    try:
+        address = process.stdout.readline().strip()
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(executable_path=next(filter(None, browsers)))
+            page = browser.new_page(viewport={"width": 1280, "height": 800})
+            page.set_default_timeout(1e3 * seconds)
+            page.goto(address)
+            figures = page.locator(".figures .bk-clearfix")
+            expect(figures).to_contain_text("0 to 30 deg")
+            page.get_by_role("button", name="Plan", exact=True).click()
+            expect(figures).to_contain_text("found a local optimum")
+            page.get_by_role("button", name="Front", exact=True).click()
+            plot = "Bokeh.documents[0].get_model_by_name('front')"
+            page.wait_for_function(f"{plot}.title.text.startsWith('front')")
+            page.wait_for_timeout(1000)  # the curves are drawn
+            words = page.evaluate("document.body.innerText").splitlines()
+            titles = page.evaluate(
+                "[...Bokeh.documents[0]._all_models.values()]"
+                ".map(model => model.title?.text ?? model.axis_label).filter(Boolean)"
+            )
+            picture = page.screenshot(full_page=True)
+            browser.close()
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=seconds)
+    return picture, {"words": masked([*words, *map(str, titles)]), "lines": [], "areas": []}
+
+
+MAKERS: Mapping[str, Callable[[bool], tuple[bytes, Shown]]] = {
+    "front.png": fronts_compared,
+    "explore.png": page_of_sliders,
+}
+"""Makers of pictures that no command writes; told whether less will do."""
+
+
+def make(name: str, quick: bool = False) -> tuple[bytes, Shown]:
+    """A picture and what it shows, made in a folder of its own."""
+    before = Path.cwd()
+    with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
+        os.chdir(folder)
+        try:
+            if name in MAKERS:
+                return MAKERS[name](quick)
+            if block := python_of(name):
+                return made_by_python(block, name)
+            command = command_of(name)
+            if command is None:
+                raise ValueError(f"no command on a page writes {name}; add it there, or to MAKERS")
+            return made_by_command(command, name, quick)
+        finally:
+            os.chdir(before)
+
+
+# What they show
+
+
+def shown_by(figure: Figure) -> Shown:
+    """Words, lines with looks and values, and areas of a figure."""
+    texts = [text.get_text() for text in figure.findobj(Text) if text.get_visible()]
+    lines = [
+        [
+            line.get_label() if not str(line.get_label()).startswith("_") else "",
+            to_hex(line.get_color()),
+            str(line.get_linestyle()),
+            str(line.get_marker()),
+            _sampled(line.get_xdata(), ax.get_xlim()),
+            _sampled(line.get_ydata(), ax.get_ylim()),
+        ]
+        for ax in figure.axes
+        for line in ax.get_lines()
+    ]
+    areas = [
+        _sampled(np.ravel(mesh.get_array()), (0.0, 1.0))
+        for mesh in figure.findobj(QuadMesh)
+        if mesh.axes is not None and not mesh.axes.get_label().startswith("<colorbar")
+    ]
+    return {"words": masked(texts), "lines": lines, "areas": areas}
+
+
+def masked(texts: list[str]) -> list[str]:
+    """Words without their numbers, which stand in the values; those with letters, once each."""
+    lines = {
+        re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", line).strip()
+        for text in texts
+        for line in text.splitlines()
+    }
+    return sorted(line for line in lines if re.search(r"[a-zA-Z]", line))
+
+
+def _sampled(values: Any, span: tuple[float, float]) -> list[float]:
+    """Some values along a line, as shares of its axis."""
+    numbers = np.asarray(values, dtype=float)
+    if not numbers.size:  # a part of a film before its first frame
+        return []
+    places = np.linspace(0, len(numbers) - 1, SAMPLES).round().astype(int)
+    shares = (numbers[places] - span[0]) / ((span[1] - span[0]) or 1.0)
+    return [float(f"{share:.4g}") for share in np.nan_to_num(shares, nan=-1.0)]
+
+
+def differences(kept: Shown, now: Shown, with_values: bool) -> list[str]:
+    """What a picture shows and would not show now, or the other way round."""
+    said = [f"no longer: {word}" for word in kept["words"] if word not in now["words"]]
+    said += [f"new: {word}" for word in now["words"] if word not in kept["words"]]
+    looks = [[line[:4] for line in shown["lines"]] for shown in (kept, now)]
+    if looks[0] != looks[1]:
+        said.append("lines with other looks")
+    elif with_values:
+        said += [
+            f"other values of {line[0] or 'a line'}"
+            for line, again in zip(kept["lines"], now["lines"])
+            if not np.allclose(line[4:], again[4:], rtol=0, atol=NEAR)
+        ]
+        for area, again in zip(kept["areas"], now["areas"]):
+            if not np.allclose(area, again, rtol=NEAR, atol=1e-9):
+                said.append("other values of an area")
+    return said
+
+
+def digest(content: bytes) -> str:
+    """Of a picture's file."""
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def kept() -> dict[str, Shown]:
+    """What the pictures show, as it was when they were made."""
+    return json.loads(SHOWN.read_text()) if SHOWN.exists() else {}
+
+
+def has_values(name: str) -> bool:
+    """Whether what a picture shows is the same on every machine."""
+    command = command_of(name)
+    by_chance = command is not None and command.line.split()[1] in BY_CHANCE
+    return not by_chance and name not in BY_CHANCE
+
+
+def _smaller(picture: bytes) -> bytes:
+    """The same picture in as many colours as can be seen in it, a third of the size."""
+    colours = 128
+    small = io.BytesIO()
+    with Image.open(io.BytesIO(picture)) as image:
+        few = image.convert("RGB").quantize(colours, dither=Image.Dither.NONE)
+        few.save(small, format="PNG", optimize=True)
+    return small.getvalue()
+
+
+def write(name: str) -> None:
+    """Make a picture, write it, and what it shows."""
+    picture, shown = make(name)
+    if name.endswith(".png"):
+        picture = _smaller(picture)
+    command = command_of(name) if name not in MAKERS else None
+    line = command.line if command else ""
+    shown = {"command": line, "file": digest(picture), **shown}
+    (IMAGES / name).write_bytes(picture)
+    entries = {**kept(), name: shown}
+    lines = [f"{json.dumps(key)}: {json.dumps(entries[key])}" for key in sorted(entries)]
+    SHOWN.write_text("{\n" + ",\n".join(lines) + "\n}\n")
+
+
+if __name__ == "__main__":
+    for picture_name in sys.argv[1:] or names():
+        print(picture_name, flush=True)
+        write(picture_name)

@@ -1,0 +1,26 @@
+"""What a motion is, in the words of the grammar of pictures."""
+
+from __future__ import annotations
+
+from quietarm.ocp import Candidate, CycloidPolynomial, Floor, Plan
+from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
+
+
+def meaning_of(motion: Plan | Floor | Candidate) -> str:
+    """Which of `MEANINGS` a motion is; empty for what is none of them, as an input shaper's."""
+    if isinstance(motion, Floor):
+        return "floor"
+    if is_plain_cycloid(motion):
+        return "plain cycloid"
+    if isinstance(motion, Candidate) or isinstance(motion.profile, ShapedCycloid):
+        return ""
+    return "robust plan" if motion.task.ranges else "plan"
+
+
+def is_plain_cycloid(motion: Plan | Candidate) -> bool:
+    """Whether a motion is the plain cycloid, whose coefficients are all zero."""
+    return (
+        isinstance(motion, Plan)
+        and isinstance(motion.profile, CycloidPolynomial)
+        and not any(motion.coefficients)
+    )
