@@ -100,8 +100,6 @@ def test_plans_of_different_plants_and_durations_become_a_page_and_a_gif(
         assert (image.n_frames, image.width) == (9, 240)
     kilobytes = (folder / "move.gif").stat().st_size / 1e3
     assert out == f"9 frames, 2.2 s, {kilobytes:.0f} kB\nwrote move.gif\n"
-    assert call(f"export plan.json --output move.html {SMALL}")[0] == 0
-    assert (folder / "move.html").read_text().count("data:image/png;base64") == 9
 
 
 def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch, tmp_path):
