@@ -106,12 +106,14 @@ def moves_of(answers: Answers) -> list[Move]:
     Further fronts and plans of the same move, and the paper's own points for it, lie beside the
     first front. ValueError where a front has no point, or a move has too many plans.
     """
+    fronts = {label: answer for label, answer in answers.items() if isinstance(answer, Front)}
+    plans = {label: answer for label, answer in answers.items() if isinstance(answer, Plan)}
     groups = list[dict[str, Front | Plan]]()
-    for label, answer in answers.items():
+    for label, answer in (fronts | plans).items():
         if isinstance(answer, Front) and not answer.points:
             raise ValueError(f"{label}: {answer.why_empty()}")
         for group in groups:
-            if _is_same_move(next(iter(group.values())).task, answer.task):
+            if _belong_together(next(iter(group.values())), answer):
                 group[label] = answer
                 break
         else:
@@ -119,11 +121,13 @@ def moves_of(answers: Answers) -> list[Move]:
     return [_move_of(group) for group in groups]
 
 
-def _is_same_move(task: PointToPoint, reference: PointToPoint) -> bool:
-    """Whether two tasks are the same but for their limits, so that F1 and F2 mean the same."""
-    limits = [*(quantity.limit for quantity in QUANTITIES.values()), "torque_speed"]
-    without = dict.fromkeys(limits)
-    return not task_difference(replace(task, **without), replace(reference, **without))
+def _belong_together(first: Front | Plan, answer: Front | Plan) -> bool:
+    """Whether F1 and F2 mean the same, and of two fronts the limits are the same, too."""
+    tasks = [first.task, answer.task]
+    if not (isinstance(first, Front) and isinstance(answer, Front)):
+        limits = [*(quantity.limit for quantity in QUANTITIES.values()), "torque_speed"]
+        tasks = [replace(task, **dict.fromkeys(limits)) for task in tasks]
+    return not task_difference(*tasks)
 
 
 def _move_of(group: Answers) -> Move:

@@ -36,7 +36,7 @@ from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sig
 from quietarm.studies.figures.structure import GROUND, INK, Structure, structures_of
 from quietarm.studies.report.methods import label_of
 from quietarm.studies.report.templates import templates
-from quietarm.studies.report.words import window_words
+from quietarm.studies.report.words import counted, window_words
 from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
@@ -119,8 +119,8 @@ def trade_off(
     if size > MOST_BYTES:
         motions = sum(len(move.choices) for move in moves)
         raise ValueError(
-            f"{motions} motions of {len(moves)} moves make a page of {size / 1e6:.1f} MB, where "
-            f"{MOST_BYTES / 1e6:g} MB are the most; give fewer answers"
+            f"{motions} motions of {counted(len(moves), 'move')} make a page of {size / 1e3:.0f} "
+            f"kB, where {MOST_BYTES / 1e3:.0f} kB are the most; give fewer answers"
         )
     return page
 

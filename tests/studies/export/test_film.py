@@ -90,9 +90,7 @@ def test_moves_of_different_durations_share_a_clock(plan, task):
 
 
 @pytest.mark.slow
-def test_plans_of_different_plants_and_durations_become_a_page_and_a_gif(
-    call, done, folder, plan, two_links
-):
+def test_plans_of_different_plants_and_durations_become_a_gif(done, folder, plan, two_links):
     plan.save("plan.json")
     evaluate_coefficients(PointToPoint(two_links, math.pi / 2, 0.9), []).save("links.json")
     out = done(f"export plan.json links.json --output move.gif {SMALL}")
