@@ -4,7 +4,7 @@ const tellTheme = (frame) => frame.contentWindow?.postMessage({ quietarm: { them
 addEventListener("message", ({ data, source }) => {
   const frame = frames().find(({ contentWindow }) => contentWindow === source);
   const height = data?.quietarm?.height;
-  if (!frame || !(height > 0)) return;
+  if (!frame || !(height > 0) || frame.style.height === `${height}px`) return;
   frame.style.height = `${height}px`;
   tellTheme(frame);
 });

@@ -126,17 +126,18 @@ stillness.addEventListener("change", () => play(!stillness.matches));
 // In a frame of another page: it says the colours by {quietarm: {theme: "dark"}}, and is told how high this page is.
 const framed = window.parent !== window;
 document.documentElement.classList.toggle("framed", framed);
-addEventListener("message", ({ data }) => {
-  const theme = data?.quietarm?.theme;
-  if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;
-  if (theme === "auto") delete document.documentElement.dataset.theme;
-});
 const tellHeight = () => {
   if (framed) window.parent.postMessage({ quietarm: { height: Math.ceil(document.querySelector("main").getBoundingClientRect().height) } }, "*");
 };
 
 // The first drawing waits for a size: in a frame that is hidden there is none.
 let drawnSize = "";
+addEventListener("message", ({ data }) => {
+  const theme = data?.quietarm?.theme;
+  if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;
+  if (theme === "auto") delete document.documentElement.dataset.theme;
+  if (theme && drawnSize) tellHeight(); // whoever listened too late
+});
 new ResizeObserver(() => {
   tellHeight();
   const size = [byId("front").clientWidth, byId("scene").clientHeight].join();
