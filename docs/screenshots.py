@@ -38,7 +38,7 @@ def explore(browser):
         page.get_by_label("largest |a_n|").fill("0.2")
         page.get_by_label("largest |a_n|").press("Enter")
         page.get_by_role("button", name="Front", exact=True).click()
-        page.get_by_text(re.compile("click the front")).wait_for(timeout=120_000)
+        page.get_by_text(re.compile("click near the front")).wait_for(timeout=120_000)
         page.get_by_role("button", name="Plan", exact=True).click()
         page.get_by_text("found a local optimum").wait_for(timeout=120_000)
         page.wait_for_timeout(1300)

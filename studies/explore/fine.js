@@ -2,22 +2,24 @@
 const tenth = 0.1;
 let fine = null;
 let held = null;
+let last = 0;
 const sliders = () => columns.flatMap((column) => column.children.map((row) => row.children[1]));
-addEventListener("pointerdown", (event) => {
+addEventListener("mousedown", (event) => {
     const path = event.composedPath();
     const views = sliders().map((slider) => Bokeh.index.find_one(slider));
     held = views.find((view) => view && path.includes(view.el)) ?? null;
     fine = null;
+    last = event.clientX;
 }, true);
-addEventListener("pointermove", (event) => {
-    if (!held || !event.buttons || !(event.shiftKey || fine)) return;
+addEventListener("mousemove", (event) => {
+    if (!held || !event.buttons) return;
+    const across = event.clientX - last;
+    last = event.clientX;
+    if (!event.shiftKey && fine === null) return;
     event.stopImmediatePropagation();
     const {start, end, step, value} = held.model;
-    const width = held.el.getBoundingClientRect().width;
-    fine ??= {x: event.clientX, value};
-    fine.value += tenth * (event.clientX - fine.x) / width * (end - start);
-    fine.x = event.clientX;
-    const rounded = Math.round((Math.min(Math.max(fine.value, start), end) - start) / step) * step + start;
+    fine = (fine ?? value) + tenth * across / held.el.getBoundingClientRect().width * (end - start);
+    const rounded = Math.round((Math.min(Math.max(fine, start), end) - start) / step) * step + start;
     if (rounded !== value) held.model.value = Number(rounded.toPrecision(12));
 }, true);
-addEventListener("pointerup", () => { held = fine = null; }, true);
+addEventListener("mouseup", () => { held = fine = null; }, true);

@@ -72,23 +72,24 @@ class Explored:
     library: MoveLibrary | None = None
     front: Front | None = None
     kept: Plan | None = None
-    reach: float = 0.0
-    """Range of the coefficients by hand, on either side of 0: the box, or what is beyond it."""
+    reach: tuple[float, ...] = ()
+    """Range of every coefficient by hand, on either side of 0: the box, or what is beyond it."""
     opened: PointToPoint | None = None
     """The move of the first plan; its dials keep their ranges."""
 
     def __post_init__(self) -> None:
-        furthest = max(map(abs, self.plan.coefficients), default=0.0)
-        rounded_up = ceil(furthest / _TENTH - 1e-9) * _TENTH
-        reach = max(self.reach, self._box, float(f"{rounded_up:.6g}"))
+        before = self.reach or (0.0,) * len(self.plan.coefficients)
+        pairs = zip(before, self.plan.coefficients, strict=True)
+        reach = tuple(max(range_before, self._range(value)) for range_before, value in pairs)
         object.__setattr__(self, "reach", reach)
         object.__setattr__(self, "opened", self.opened or self.task)
 
-    @property
-    def _box(self) -> float:
-        """The bound that the gradient is asked for; else the profile's own, or the paper's."""
+    def _range(self, coefficient: float) -> float:
+        """The bound that the gradient is asked for, the profile's own or the paper's; or more."""
         of_profile = self.plan.profile.default_bound
-        return self.bound or of_profile or PAPER_BOX.get(self.plan.task.plant.name, _USUAL_BOX)
+        box = self.bound or of_profile or PAPER_BOX.get(self.plan.task.plant.name, _USUAL_BOX)
+        tenths = ceil(abs(coefficient) / _TENTH - 1e-9)
+        return max(box, float(f"{tenths * _TENTH:.6g}"))
 
     @property
     def task(self) -> PointToPoint:
@@ -120,10 +121,12 @@ class Explored:
         quantities = quantities_of(joint, tip_unit).values()
         limits = {quantity.limit: (quantity.name, quantity.unit) for quantity in quantities}
         limits |= {"residual_limit": ("residual", tip_unit), "bound": ("largest |a_n|", "-")}
-        reach = "-", -self.reach, self.reach
         return {
             **{name: _dial("move", name, *end) for name, end in ends.items()},
-            **{name: _dial("shape", name, *reach) for name in self.coefficients},
+            **{
+                name: _dial("shape", name, "-", -reach, reach)
+                for name, reach in zip(self.coefficients, self.reach, strict=True)
+            },
             **{name: _dial("limits", *limit) for name, limit in limits.items()},
         }
 
@@ -168,7 +171,7 @@ class Explored:
         settings = {name: values[name] for name in ("residual_limit", "bound")}
         same_bound = values["bound"] == self.bound
         same = task == self.task and same_bound
-        reach = self.reach if same_bound else 0.0
+        reach = self.reach if same_bound else ()
         front = self.front if same else None
         return self._moved(task, coefficients, front=front, reach=reach, **settings)
 
@@ -199,7 +202,7 @@ class Explored:
     def choose_profile(self, name: str, terms: int | None = None) -> Explored:
         """The same move by another profile, of its usual size by default."""
         profile = profile_of(name, self.task, terms)
-        return self._moved(self.task, profile.plain, profile, front=None, reach=0.0)
+        return self._moved(self.task, profile.plain, profile, front=None, reach=())
 
     def solve(self) -> Explored:
         """The same with the gradient's motion; it raises what `plan_move` does."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -103,7 +103,8 @@ class Plots:
         here = self._sources["here"]
 
         def tapped(event: Tap) -> None:
-            nearest = _nearest(points.data, float(event.x or 0.0), float(event.y or 0.0))
+            drawn = pd.DataFrame(points.data), pd.DataFrame(here.data)
+            nearest = _nearest(*drawn, (float(event.x or 0.0), float(event.y or 0.0)))
             if nearest is not None:
                 pick(nearest)
 
@@ -122,13 +123,12 @@ class Plots:
         return plot
 
 
-def _nearest(points: Mapping[str, Sequence[float]], x: float, y: float) -> int | None:
+def _nearest(points: pd.DataFrame, here: pd.DataFrame, clicked: tuple[float, float]) -> int | None:
     """The number of the point of the front that is nearest to a place, as it is drawn."""
-    places = np.column_stack([points["x"], points["y"]])
-    if not len(places):
+    if points.empty:
         return None
-    spans = np.ptp(places, axis=0)
-    away = (places - [x, y]) / np.where(spans > 0, spans, 1.0)
+    spans = np.ptp(pd.concat([points, here]).to_numpy(float), axis=0)
+    away = (points.to_numpy(float) - clicked) / np.where(spans > 0, spans, 1.0)
     return int((away**2).sum(axis=1).argmin())
 
 

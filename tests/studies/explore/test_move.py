@@ -65,8 +65,10 @@ def test_sliders_of_coefficients_span_the_box_and_what_is_beyond_it(begun):
     assert wider.dials["a1"].most == 0.4
     assert wider.change({"bound": None}).dials["a1"].most == 0.2
     planned = begun.solve()
-    furthest = max(map(abs, planned.plan.coefficients))
-    assert furthest <= planned.dials["a1"].most < furthest + 0.1
+    for name, value in planned.coefficients.items():
+        assert max(0.2, abs(value)) <= planned.dials[name].most < max(0.2, abs(value)) + 0.1
+    assert planned.dials["a6"].most > 1.0  # of the README's plan, which has no box
+    assert planned.dials["a1"].most == 0.2
     # it stays while coefficients are changed: else a slider would go under the pointer
     assert planned.change({"a1": 0.0, "a2": 0.0}).reach == planned.reach
 
