@@ -8,6 +8,7 @@ Notebooks are shown as they are committed, with outputs that the tests hold agai
 """
 
 import re
+import shutil
 import sys
 from dataclasses import replace
 from importlib import import_module
@@ -165,6 +166,11 @@ def _write_front(app):
     folder = Path(app.outdir, "docs")
     folder.mkdir(parents=True, exist_ok=True)
     trade_off(fronts).save(folder / "front.html")
+    # and the pages that notebooks show
+    notebooks = Path(app.outdir, "notebooks")
+    notebooks.mkdir(exist_ok=True)
+    for page in Path(app.srcdir, "notebooks").glob("*.html"):
+        shutil.copy(page, notebooks)
 
 
 def setup(app):

@@ -1,5 +1,5 @@
 // Frames with the page to drag along a front: they are as high as it is, and have the site's colours.
-const frames = () => [...document.querySelectorAll("iframe.front")];
+const frames = () => [...document.querySelectorAll("iframe")];
 const tellTheme = (frame) => frame.contentWindow?.postMessage({ quietarm: { theme: document.body.dataset.theme ?? "auto" } }, "*");
 addEventListener("message", ({ data, source }) => {
   const frame = frames().find(({ contentWindow }) => contentWindow === source);
