@@ -30,6 +30,8 @@ _FROM_THE_NETWORK = re.compile(
     re.DOTALL,
 )
 _UNDESCRIBED = re.compile(r'alt="No description[^"]*"')
+_FRAME = re.compile(r'(?P<before><iframe[^>]*?)src="(?P<name>[\w.-]+\.html)"')
+"""Of a page that stands beside the notebook."""
 _STYLE = """<style>
 .equation { display: flex; align-items: center; margin: 1em 0; }
 .equation div { flex: 1; }
@@ -107,6 +109,12 @@ Reveal.on("slidechanged", fit);
 </script>"""
 
 
+def _with_its_page(frame, folder):
+    """A frame that has in it the page that it shows."""
+    page = (folder / frame["name"]).read_text(encoding="utf-8")
+    return f'{frame["before"]}srcdoc="{escape(page)}"'
+
+
 def alternatives(notebook):
     """The texts of a notebook's pictures, in their order, which nbconvert's templates leave out."""
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
@@ -145,6 +153,8 @@ class _Offline:
         page = _FROM_THE_NETWORK.sub("", page)
         texts = map(escape, alternatives(nb))
         page = _UNDESCRIBED.sub(lambda _: f'alt="{next(texts)}"', page)
+        folder = Path((resources.get("metadata") or {}).get("path") or ".")
+        page = _FRAME.sub(lambda frame: _with_its_page(frame, folder), page)
         page = page.replace("</head>", f"{self.head}</head>", 1)
         return page.replace("</body>", self.foot), resources
 

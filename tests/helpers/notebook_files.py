@@ -80,6 +80,13 @@ def pictures(notebook):
     return [base64.b64decode(picture) for picture in found if picture]
 
 
+def pages(notebook):
+    """Names of the pages that its cells write and show in a frame."""
+    outputs = [output for cell in code_cells(notebook) for output in cell.outputs]
+    shown = "".join(output.get("data", {}).get("text/html", "") for output in outputs)
+    return sorted(re.findall(r'<iframe[^>]*src="([\w.-]+\.html)"', shown.replace("\n", " ")))
+
+
 @contextmanager
 def kernel():
     """What executes notebooks: a kernel that loads modules once for all of them."""

@@ -1,5 +1,6 @@
 """The notebooks and their exercises run as they stand, and are committed with what they show."""
 
+import json
 import re
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from notebook_files import (
     differences,
     execute,
     kernel,
+    pages,
     pictures,
     printed,
     read,
@@ -52,11 +54,30 @@ def kinds(cell):
     return [sorted(o.get("data", {})) or o.get("name", o.output_type) for o in cell.outputs]
 
 
+def same_page(committed, anew):
+    """Two pages to drag along a front have the same program, and the same figures."""
+    data = re.compile(r'(?<=<script type="application/json" id="data">).*?(?=</script>)')
+    assert data.sub("", committed) == data.sub("", anew)
+    then, now = (
+        [
+            [point["residual"], point["energy"]]
+            for move in json.loads(data.search(page)[0])["moves"]
+            for point in move["points"]
+        ]
+        for page in (committed, anew)
+    )
+    for before, after in zip(then, now, strict=True):
+        assert after == pytest.approx(before, rel=1e-3, abs=1e-6)
+
+
 @pytest.mark.slow
 @each_notebook
 def test_it_runs_without_warnings_and_shows_what_is_committed(path, client, tmp_path):
     committed, anew = read(path), execute(path, tmp_path, client)
-    assert list(tmp_path.iterdir()) == []  # it leaves nothing behind
+    # it leaves nothing behind but the pages that it shows
+    assert sorted(written.name for written in tmp_path.iterdir()) == pages(committed)
+    for name in pages(committed):
+        same_page((NOTEBOOKS / name).read_text(), (tmp_path / name).read_text())
     for then, now in zip(code_cells(committed), code_cells(anew.notebook), strict=True):
         assert "stderr" not in kinds(now), now.outputs
         assert kinds(then) == kinds(now), then.source
