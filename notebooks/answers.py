@@ -100,11 +100,12 @@ def energy_by_acceleration():
 
 
 def bounds_of_turning_back():
-    times = np.linspace(0, MOVE.duration, 2001)
+    times = np.linspace(0, MOVE.duration, 20_001)
 
     def turns_back(coefficients):
         profile = qa.CycloidPolynomial(len(coefficients))
-        return profile.path(coefficients, *MOVE.move)(times, 1).min() < -1e-9
+        speeds = profile.path(coefficients, *MOVE.move)(times, 1)
+        return speeds.min() < -1e-20  # more than rounding, at the ends as well
 
     def largest(direction):
         low, high = 0.0, 1.0

@@ -56,7 +56,7 @@ class Numbers:
     count : int
         How many are asked for.
     tolerance : float
-        How far a right answer may be off, as a share of the largest of them.
+        How far a right answer may be off, as a share of it; of the largest, where it is 0.
     """
 
     asks: str
@@ -75,7 +75,9 @@ class Numbers:
 
     def verdict(self, answer):
         values = _as_numbers(answer, self.count)
-        wrong = np.abs(values - self.solution) > self.tolerance * np.abs(self.solution).max()
+        sizes = np.abs(self.solution)
+        room = self.tolerance * np.where(sizes > 0, sizes, sizes.max())
+        wrong = np.abs(values - self.solution) > room
         if not wrong.any():
             return "right"
         for unit, factor in SLIPS.get(self.unit, {}).items():
@@ -111,7 +113,8 @@ class Choice:
 
     def verdict(self, answer):
         plain = answer.strip().lower() if isinstance(answer, str) else answer
-        if isinstance(plain, bool) or plain not in self.among:
+        word_or_number = isinstance(plain, str | int | np.integer) and not isinstance(plain, bool)
+        if not word_or_number or plain not in self.among:
             raise NonsenseError(_described(answer))
         return "right" if plain == self.solution else f"it is not {plain!r}"
 

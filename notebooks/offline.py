@@ -119,7 +119,7 @@ def alternatives(notebook):
     """The texts of a notebook's pictures, in their order, which nbconvert's templates leave out."""
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     pictures = [output for output in outputs if "image/png" in output.get("data", {})]
-    return [one.metadata.get("image/png", {}).get("alt", "a picture") for one in pictures]
+    return [picture.metadata.get("image/png", {}).get("alt", "a picture") for picture in pictures]
 
 
 class Typeset(IPythonRenderer):
@@ -195,15 +195,15 @@ def main():
     words.add_argument("notebooks", nargs="+", type=Path, metavar="NOTEBOOK")
     words.add_argument("--slides", action="store_true", help="slides in place of pages")
     words.add_argument("--output", type=Path, default=Path(), help="a folder; else the one here")
-    asked = words.parse_args()
-    for notebook in asked.notebooks:
+    arguments = words.parse_args()
+    for notebook in arguments.notebooks:
         if not notebook.is_file():
             sys.exit(f"{notebook}: no such notebook")
-    exporter = Slides(exclude_output_prompt=True, **WALL) if asked.slides else Page()
-    asked.output.mkdir(parents=True, exist_ok=True)
-    for notebook in asked.notebooks:
+    exporter = Slides(exclude_output_prompt=True, **WALL) if arguments.slides else Page()
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    for notebook in arguments.notebooks:
         page, _ = exporter.from_filename(str(notebook))
-        path = asked.output / f"{notebook.stem}{'.slides' * asked.slides}.html"
+        path = arguments.output / f"{notebook.stem}{'.slides' * arguments.slides}.html"
         path.write_text(page, encoding="utf-8")
         print("wrote", path)
 

@@ -37,6 +37,7 @@ _QUESTION = re.compile(r"\*\*[^*]+\?\*\*")
 _BEGINS = re.compile(rf"^(?:#|\||- |\$\$)|{_QUESTION.pattern}", re.MULTILINE)
 """What a text has that is worth a slide without a program."""
 _HEADING = re.compile(r"^#+ .*", re.MULTILINE)
+_FRAME = re.compile(r'<iframe[^>]*\bheight="(?P<height>\d+)"')
 _FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
 
 
@@ -223,6 +224,9 @@ def _height_of_output(output):
         (height,) = struct.unpack(">I", base64.b64decode(data["image/png"])[20:24])
         return height
     if "text/html" in data:
-        rows = data["text/html"].count("<tr")
+        page = data["text/html"]
+        if frame := _FRAME.search(page):
+            return int(frame["height"])
+        rows = page.count("<tr")
         return TABLE_ROW * rows if rows else FILM
     return CODE_LINE * (data.get("text/plain", "").count("\n") + 2)

@@ -8,11 +8,22 @@ from answers import EXERCISES, MOVE
 from checks import AtRest, Checks, Choice, Numbers, checks_of
 from notebook_files import PATHS, code_cells, read
 
-NOTHING_SENSIBLE = None, "nonsense", [[1.0, 2.0], [3.0, 4.0]], [1.0, [2.0]], np.nan, True, object()
+NOTHING_SENSIBLE = (
+    None,
+    "nonsense",
+    [[1.0, 2.0], [3.0, 4.0]],
+    [1.0, [2.0]],
+    np.zeros(7),
+    np.nan,
+    True,
+    object(),
+)
 
 LENGTH = Numbers("the length", "m", lambda: 0.125)
 ANGLE = Numbers("the angle", "degrees", lambda: 30.0)
 PAIR = Numbers("both energies", "mJ", lambda: [20.0, 40.0], count=2)
+UNEQUAL = Numbers("both residuals", "mm", lambda: [0.25, 50.0], count=2)
+PRICES = Numbers("both prices", "mJ/(N m)", lambda: [240.0, 0.0], count=2, tolerance=0.1)
 METHOD = Choice("the better method", ("gradient", "search"), lambda: "gradient")
 PLATE_AT_REST = AtRest("a1 and a2", MOVE, count=2, limit=1e-4)
 
@@ -41,6 +52,10 @@ def said(exercise, answer, capsys):
         (Numbers("the share", "-", lambda: 0.3), 30, "right in %, but a plain number is asked for"),
         (PAIR, [20.1, 39.9], "right"),
         (PAIR, (20.0, 30.0), "number 1 is right; number 2 is too small by 25 %"),
+        (UNEQUAL, [0.3, 50.0], "number 1 is too large by 20 %; number 2 is right"),
+        (UNEQUAL, [0.25, 0.0], "number 1 is right; number 2 is too small: it is not 0"),
+        (PRICES, [230.0, 1.0], "right"),  # 0 within a share of the largest
+        (PRICES, [230.0, 60.0], "number 1 is right; number 2 is too large"),
         (PAIR, [0.02, 0.04], "right in J, but mJ is asked for"),
         (METHOD, "Gradient", "right"),
         (METHOD, "search", "it is not 'search'"),
