@@ -18,9 +18,9 @@ from quietarm.models import Plant
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.axes import residual_label
-from quietarm.studies.figures.grammar import BLUE, ORANGE, RED
+from quietarm.studies.figures.grammar import BLUE, FAINT, INK, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
-from quietarm.studies.figures.structure import GROUND, INK, structures_of
+from quietarm.studies.figures.structure import structures_of
 from quietarm.studies.report.words import residual_words
 from quietarm.studies.tips import tip_scale
 
@@ -191,7 +191,7 @@ def _film(line: Line, ghost: Line) -> dict[str, Rows]:
     structure, behind = structures_of([line, ghost], times, end)
     residual = residual_words(plan.residual, plan.task.plant.tip_unit)
     words = f"{plan.energy:.4g} J, {residual}; {structure.scale_words}"
-    pale = [part._replace(colour=GHOST) for part in behind.bent if part.colour != GROUND]
+    pale = [part._replace(colour=GHOST) for part in behind.bent if part.colour != FAINT]
     parts = [(*_along(part.points), part.colour, part.width, len(times), words)
              for part in (*pale, *structure.bent)]  # fmt: skip
     corners = np.vstack([structure.corners, behind.corners])

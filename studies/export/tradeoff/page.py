@@ -31,9 +31,9 @@ from quietarm.studies.export.tradeoff.words import (
     spot_words,
     swing_words,
 )
-from quietarm.studies.figures.looks import BLUE, GREY, ORANGE, SKY
+from quietarm.studies.figures.grammar import BLUE, FAINT, GREY, INK, ORANGE, SKY
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
-from quietarm.studies.figures.structure import GROUND, INK, Structure, structures_of
+from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.methods import label_of
 from quietarm.studies.report.templates import templates
 from quietarm.studies.report.words import counted, window_words
@@ -214,7 +214,7 @@ def _structure(move: Move, times: Array, scale: float | None, tolerance: float) 
     scores = shapes.scores.reshape(*coordinates.shape[:2], -1).transpose(0, 2, 1)
     first = structures[0]
     at_the_end = replace(first, times=times[-1:]).unbent
-    still = [part for part in at_the_end if part.colour != GROUND]
+    still = [part for part in at_the_end if part.colour != FAINT]
     return {
         "scale": first.scale_words,
         "in_space": move.task.plant.in_space,
@@ -236,7 +236,7 @@ def _coordinates(structure: Structure) -> Array:
 
 
 def _part(points: int, colour: str, width: float) -> dict[str, Any]:
-    looks = {GROUND: "ground", INK: "rigid"}
+    looks = {FAINT: "ground", INK: "rigid"}
     return {"points": points, "look": looks.get(colour, "link"), "width": width}
 
 
