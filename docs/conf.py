@@ -8,15 +8,20 @@ Notebooks are shown as they are committed, with outputs that the tests hold agai
 """
 
 import re
+import shutil
 import sys
+from dataclasses import replace
 from importlib import import_module
+from math import pi
 from pathlib import Path
 
 from docutils import nodes
 from latex2mathml.converter import convert
 
+import quietarm as qa
 from quietarm import __version__
 from quietarm.studies.cli.application import COMMANDS
+from quietarm.studies.export import trade_off
 
 sys.path.insert(0, str(Path(__file__).with_name("_extensions")))
 
@@ -45,7 +50,7 @@ include_patterns = [
 exclude_patterns = ["docs/_*"]
 html_theme, html_title = "furo", "quietarm"
 html_static_path, html_extra_path = ["_static"], ["_root"]
-html_css_files = ["site.css"]
+html_css_files, html_js_files = ["site.css"], ["front.js"]
 html_show_sphinx, html_copy_source, smartquotes = False, False, False
 html_show_search_summary = False  # search_snippets.js has them without a server
 html_theme_options = {"top_of_page_buttons": []}
@@ -147,11 +152,39 @@ def _defaults_as_typed(app, ctx, lines):
     lines[:] = [re.sub(r"(:default: ``)'(.*)'``", r"\1\2``", line) for line in shown]
 
 
+def _write_front(app):
+    """Write the page to drag along fronts, which stands in a frame of several pages.
+
+    It is made with the site, so that it is never older than what it shows.
+    """
+    if app.builder.format != "html":
+        return
+    link, arm = qa.SingleLinkManipulator(), qa.ArmOnFlexibleLink()
+    sixth = qa.PointToPoint(link, target=pi / 6, duration=0.8)
+    weaker = replace(sixth, torque_limit=0.15)
+    half = qa.PointToPoint(arm, target=pi / 2, duration=0.8)
+    fronts = {
+        "Flexible link": qa.epsilon_front(sixth, bound=0.2),
+        "Same link, weaker motor": qa.epsilon_front(weaker, bound=0.2),
+        "Arm on a flexible link": qa.epsilon_front(half, bound=0.5),
+        "searched": qa.search(sixth, algorithm="nsga2", bound=0.2, seed=0),
+    }
+    folder = Path(app.outdir, "docs")
+    folder.mkdir(parents=True, exist_ok=True)
+    trade_off(fronts).save(folder / "front.html")
+    # and the pages that notebooks show
+    notebooks = Path(app.outdir, "notebooks")
+    notebooks.mkdir(exist_ok=True)
+    for page in Path(app.srcdir, "notebooks").glob("*.html"):
+        shutil.copy(page, notebooks)
+
+
 def setup(app):
     """Equations as MathML, and the pages that are made here."""
     app.add_html_math_renderer(
         "mathml", inline_renderers=(_inline, None), block_renderers=(_display, None)
     )
+    app.connect("builder-inited", _write_front)
     app.connect("source-read", _fill)
     app.connect("sphinx-click-process-description", _as_code)
     app.connect("sphinx-click-process-options", _defaults_as_typed)

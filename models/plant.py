@@ -160,6 +160,7 @@ class Plant(ABC):
         """Second time derivatives of the modal amplitudes [m/s^2], `modes` of them.
 
         By the joint's motion [rad, rad/s, rad/s^2], the amplitudes W [m] and their rates [m/s].
+        An amplitude that is an angle, of a shaft or a rope, is in rad: see docs/plants.md.
         """
 
     def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:

@@ -3,7 +3,8 @@
     python notebooks/offline.py [--slides] [--output FOLDER] NOTEBOOK...
 
 Slides show headings, equations, lists, questions and programs; all other sentences are speaker
-notes (key S). What a cell shows appears when you go on; of cells that draw there is the picture.
+notes (key S), unless a slide has room for them. What a cell shows appears when you go on; of cells
+that draw there is the picture.
 """
 
 import argparse
@@ -17,7 +18,7 @@ from jinja2 import pass_context
 from latex2mathml.converter import convert
 from nbconvert import HTMLExporter, SlidesExporter
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
-from nbformat.v4 import new_markdown_cell
+from slides import as_slides
 
 WALL = {"reveal_width": "1152", "reveal_height": "648"}
 """Slides as wide and as high [pixels]; what shows them enlarges them."""
@@ -29,13 +30,8 @@ _FROM_THE_NETWORK = re.compile(
     re.DOTALL,
 )
 _UNDESCRIBED = re.compile(r'alt="No description[^"]*"')
-_HIDDEN = ("%matplotlib", "# Your attempt")
-"""How the code cells begin that are not on slides."""
-_A_SLIDE = 18
-"""Lines of a program that has a slide of its own."""
-_SHOWN = re.compile(r"#|\||- |\d\. |```|<|\s*\$\$")
-"""How the blocks of text begin that are on slides as they stand."""
-_QUESTION = re.compile(r"\*\*[^*]+\?\*\*")
+_FRAME = re.compile(r'(?P<before><iframe[^>]*?)src="(?P<name>[\w.-]+\.html)"')
+"""Of a page that stands beside the notebook."""
 _STYLE = """<style>
 .equation { display: flex; align-items: center; margin: 1em 0; }
 .equation div { flex: 1; }
@@ -67,10 +63,13 @@ _ON_THE_WALL = """<style>
 .reveal .equation { font-size: 1.1em; margin: 0.6em 0; }
 .reveal pre { margin: 0; width: 100%; box-shadow: none; line-height: 1.3; }
 .reveal .highlight pre { white-space: pre-wrap; }
+.reveal .unwrapped .equation { width: max-content; }
+.reveal .unwrapped .equation div { flex: none; width: max-content; }
+.reveal .unwrapped pre { white-space: pre !important; width: max-content !important; }
+.reveal :is(.jp-InputArea, .jp-InputArea-editor) { overflow: visible; }
 .reveal details pre { font-size: 15px; line-height: 18px; }
 .reveal img { display: block; margin: 0 auto; max-width: 100%; }
 .reveal .jp-Cell { padding: 0; }
-.reveal .jp-OutputArea-output pre { max-height: 430px; overflow-y: auto; display: block; }
 .reveal .jp-RenderedText pre { padding: 0; word-break: normal; overflow-wrap: anywhere; }
 .reveal :is(.jp-InputPrompt, .jp-OutputPrompt, .jp-Collapser) { display: none; }
 .reveal .celltag_hide-input .jp-Cell-inputWrapper { display: none; }
@@ -84,71 +83,43 @@ const require = (options, addresses, begin) => begin(Reveal, RevealNotes);
 const MathJax = {{ Hub: {{ getAllJax: () => false }} }};
 const initialize = Reveal.initialize;
 Reveal.initialize = (options) => initialize({{ ...options, center: false, margin: 0.06 }});
-// a slide fills the wall: a program and what it shows get smaller, a picture alone larger
+// a slide fills the wall: long ones get smaller, short ones larger, and no program or output is cut
 async function fit({{ currentSlide: slide }}) {{
-  await Promise.all([...slide.querySelectorAll("img")].map((one) => one.decode()));
+  await Promise.all([...slide.querySelectorAll("img")].map((image) => image.decode()));
+  const {{ width, height }} = Reveal.getConfig();
   slide.style.zoom = 1;
-  for (let round = 0; round < 4; round++) {{
+  slide.classList.add("unwrapped");
+  const widths = [...slide.querySelectorAll("pre, .equation")]
+    .map((part) => part.offsetWidth + 64)
+    .filter((wide) => wide < 1.2 * width); // what is wider is wrapped
+  slide.classList.remove("unwrapped");
+  const largest = Math.min(1.6, width / Math.max(1, ...widths));
+  for (let round = 0; round < 6; round++) {{
     const high = slide.scrollHeight * slide.style.zoom;
-    const wanted = slide.style.zoom * Reveal.getConfig().height / high;
-    slide.style.zoom = Math.min(1.3, Math.max(0.5, wanted));
+    const wanted = slide.style.zoom * height / high;
+    slide.style.zoom = Math.min(largest, Math.max(0.5, wanted));
+  }}
+  while (slide.scrollHeight > slide.clientHeight + 1 && slide.style.zoom > 0.5) {{
+    slide.style.zoom -= 0.02;
   }}
 }}
+addEventListener("toggle", () => fit({{ currentSlide: Reveal.getCurrentSlide() }}), true);
 Reveal.on("ready", fit);
 Reveal.on("slidechanged", fit);
 </script>"""
+
+
+def _with_its_page(frame, folder):
+    """A frame that has in it the page that it shows."""
+    page = (folder / frame["name"]).read_text(encoding="utf-8")
+    return f'{frame["before"]}srcdoc="{escape(page)}"'
 
 
 def alternatives(notebook):
     """The texts of a notebook's pictures, in their order, which nbconvert's templates leave out."""
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     pictures = [output for output in outputs if "image/png" in output.get("data", {})]
-    return [one.metadata.get("image/png", {}).get("alt", "a picture") for one in pictures]
-
-
-def split_text(source):
-    """What of a text is on its slide, and what the speaker says."""
-    if "<details>" in source:
-        return source, ""
-    shown, said = [], []
-    for block in source.split("\n\n"):
-        questions = _QUESTION.findall(block)
-        if _SHOWN.match(block) or ("**" in block and not questions):
-            shown.append(block)
-        else:
-            shown += questions
-            said.append(block)
-    return "\n\n".join(shown), "\n\n".join(said)
-
-
-def as_slides(cells):
-    """The cells with their places on slides.
-
-    A slide begins at every heading, question and equation, at each program after another and at a
-    long one.
-    """
-    placed, after_program = [], False
-    for cell in cells:
-        if cell.cell_type == "code":
-            hidden = cell.source.startswith(_HIDDEN)
-            begins = after_program or cell.source.count("\n") > _A_SLIDE
-            _place(cell, "skip" if hidden else "subslide" if begins else "-")
-            placed.append(cell)
-            after_program |= not hidden
-            continue
-        shown, said = split_text(cell.source)
-        if shown:
-            cell.source, after_program = shown, False
-            _place(cell, "slide" if shown.startswith(("# ", "## ")) else "subslide")
-            placed.append(cell)
-        if said:
-            placed.append(_place(new_markdown_cell(said), "notes"))
-    return placed
-
-
-def _place(cell, place):
-    cell.metadata["slideshow"] = {"slide_type": place}
-    return cell
+    return [picture.metadata.get("image/png", {}).get("alt", "a picture") for picture in pictures]
 
 
 class Typeset(IPythonRenderer):
@@ -182,6 +153,8 @@ class _Offline:
         page = _FROM_THE_NETWORK.sub("", page)
         texts = map(escape, alternatives(nb))
         page = _UNDESCRIBED.sub(lambda _: f'alt="{next(texts)}"', page)
+        folder = Path((resources.get("metadata") or {}).get("path") or ".")
+        page = _FRAME.sub(lambda frame: _with_its_page(frame, folder), page)
         page = page.replace("</head>", f"{self.head}</head>", 1)
         return page.replace("</body>", self.foot), resources
 
@@ -222,15 +195,15 @@ def main():
     words.add_argument("notebooks", nargs="+", type=Path, metavar="NOTEBOOK")
     words.add_argument("--slides", action="store_true", help="slides in place of pages")
     words.add_argument("--output", type=Path, default=Path(), help="a folder; else the one here")
-    asked = words.parse_args()
-    for notebook in asked.notebooks:
+    arguments = words.parse_args()
+    for notebook in arguments.notebooks:
         if not notebook.is_file():
             sys.exit(f"{notebook}: no such notebook")
-    exporter = Slides(exclude_output_prompt=True, **WALL) if asked.slides else Page()
-    asked.output.mkdir(parents=True, exist_ok=True)
-    for notebook in asked.notebooks:
+    exporter = Slides(exclude_output_prompt=True, **WALL) if arguments.slides else Page()
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    for notebook in arguments.notebooks:
         page, _ = exporter.from_filename(str(notebook))
-        path = asked.output / f"{notebook.stem}{'.slides' * asked.slides}.html"
+        path = arguments.output / f"{notebook.stem}{'.slides' * arguments.slides}.html"
         path.write_text(page, encoding="utf-8")
         print("wrote", path)
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from quietarm.studies.report import Report
 
 PICTURE = SUFFIXES[0]
+PAGE = ".html"
 FOLDER = ""
 DATASET = ".zarr"
 TRAJECTORY = ".yaml"
@@ -82,12 +83,19 @@ def ending_of(path: Path) -> str:
 
 
 def answer_files(
-    output: Sequence[Path], draw: Callable[[], Figure], answer: Any = None
+    output: Sequence[Path],
+    draw: Callable[[], Figure],
+    answer: Any = None,
+    beside: Sequence[Any] = (),
 ) -> list[File]:
-    """An answer as JSON, as a table where it has one, and as a picture, as the endings say."""
+    """An answer as JSON, as a table where it has one, and as a picture, as the endings say.
+
+    And as a page, on which further answers lie beside it.
+    """
     saves = {".json": "save", ".csv": "save_csv"}
     ways = {ending: getattr(answer, save, None) for ending, save in saves.items()}
     ways[TRAJECTORY] = partial(_save_trajectory, answer)
+    ways[PAGE] = partial(_save_page, [answer, *beside])
     return [(path, ways.get(ending_of(path)) or drawing(draw)) for path in output]
 
 
@@ -96,6 +104,13 @@ def _save_trajectory(plan: Plan, path: Path) -> None:
     from quietarm.studies.export.formats import export_plan
 
     export_plan(plan, path)
+
+
+def _save_page(answers: Sequence[Any], path: Path) -> None:
+    """To drag along a front, or to see a plan move."""
+    from quietarm.studies.export.tradeoff.page import trade_off
+
+    trade_off(answers).save(path)
 
 
 def finish(

@@ -10,6 +10,7 @@ from math import ceil, degrees, tau
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from quietarm.metaheuristics import PAPER_BOX
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY, joint_unit
 from quietarm.ocp import Front, Plan, PointToPoint, epsilon_front, evaluate_coefficients, plan_move
@@ -27,6 +28,10 @@ FRONT_POINTS = 20
 _SHORTEST = 0.1
 _LONGEST = 5.0
 _FURTHEST = 2.0
+_TENTH = 0.1
+"""To which the range of coefficients is rounded up, where one is outside of the box."""
+_USUAL_BOX = 0.2
+"""The paper's for the single link."""
 _LEAST = 1e-3
 _MOST = 1e4
 """Ranges of durations [s], of a linear axis [m], and of limits in the unit that is shown."""
@@ -67,15 +72,24 @@ class Explored:
     library: MoveLibrary | None = None
     front: Front | None = None
     kept: Plan | None = None
-    reach: float = 1.0
-    """Range of the coefficients by hand, on either side of 0."""
+    reach: tuple[float, ...] = ()
+    """Range of every coefficient by hand, on either side of 0: the box, or what is beyond it."""
     opened: PointToPoint | None = None
     """The move of the first plan; its dials keep their ranges."""
 
     def __post_init__(self) -> None:
-        furthest = max(map(abs, self.plan.coefficients), default=0.0)
-        object.__setattr__(self, "reach", max(self.reach, float(ceil(furthest))))
+        before = self.reach or (0.0,) * len(self.plan.coefficients)
+        pairs = zip(before, self.plan.coefficients, strict=True)
+        reach = tuple(max(range_before, self._range(value)) for range_before, value in pairs)
+        object.__setattr__(self, "reach", reach)
         object.__setattr__(self, "opened", self.opened or self.task)
+
+    def _range(self, coefficient: float) -> float:
+        """The bound that the gradient is asked for, the profile's own or the paper's; or more."""
+        of_profile = self.plan.profile.default_bound
+        box = self.bound or of_profile or PAPER_BOX.get(self.plan.task.plant.name, _USUAL_BOX)
+        tenths = ceil(abs(coefficient) / _TENTH - 1e-9)
+        return max(box, float(f"{tenths * _TENTH:.6g}"))
 
     @property
     def task(self) -> PointToPoint:
@@ -107,10 +121,12 @@ class Explored:
         quantities = quantities_of(joint, tip_unit).values()
         limits = {quantity.limit: (quantity.name, quantity.unit) for quantity in quantities}
         limits |= {"residual_limit": ("residual", tip_unit), "bound": ("largest |a_n|", "-")}
-        reach = "-", -self.reach, self.reach
         return {
             **{name: _dial("move", name, *end) for name, end in ends.items()},
-            **{name: _dial("shape", name, *reach) for name in self.coefficients},
+            **{
+                name: _dial("shape", name, "-", -reach, reach)
+                for name, reach in zip(self.coefficients, self.reach, strict=True)
+            },
             **{name: _dial("limits", *limit) for name, limit in limits.items()},
         }
 
@@ -153,8 +169,11 @@ class Explored:
                 coefficients = self.library.coefficients(**at).tolist()
         task = replace(task, **{name: values[name] for name in _OF_TASK})
         settings = {name: values[name] for name in ("residual_limit", "bound")}
-        same = task == self.task and values["bound"] == self.bound
-        return self._moved(task, coefficients, front=self.front if same else None, **settings)
+        same_bound = values["bound"] == self.bound
+        same = task == self.task and same_bound
+        reach = self.reach if same_bound else ()
+        front = self.front if same else None
+        return self._moved(task, coefficients, front=front, reach=reach, **settings)
 
     def _moved(
         self, task: PointToPoint, coefficients: Any, profile: Any = None, **options: Any
@@ -183,7 +202,7 @@ class Explored:
     def choose_profile(self, name: str, terms: int | None = None) -> Explored:
         """The same move by another profile, of its usual size by default."""
         profile = profile_of(name, self.task, terms)
-        return self._moved(self.task, profile.plain, profile, front=None, reach=1.0)
+        return self._moved(self.task, profile.plain, profile, front=None, reach=())
 
     def solve(self) -> Explored:
         """The same with the gradient's motion; it raises what `plan_move` does."""

@@ -42,6 +42,8 @@ _WAIT = 5
 _WORK = ThreadPoolExecutor(1, "explore")
 """Where plans and fronts are computed, while the page goes on."""
 _HERE = Path(__file__).parent
+_FINE = (_HERE / "fine.js").read_text(encoding="utf-8")
+"""Sliders that go in small steps with the shift key."""
 
 
 class Page:
@@ -95,11 +97,13 @@ class Page:
         move = self._group("move")
         limits = _in_twos(self._group("limits"), "limits")
         files = [_button(name, partial(self._save, name)) for name in FILES]
+        moved = Column(children=move, name="move")
+        fine = CustomJS(args={"columns": [self._shape, moved]}, code=_FINE)
+        self._document.js_on_event("document_ready", fine)
         answers = [plant, Row(children=[profile, terms]), _in_twos(self._buttons)]
         return [
             self._said, self._figures, *self._plots.roots, self._shape,
-            Column(children=answers, name="answers"), Column(children=move, name="move"), limits,
-            _in_twos(files, "files"),
+            Column(children=answers, name="answers"), moved, limits, _in_twos(files, "files"),
         ]  # fmt: skip
 
     def _watch(self, name: str, field: Any) -> None:
@@ -150,7 +154,7 @@ class Page:
             words = f"front: {done} of {total} points"
             self._document.add_next_tick_callback(partial(self._say, words))
 
-        then = "click a point of the front to see its motion"
+        then = "click near the front to see a motion of it"
         self._begin(lambda explored: explored.find_front(report), "front ...", then)
 
     def _begin(self, work: Change, words: str, then: str = "") -> None:

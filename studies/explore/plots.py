@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from bokeh.document import Document
+from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, CustomJS, DataRange1d, ScaleBar
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike, NDArray
@@ -17,13 +18,15 @@ from quietarm.models import Plant
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.axes import residual_label
-from quietarm.studies.figures.grammar import BLUE, ORANGE, RED
+from quietarm.studies.figures.grammar import BLUE, FAINT, INK, ORANGE, RED
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
-from quietarm.studies.figures.structure import INK, structures_of
+from quietarm.studies.figures.structure import structures_of
 from quietarm.studies.report.words import residual_words
 from quietarm.studies.tips import tip_scale
 
 GREY = "#9e9e9e"
+GHOST = "#d3d3d3"
+"""Of the plain cycloid behind the motion."""
 PANELS = ("deflection", "angle", "torque", "speed", "acceleration", "jerk")
 FRAMES = 25
 """A second."""
@@ -63,7 +66,6 @@ class Plots:
     def show(self, explored: Explored) -> None:
         """Show another motion in all plots."""
         no_front = "Press Front to see what each millimetre saves"
-        self._sources["points"].selected.indices = []  # so that one can be clicked again
         self._front.title.text = "front (cross: this motion)" if explored.front else no_front
         self._front.axis.visible = bool(explored.front)
         self._front.xaxis.axis_label = residual_label(
@@ -83,7 +85,7 @@ class Plots:
         plot.x_range, plot.y_range = (
             DataRange1d(renderers=[room], range_padding=0.2) for _ in _POINT
         )
-        plot.add_layout(ScaleBar(range=plot.x_range, unit="m"))
+        plot.add_layout(ScaleBar(range=plot.x_range, unit="m"), "below")  # where nothing crosses it
         plot.multi_line("xs", "ys", source=self._sources["paths"], color=GREY)
         plot.multi_line("xs", "ys", source=shown, color="colour", line_width="width",
                         line_cap="round", line_join="round")  # fmt: skip
@@ -95,13 +97,20 @@ class Plots:
 
     def _tradeoff(self, pick: Callable[[int], None]) -> Any:
         """The front, and where the motion in hand lies."""
-        plot: Any = figure(name="front", tools="tap", x_axis_label=" ",
+        plot: Any = figure(name="front", tools="", x_axis_label=" ",
                            y_axis_label="energy F2 [J]")  # fmt: skip
         points = self._sources["points"]
         here = self._sources["here"]
-        points.selected.on_change("indices", lambda _, old, new: pick(new[0]) if new else None)
+
+        def tapped(event: Tap) -> None:
+            drawn = pd.DataFrame(points.data), pd.DataFrame(here.data)
+            nearest = _nearest(*drawn, (float(event.x or 0.0), float(event.y or 0.0)))
+            if nearest is not None:
+                pick(nearest)
+
+        plot.on_event(Tap, tapped)
         plot.line(*_POINT, source=points, color=BLUE)
-        plot.scatter(*_POINT, source=points, color=BLUE, size=9, nonselection_alpha=1)
+        plot.scatter(*_POINT, source=points, color=BLUE, size=9)
         plot.scatter(*_POINT, source=here, color=RED, marker="x", size=20, line_width=2.5,
                      level="overlay")  # fmt: skip
         return plot
@@ -112,6 +121,15 @@ class Plots:
         plot.multi_line("xs", "ys", source=self._sources[name], line_color="colour",
                         line_dash="dash", line_width=1.6)  # fmt: skip
         return plot
+
+
+def _nearest(points: pd.DataFrame, here: pd.DataFrame, clicked: tuple[float, float]) -> int | None:
+    """The number of the point of the front that is nearest to a place, as it is drawn."""
+    if points.empty:
+        return None
+    spans = np.ptp(pd.concat([points, here]).to_numpy(float), axis=0)
+    away = (points.to_numpy(float) - clicked) / np.where(spans > 0, spans, 1.0)
+    return int((away**2).sum(axis=1).argmin())
 
 
 def _drawn(explored: Explored) -> dict[str, Rows]:
@@ -127,7 +145,7 @@ def _drawn(explored: Explored) -> dict[str, Rows]:
         [(scale * point.residual, point.energy) for point in of] for of in (front, [plan])
     )
     rows = {"points": points, "here": here * bool(front), "robustness": _robustness(plan)}
-    return rows | _film(lines[-1]) | {name: _quantity(lines, name) for name in PANELS}
+    return rows | _film(lines[-1], lines[0]) | {name: _quantity(lines, name) for name in PANELS}
 
 
 def _quantity(lines: list[Line], name: str) -> Rows:
@@ -162,19 +180,24 @@ def _robustness(plan: Plan) -> Rows:
     return [(errors, residuals, BLUE, "solid"), level]
 
 
-def _film(line: Line) -> dict[str, Rows]:
-    """The structure of a plan from its start to the end of the residual window, all frames."""
+def _film(line: Line, ghost: Line) -> dict[str, Rows]:
+    """The structure of a plan from its start to the end of the residual window, all frames.
+
+    Behind it stands that of the plain cycloid, its ghost.
+    """
     plan = line.plan
     end = plan.task.duration + plan.task.residual_window
     times = np.arange(0.0, end, 1 / FRAMES)
-    (structure,) = structures_of([line], times, end)
+    structure, behind = structures_of([line, ghost], times, end)
     residual = residual_words(plan.residual, plan.task.plant.tip_unit)
     words = f"{plan.energy:.4g} J, {residual}; {structure.scale_words}"
+    pale = [part._replace(colour=GHOST) for part in behind.bent if part.colour != FAINT]
     parts = [(*_along(part.points), part.colour, part.width, len(times), words)
-             for part in structure.bent]  # fmt: skip
+             for part in (*pale, *structure.bent)]  # fmt: skip
+    corners = np.vstack([structure.corners, behind.corners])
     return {
         "film": parts,
-        "corners": _plain(structure.corners),
+        "corners": _plain([corners.min(axis=0), corners.max(axis=0)]),
         "paths": [*map(_along, structure.paths)],
     }
 

@@ -1,6 +1,6 @@
-"""Moves in the forms that controllers read, and films of them.
+"""Moves in the forms that controllers read, films of them, and a page to drag along a front.
 
-May import `sweep`, `figures` and `report`.
+May import `sweep`, `figures`, `report` and the paper's points of `reproduce`.
 """
 
 import lazy_loader

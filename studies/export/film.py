@@ -6,13 +6,12 @@ import base64
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
 import numpy as np
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -52,8 +51,6 @@ _THIN = 0.8
 _DISC = 1e-5
 """Of the widths of parts; a part as small as this [m] is a disc."""
 _COLOURS = 128
-_MEGABYTES = 200.0
-"""Most of a page, far above what `_MOST_FRAMES` take."""
 
 Update = Callable[[int], object]
 """Brings an artist to a frame."""
@@ -82,20 +79,20 @@ class Film:
     def save(
         self, path: str | Path, report: Callable[[int, int], object] = lambda done, total: None
     ) -> None:
-        """Write a film as gif, mp4 (by the program ffmpeg) or html, whole or not at all.
+        """Write a film as gif or mp4 (by the program ffmpeg), whole or not at all.
 
         ValueError where the name ends in something else, or there is no ffmpeg.
         """
         name = format_of(Path(path))
         if not FORMATS[name].is_film:
-            raise ValueError(f"{path} is no film; end its name in .gif, .mp4 or .html")
+            raise ValueError(f"{path} is no film; end its name in .gif or .mp4")
         write_whole(path, self._content(name, report))
 
     def _content(self, name: str, report: Callable[[int, int], object]) -> bytes:
         if name == "mp4" and not FFMpegWriter.isAvailable():
             raise ValueError(
                 "an mp4 needs the program ffmpeg, which is not found here; install it, or make a "
-                "gif or html"
+                "gif"
             )
         figure, update = _draw(self)
         writer = _WRITERS[name](fps=self.rate)
@@ -203,7 +200,6 @@ class _GifWriter(PillowWriter):
 _WRITERS: Mapping[str, Callable[..., AbstractMovieWriter]] = {
     "gif": _GifWriter,
     "mp4": FFMpegWriter,
-    "html": partial(HTMLWriter, embed_frames=True, embed_limit=_MEGABYTES),
 }
 
 

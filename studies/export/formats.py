@@ -19,13 +19,15 @@ JOINT = "joint"
 WIDTHS = 200, 2000
 """Least and largest width of a film [pixels]."""
 _FILM = ("speed", "deflection_scale", "width", "rate")
+_PAGE = ("deflection_scale",)
 
 
 @dataclass(frozen=True)
 class Format:
     """The endings of a format's files, and what of `export` it takes.
 
-    `content` is (plan, what it takes) -> text or bytes; None of C, which has two files, and films.
+    `content` is (plan, what it takes) -> text or bytes; None of C, which has two files, of films
+    and of the page.
     `to_stdout` is whether it can go to standard output: a single text.
     """
 
@@ -39,6 +41,11 @@ class Format:
         """Whether it shows the structure in motion."""
         return self.takes == _FILM
 
+    @property
+    def is_page(self) -> bool:
+        """Whether it is the page on which one drags along a front."""
+        return self.takes == _PAGE
+
 
 FORMATS = {
     "csv": Format((".csv",), ("columns", "rate"), csv_text, to_stdout=True),
@@ -47,7 +54,7 @@ FORMATS = {
     "mat": Format((".mat",), ("columns", "rate"), mat_bytes),
     "gif": Format((".gif",), _FILM),
     "mp4": Format((".mp4",), _FILM),
-    "html": Format((".html",), _FILM),
+    "html": Format((".html", ".htm"), _PAGE),
 }
 
 
@@ -91,12 +98,14 @@ def export_plan(
     Raises
     ------
     ValueError
-        When a name, a unit or a rate is out of range, or the file is a film.
+        When a name, a unit or a rate is out of range, or the file is a film or a page.
     """
     path = Path(path)
     name = format_of(path)
     if FORMATS[name].is_film:
         raise ValueError(f"{path} is a film; make it by animate(plan).save(path)")
+    if FORMATS[name].is_page:
+        raise ValueError(f"{path} is a page; make it by trade_off(plan).save(path)")
     if FORMATS[name].content is None:
         return _write_c(plan, path)
     write_whole(path, content_of(plan, name, columns=columns, rate=rate, joint=joint))

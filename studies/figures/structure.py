@@ -48,17 +48,17 @@ class Structure:
     @cached_property
     def bent(self) -> list[Part]:
         """What is drawn: discs, links and tips."""
-        return self._parts(self.scale * self.tips)
+        return self._parts(self._bent_bodies)
 
     @cached_property
     def unbent(self) -> list[Part]:
         """The same without deflection."""
-        return self._parts(0 * self.tips)
+        return self._parts(self._bodies(0 * self.tips))
 
     @property
     def paths(self) -> list[Array]:
         """Where each tip is drawn, shape (frames, 2) [m]."""
-        first = self._bodies(self.scale * self.tips)[0]
+        first = self._bent_bodies[0]
         return [part.points[:, -1] for part, body in zip(self.bent, first) if body.tip]
 
     @property
@@ -81,13 +81,18 @@ class Structure:
     @property
     def largest_share(self) -> float:
         """The largest displacement of a tip as a share of the structure's size."""
-        first = np.vstack([part.points[0] for part in self.unbent])
+        still = replace(self, times=self.times[:1])
+        first = np.vstack([part.points[0] for part in still.unbent])
         size = np.ptp(first, axis=0).max() or 1.0  # 1 m of a single point
         return float(np.abs(self.tips).max() / size)
 
     def _at_frames(self, columns: Array) -> Array:
         sampled = [np.interp(self.times, self.trajectory.time, column) for column in columns.T]
         return np.column_stack(sampled)
+
+    @cached_property
+    def _bent_bodies(self) -> list[list[Body]]:
+        return self._bodies(self.scale * self.tips)
 
     def _bodies(self, tips: Array) -> list[list[Body]]:
         """The bodies at every frame."""
@@ -97,9 +102,9 @@ class Structure:
             list(plant.structure(float(angle), row.tolist())) for angle, row in zip(angles, tips)
         ]
 
-    def _parts(self, tips: Array) -> list[Part]:
+    def _parts(self, bodies_of_frames: list[list[Body]]) -> list[Part]:
         parts = list[Part]()
-        for bodies in zip(*self._bodies(tips)):
+        for bodies in zip(*bodies_of_frames):
             points = np.array([bent.points for bent in bodies])
             body = bodies[0]
             if body.ground:
@@ -118,10 +123,13 @@ def structures_of(
 ) -> list[Structure]:
     """The motions of lines at the times of frames; those of one plant have one scale."""
     structures = [Structure(line, _until(line.plan, end), times) for line in lines]
+    shares = dict[str, float]()
+    for structure in structures:
+        plant = structure.line.plan.task.plant.name
+        shares[plant] = max(shares.get(plant, 0.0), structure.largest_share)
 
     def fitting(plant: str) -> float:
-        share = max(a.largest_share for a in structures if a.line.plan.task.plant.name == plant)
-        return max([s for s in _SCALES if s * share <= _BENT], default=1.0)
+        return max([s for s in _SCALES if s * shares[plant] <= _BENT], default=1.0)
 
     return [replace(a, scale=scale or fitting(a.line.plan.task.plant.name)) for a in structures]
 

@@ -78,18 +78,35 @@ def load_runs(paths: Sequence[Path]) -> tuple[dict[Path, Front], list[str]]:
 
 def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
     """Plans from their files, after their motions were evaluated again."""
+    return {name: _load_plan(path) for name, path in _named(paths, "plan").items()}
+
+
+def load_fronts_and_plans(paths: Sequence[Path]) -> dict[str, Front | Plan]:
+    """Fronts and plans from their files, after their motions were evaluated again."""
+    return {
+        name: load_front(path) if format_of(path) == f"quietarm-{Front.kind}" else _load_plan(path)
+        for name, path in _named(paths, "plan or front").items()
+    }
+
+
+def _named(paths: Sequence[Path], what: str) -> dict[str, Path]:
+    """Files by the names that pictures call them by, which differ."""
     if not paths:
-        raise ValueError("no plan is given; give files that were written by quietarm plan --output")
+        command = "quietarm plan" if what == "plan" else "quietarm plan or front"
+        raise ValueError(f"no {what} is given; give files that were written by {command} --output")
     for path in paths:
         if list(paths).count(path) > 1:
             raise ValueError(f"{path} is given twice; give it once")
     stems = [path.stem for path in paths]
     names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
-    plans = {name: Plan.load(path) for name, path in zip(names, paths)}
-    for plan, path in zip(plans.values(), paths):
-        check_plan(plan, path)
-        _refuse_changed(path, Plan)
-    return plans
+    return dict(zip(names, paths))
+
+
+def _load_plan(path: Path) -> Plan:
+    plan = Plan.load(path)
+    check_plan(plan, path)
+    _refuse_changed(path, Plan)
+    return plan
 
 
 def _refuse_changed(path: Path, answer: type[Front | Plan]) -> None:

@@ -37,7 +37,7 @@ MOVE, ENERGY = blocks("moves", "python")
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
-COUNTS, CRANE, GANTRY = blocks("plants", "python")
+COUNTS, CRANE, ANGLES, GANTRY = blocks("plants", "python")
 (ROBOT,) = blocks("robots", "python")
 ROBOT_FILES = {
     block.split(maxsplit=2)[1]: block for block in blocks("robots", "text") if block[0] == "#"
@@ -135,6 +135,17 @@ def test_the_example_counts_the_modes_that_a_move_needs(run_python):
     # the page: one mode leaves 1.24 mm, two leave 0.0003 mm
     assert left[0] == pytest.approx(1.24, abs=0.01)
     assert max(left[1:]) < 1e-3
+
+
+def test_the_examples_whose_amplitude_is_an_angle_say_it_in_the_unit_of_the_tip(run_python):
+    twist, way = re.findall(r"up to ([0-9.]+) (rad|m)", run_python(ANGLES))
+    assert [unit for _, unit in (twist, way)] == ["rad", "m"]
+    # At least half of the static twist at the peak acceleration of the plain cycloid, 2 pi angle /
+    # duration^2, by load over stiffness; the plan swings, by no more than a few times that.
+    static = 2.4e-3 / 6.0 * 2 * math.pi * (math.pi / 2) / 0.2**2
+    assert 0.5 * static < float(twist[0]) < 3 * static
+    static = 4.0 / 9.81 * 2 * math.pi * 3.0 / 6.0**2  # rope over gravity
+    assert 0.5 * static < float(way[0]) < 3 * static
 
 
 def test_first_lines_and_a_profile_of_your_own_plan_a_move(run_python):

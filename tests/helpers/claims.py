@@ -27,6 +27,8 @@ NUMBER = re.compile(r"(?<![\w.,])[-\u2212]?\d[\d,]*(?:\.\d+)?(?![\w.]*\d)")
 IN_PRINT = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 BESIDE = 3
 """Outputs before a text that it speaks of."""
+SUMMARY = "## What you saw"
+"""How the last text begins, which speaks of all outputs."""
 SHARE_OF_PI = re.compile(r"\bpi / (\d+)")
 SCALES = (1.0, 1e2, 1e3, 1e6)
 """From the SI units of programs to per cent, centimetres, millimetres and micrometres."""
@@ -40,7 +42,8 @@ def numbers_of(text):
 def unsupported(notebook, stated=()):
     """The numbers of a notebook's text without a source, and those that are stated needlessly.
 
-    A source is one of the last outputs, or a program up to the one that follows the text.
+    A source is one of the last outputs, or a program up to the one that follows the text; of the
+    summary at the end every output.
     """
     given = set[float]()
     outputs, missing = list[set[float]](), list[str]()
@@ -51,7 +54,8 @@ def unsupported(notebook, stated=()):
             outputs += filter(None, [_values(printed(cell))])
             continue
         of_solutions = [_values(solution["shown"]) for solution in solutions(cell)]
-        shown = set[float]().union(*outputs[-BESIDE:], *of_solutions)
+        of_cells = outputs if cell.source.startswith(SUMMARY) else outputs[-BESIDE:]
+        shown = set[float]().union(*of_cells, *of_solutions)
         missing += [
             text for text in numbers_of(cell.source)
             if not (_is_shown(text, shown) or _is_given(text, given))

@@ -30,6 +30,7 @@ sys.path.insert(0, {here!r})
 import described  # gives pictures their alternative texts
 
 sys.path.remove({here!r})
+sys.path.append({notebooks!r})  # for their checks; a reader's folder is in the clone
 warnings.simplefilter("error")
 warnings.filterwarnings("ignore", module="ipykernel")  # of its own ways, when it shuts down
 """
@@ -79,6 +80,13 @@ def pictures(notebook):
     return [base64.b64decode(picture) for picture in found if picture]
 
 
+def pages(notebook):
+    """Names of the pages that its cells write and show in a frame."""
+    outputs = [output for cell in code_cells(notebook) for output in cell.outputs]
+    shown = "".join(output.get("data", {}).get("text/html", "") for output in outputs)
+    return sorted(re.findall(r'<iframe[^>]*src="([\w.-]+\.html)"', shown.replace("\n", " ")))
+
+
 @contextmanager
 def kernel():
     """What executes notebooks: a kernel that loads modules once for all of them."""
@@ -93,7 +101,10 @@ def execute(path, folder, client):
     Raises nbclient's CellExecutionError, with the cell and its traceback, where one fails.
     """
     notebook = read(path)
-    begin, extra = new_code_cell(STRICT.format(folder=str(folder), here=HERE)), []
+    begin, extra = (
+        new_code_cell(STRICT.format(folder=str(folder), here=HERE, notebooks=str(NOTEBOOKS))),
+        [],
+    )
     cells = [begin]
     for cell in notebook.cells:
         found = [new_code_cell(each["code"]) for each in solutions(cell)]

@@ -3,6 +3,7 @@
 python tests/notebooks/refresh.py [notebooks/02_three_plants.ipynb ...]       all, if none is named
 """
 
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -11,7 +12,7 @@ import nbformat
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "helpers"))
 
-from notebook_files import PATHS, execute, kernel, solutions
+from notebook_files import PATHS, execute, kernel, pages, solutions
 
 METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
@@ -22,6 +23,8 @@ METADATA = {
 def refresh(path):
     with tempfile.TemporaryDirectory() as folder, kernel() as client:
         notebook, shown = execute(path, folder, client)
+        for name in pages(notebook):
+            shutil.copyfile(Path(folder, name), path.parent / name)
     waiting = iter(shown)
     for number, cell in enumerate(notebook.cells, 1):
         for found in solutions(cell):

@@ -1,10 +1,10 @@
 """Every notebook becomes a page and slides that need no network, with the solutions folded."""
 
-import importlib.util
 import re
 import subprocess
 import sys
 
+import offline
 import pytest
 from notebook_files import NOTEBOOKS, PATHS, code_cells, pictures, read
 
@@ -43,15 +43,7 @@ def test_a_notebook_that_is_not_there_is_told_in_a_line():
 
 
 @pytest.fixture(scope="module")
-def offline():
-    spec = importlib.util.spec_from_file_location("offline", OFFLINE)
-    loaded = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(loaded)
-    return loaded
-
-
-@pytest.fixture(scope="module")
-def slides_of(offline):
+def slides_of():
     return offline.Slides().from_filename  # it reads the templates of slides once
 
 
@@ -63,10 +55,3 @@ def test_it_becomes_slides_that_show_the_program(path, slides_of):
     assert "%matplotlib" not in slides
     assert slides.count('aside class="notes"') >= 4
     assert slides.count("cm-editor") >= 4
-
-
-def test_slides_keep_questions_and_equations_and_leave_sentences_to_the_speaker(offline):
-    blocks = "Look.", "$$x = 1$$", "It is one. **Is it?** Guess.", "- a list"
-    shown, said = offline.split_text("\n\n".join(blocks))
-    assert shown.split("\n\n") == ["$$x = 1$$", "**Is it?**", "- a list"]
-    assert said.split("\n\n") == ["Look.", "It is one. **Is it?** Guess."]

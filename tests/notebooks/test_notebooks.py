@@ -1,15 +1,21 @@
 """The notebooks and their exercises run as they stand, and are committed with what they show."""
 
+import json
+import re
+from typing import NamedTuple
+
 import nbformat
 import pytest
 from claims import numbers_of, stated_in, unsupported
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from notebook_files import (
+    NOTEBOOKS,
     PATHS,
     code_cells,
     differences,
     execute,
     kernel,
+    pages,
     pictures,
     printed,
     read,
@@ -17,6 +23,24 @@ from notebook_files import (
 )
 
 each_notebook = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
+
+
+class Row(NamedTuple):
+    """What the table of the course says of a notebook."""
+
+    number: str
+    title: str
+    question: str
+
+
+TABLE = {
+    file: Row(number, title, question)
+    for number, title, file, question in re.findall(
+        r"^\| \[(\d\d\w?) ([^\]]+)\]\(([^)]+)\) \| (.+) \|$",
+        (NOTEBOOKS / "README.md").read_text(),
+        re.MULTILINE,
+    )
+}
 
 
 @pytest.fixture(scope="module")
@@ -30,11 +54,30 @@ def kinds(cell):
     return [sorted(o.get("data", {})) or o.get("name", o.output_type) for o in cell.outputs]
 
 
+def same_page(committed, anew):
+    """Two pages to drag along a front have the same program, and the same figures."""
+    data = re.compile(r'(?<=<script type="application/json" id="data">).*?(?=</script>)')
+    assert data.sub("", committed) == data.sub("", anew)
+    then, now = (
+        [
+            [point["residual"], point["energy"]]
+            for move in json.loads(data.search(page)[0])["moves"]
+            for point in move["points"]
+        ]
+        for page in (committed, anew)
+    )
+    for before, after in zip(then, now, strict=True):
+        assert after == pytest.approx(before, rel=1e-3, abs=1e-6)
+
+
 @pytest.mark.slow
 @each_notebook
 def test_it_runs_without_warnings_and_shows_what_is_committed(path, client, tmp_path):
     committed, anew = read(path), execute(path, tmp_path, client)
-    assert list(tmp_path.iterdir()) == []  # it leaves nothing behind
+    # it leaves nothing behind but the pages that it shows
+    assert sorted(written.name for written in tmp_path.iterdir()) == pages(committed)
+    for name in pages(committed):
+        same_page((NOTEBOOKS / name).read_text(), (tmp_path / name).read_text())
     for then, now in zip(code_cells(committed), code_cells(anew.notebook), strict=True):
         assert "stderr" not in kinds(now), now.outputs
         assert kinds(then) == kinds(now), then.source
@@ -57,6 +100,40 @@ def test_it_is_committed_as_refresh_writes_it(path):
         assert ("jupyter" in cell.metadata) == ("hide-input" in tags)
     assert path.stat().st_size < 700_000
     assert min(map(len, pictures(notebook))) > 10_000  # something is drawn in each
+
+
+def test_the_table_of_the_course_has_every_notebook_in_its_order():
+    assert list(TABLE) == [path.name for path in PATHS]
+
+
+@each_notebook
+def test_it_begins_with_its_question_and_ends_with_what_was_seen(path):
+    first, *_, last = read(path).cells
+    assert first.source.split("\n\n")[0].startswith("# ")
+    assert first.source.split("\n\n")[1] == f"**{TABLE[path.name].question}**"
+    heading, sentences, following = last.source.split("\n\n")
+    assert heading == "## What you saw"
+    lines = sentences.split("\n")
+    assert len(lines) == 3
+    for line in lines:
+        assert re.fullmatch(r"- [A-Z](?:(?!\. [A-Z]).)*\.", line), "one sentence"
+    if path == PATHS[-1]:
+        assert following.startswith("**Next:** [")
+        assert "](../docs/choose.md)" in following
+    else:
+        after = PATHS[PATHS.index(path) + 1].name
+        number, title, question = TABLE[after]
+        assert following == f"**Next:** notebook {number}, [{title}]({after}). {question}"
+
+
+@each_notebook
+def test_its_headings_begin_cells_and_its_questions_sentences(path):
+    for cell in read(path).cells:
+        if cell.cell_type == "markdown":
+            text = re.sub(r"<details>.*?</details>", "", cell.source, flags=re.DOTALL)
+            assert "\n#" not in text
+            for question in re.findall(r"\*\*([^*]+\?)\*\*", text):
+                assert question[0].isupper() or question[0] in "0123456789`$", question
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
 from quietarm.studies.cli.commands.plan import Answer, finish_motion
-from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_option
+from quietarm.studies.cli.files import PAGE, PICTURE, answer_files, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -49,7 +49,7 @@ def _coefficients(text: str) -> list[float] | Path:
     OBJECTIVES,
     SENSITIVITIES,
     output_option({".json": "the plan or front", ".csv": "the path at 1 kHz or the front",
-                   PICTURE: "a picture"}),
+                   PICTURE: "a picture", PAGE: "a page with the motions"}),
 )  # fmt: skip
 def evaluate(given: Given) -> None:
     """Compute residual, energy and peaks of coefficients, an input shaper, a path or a table.

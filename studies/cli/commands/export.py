@@ -1,4 +1,4 @@
-"""`quietarm export`: moves for a controller, and as films."""
+"""`quietarm export`: moves for a controller, as films, and as a page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from quietarm.ocp import Plan
 from quietarm.ocp.files import check_writable, write_whole
 from quietarm.studies.cli.files import finish
 from quietarm.studies.cli.given import Given
-from quietarm.studies.cli.options import command, counting, option
+from quietarm.studies.cli.options import busy, command, counting, option
 from quietarm.studies.cli.types import INPUT, SHARE, Named, Parsed
 from quietarm.studies.export.formats import (
     COLUMNS,
@@ -28,8 +28,9 @@ from quietarm.studies.export.formats import (
 from quietarm.studies.export.interpolation import OF_POINTS, interpolation_note
 from quietarm.studies.export.tables import columns_of
 from quietarm.studies.figures.motion import Line
-from quietarm.studies.reading.saved import load_plans
+from quietarm.studies.reading.saved import load_fronts_and_plans, load_plans
 from quietarm.studies.report.saving import STDOUT, File
+from quietarm.studies.report.words import counted
 
 _TO_STDOUT = [name for name, form in FORMATS.items() if form.to_stdout]
 
@@ -41,7 +42,7 @@ def _output(text: str) -> Path:
 
 
 @command(
-    click.Argument(["plans"], nargs=-1, type=INPUT, metavar="PLAN ..."),
+    click.Argument(["plans"], nargs=-1, type=INPUT, metavar="PLAN|FRONT ..."),
     option("--output", "-o", type=Parsed("file", _output), required=True,
            help="The file, whose ending is the format; move.c has move.h beside it. - is standard "
            "output."),
@@ -58,7 +59,7 @@ def _output(text: str) -> Path:
     option("--width", type=click.IntRange(*WIDTHS), default=800, help="Of a film, in pixels."),
 )  # fmt: skip
 def export(given: Given) -> None:
-    """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB) or as a film (gif, mp4, html).
+    """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB), as a film (gif, mp4) or a page.
 
     The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
     but math.h. The PLAN may be the dataset of quietarm sweep, whose moves are written as C with the
@@ -68,6 +69,9 @@ def export(given: Given) -> None:
     move. Links bend as their modes do; the picture says how far that is exaggerated. An mp4 needs
     the program ffmpeg.
 
+    The page (html) is one file that needs no network. Of a saved FRONT one drags along the
+    trade-off and sees each point's motion; further fronts and plans of the move lie beside it.
+
     \b
     Examples:
       quietarm export plan.json --output move.c
@@ -76,13 +80,14 @@ def export(given: Given) -> None:
       quietarm export plan.json --output - --columns time,angle:deg
       quietarm export moves.zarr --output moves.c
       quietarm export plan.json zvd.json --output move.gif --speed 25%
+      quietarm export front.json nsga2.json --output front.html
     """  # noqa: D301  # \b is click's: do not rewrap
     plans = given.plans
     output = given.output
     name = _format(given)
     settings = _settings(given, name)
-    is_film = FORMATS[name].is_film
-    if not is_film and len(plans) > 1:
+    form = FORMATS[name]
+    if not (form.is_film or form.is_page) and len(plans) > 1:
         raise ValueError(f"{name} is of one plan, and {len(plans)} are given; give one")
     written = [output]
     notes = list[str]()
@@ -91,8 +96,10 @@ def export(given: Given) -> None:
         if name != "c":
             raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
         written = export_moves(plans[0], output)
-    elif is_film:
+    elif form.is_film:
         notes = [_write_film(plans, output, settings)]
+    elif form.is_page:
+        notes = [_write_page(plans, output, settings)]
     else:
         (plan,) = load_plans(plans).values()
         notes = _notes(plan, name, settings)
@@ -148,3 +155,15 @@ def _write_film(plans: tuple[Path, ...], output: Path, settings: dict[str, Any])
     with counting(film.frames, "frames") as report:
         film.save(output, report)
     return f"{film.frames} frames, {film.seconds:.1f} s, {output.stat().st_size / 1e3:.0f} kB"
+
+
+def _write_page(answers: tuple[Path, ...], output: Path, settings: dict[str, Any]) -> str:
+    """Write a page of fronts and plans; how many motions it has, and how large it is."""
+    from quietarm.studies.export.tradeoff.page import trade_off
+
+    loaded = load_fronts_and_plans(answers)
+    with busy("sampling the motions"):
+        page = trade_off(loaded, **settings)
+    page.save(output)
+    motions = counted(sum(len(move["points"]) for move in page.moves), "motion")
+    return f"{motions}, {output.stat().st_size / 1e3:.0f} kB"

@@ -9,7 +9,7 @@ from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_f
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.studies import figures
-from quietarm.studies.cli.files import PICTURE, answer_files, finish, output_option
+from quietarm.studies.cli.files import PAGE, PICTURE, answer_files, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -55,7 +55,8 @@ _SEARCHES = {
            "plain cycloid, and say by how much the two differ."),
     option("--polish", type=INPUT, metavar="FILE", help="Improve the points of this front, by any "
            "method: from each to less energy and no larger residual."),
-    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture"}),
+    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture",
+                   PAGE: "a page to drag along it"}),
 )  # fmt: skip
 def front(given: Given) -> None:
     """Find the trade-off of residual, energy and peaks by the gradient.
@@ -63,7 +64,7 @@ def front(given: Given) -> None:
     \b
     Examples:
       quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --output front.json \\
-          --output front.csv --output front.png
+          --output front.csv --output front.png --output front.html
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method weighted
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --check
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 \\
@@ -124,6 +125,6 @@ def _polish(given: Given) -> None:
         polished = polish_front(before, solver=given.read_solver(), report=report)
     lines = polish_lines(before, polished.front, polished.gains)
     files = answer_files(
-        given.output, lambda: figures.polish_figure(before, polished), polished.front
+        given.output, lambda: figures.polish_figure(before, polished), polished.front, [before]
     )
     finish(files, lines)

@@ -26,6 +26,7 @@ from quietarm.ocp.planning.correct import refuse_correction
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
 from quietarm.studies.cli.files import (
+    PAGE,
     PICTURE,
     TRAJECTORY,
     answer_files,
@@ -79,7 +80,7 @@ _OF_SOLVES = ("starts", "seed", *(param.name or "" for param in SOLVER))
     SENSITIVITIES, YES,
     output_option({
         ".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture",
-        TRAJECTORY: "a JointTrajectory of ROS 2 at 1 kHz",
+        TRAJECTORY: "a JointTrajectory of ROS 2 at 1 kHz", PAGE: "a page with the motion",
     }),
 )  # fmt: skip
 def plan(given: Given) -> None:
@@ -152,8 +153,12 @@ def _refuse_meaningless(given: Given) -> None:
         given.refuse(["sensitivities", "in_full"] if free else _OF_SOLVES, why)
         if fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
-        if free and any(ending_of(path) == ".csv" for path in given.output):
-            raise ValueError("a free motion is written as .json or as a picture, not as .csv")
+        of_plans = (".csv", TRAJECTORY, PAGE)
+        refused = [ending_of(path) for path in given.output if ending_of(path) in of_plans]
+        if free and refused:
+            raise ValueError(
+                f"a free motion is written as .json or as a picture, not as {refused[0]}"
+            )
     if fastest:
         given.refuse(["starts"], "is not for --duration fastest")
 

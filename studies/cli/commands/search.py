@@ -16,7 +16,7 @@ from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
 from quietarm.studies.cli.effort import refuse_endless
-from quietarm.studies.cli.files import PICTURE, answer_files, ending_of, finish, output_option
+from quietarm.studies.cli.files import PAGE, PICTURE, answer_files, ending_of, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -64,7 +64,8 @@ _BY_GRADIENT = {
     option("--from", "start_front", type=INPUT,
            help="A front to begin with, in the first population."),
     WORKERS, YES,
-    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"}),
+    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts",
+                   PAGE: "a page to drag along it"}),
 )  # fmt: skip
 def search(given: Given) -> None:
     """Find the trade-off of residual, energy and peaks with a metaheuristic, without derivatives.

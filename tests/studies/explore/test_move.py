@@ -5,7 +5,7 @@ import math
 import pytest
 from bokeh.document import Document
 
-from quietarm.models import LinearAxis, SingleLinkManipulator
+from quietarm.models import ArmOnFlexibleLink, LinearAxis, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
     CycloidSpline,
@@ -55,6 +55,22 @@ def test_values_outside_their_range_are_held(begun):
     now = begun.change({"target": 999.0, "duration": 0.0, "torque_limit": -5.0, "a1": None})
     assert (now.shown["target"], now.shown["duration"], now.shown["a1"]) == (360, 0.1, 0)
     assert now.shown["torque_limit"] == pytest.approx(1e-3)
+
+
+def test_sliders_of_coefficients_span_the_box_and_what_is_beyond_it(begun):
+    # eqs (12) and (17): 0.2 of the link, 0.5 of the arm
+    assert (begun.dials["a1"].least, begun.dials["a1"].most) == (-0.2, 0.2)
+    assert open_plant(ArmOnFlexibleLink()).dials["a1"].most == 0.5
+    wider = begun.change({"bound": 0.4})
+    assert wider.dials["a1"].most == 0.4
+    assert wider.change({"bound": None}).dials["a1"].most == 0.2
+    planned = begun.solve()
+    for name, value in planned.coefficients.items():
+        assert max(0.2, abs(value)) <= planned.dials[name].most < max(0.2, abs(value)) + 0.1
+    assert planned.dials["a6"].most > 1.0  # of the README's plan, which has no box
+    assert planned.dials["a1"].most == 0.2
+    # it stays while coefficients are changed: else a slider would go under the pointer
+    assert planned.change({"a1": 0.0, "a2": 0.0}).reach == planned.reach
 
 
 def test_a_linear_axis_is_set_in_millimetres_and_newtons():

@@ -89,7 +89,7 @@ def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
     cycloid, first = energy(page), said_of_energy(page)
     assert cycloid == pytest.approx(0.0911, abs=5e-5)  # README
     page.locator(".shape .noUi-handle").nth(1).press("ArrowLeft")
-    api.expect(figures(page)).to_contain_text("coefficients 0, -0.001, 0")
+    api.expect(figures(page)).to_contain_text("coefficients 0, -0.0001, 0")
     assert energy(page) < cycloid
     button(page, "Plan").click()
     api.expect(figures(page)).to_contain_text("found a local optimum")
@@ -108,11 +108,44 @@ def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
     assert 0 <= beside[0]["y"] < beside[0]["y"] + beside[0]["height"] <= beside[1]["y"] <= 844
 
 
+def test_with_the_shift_key_a_slider_goes_a_tenth_as_far(page):
+    handle = page.locator(".shape .noUi-handle").nth(1)
+
+    def drag(across):
+        handle.scroll_into_view_if_needed()
+        box = handle.bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        before = float(page.get_by_label("a2").input_value())
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + across, y, steps=10)
+        page.mouse.up()
+        page.wait_for_function(
+            "before => Math.abs(Bokeh.documents[0].get_model_by_name('shape').children[1]"
+            ".children[1].value - before) > 1e-9", arg=before,
+        )  # fmt: skip
+        return (
+            page.evaluate(
+                "Bokeh.documents[0].get_model_by_name('shape').children[1].children[1].value"
+            )
+            - before
+        )
+
+    coarse = drag(-40)
+    # the box of the paper, from -0.2 to 0.2, is some 200 pixels wide
+    assert -0.12 < coarse < -0.04
+    page.keyboard.down("Shift")
+    fine = drag(-40)
+    page.keyboard.up("Shift")
+    assert fine == pytest.approx(coarse / 10, abs=3e-4)
+    api.expect(figures(page)).not_to_contain_text("coefficients 0, 0, 0")
+
+
 def test_a_hundred_moves_of_a_slider_end_where_the_last_one_is(page):
     slider = page.locator(".shape .noUi-handle").nth(1)
     for _ in range(100):
         slider.press("ArrowLeft")
-    api.expect(figures(page)).to_contain_text("coefficients 0, -0.1, 0")
+    api.expect(figures(page)).to_contain_text("coefficients 0, -0.01, 0")
 
 
 def test_profile_and_terms_are_chosen_and_a_curve_is_kept(page):
@@ -133,8 +166,9 @@ def test_profile_and_terms_are_chosen_and_a_curve_is_kept(page):
 def test_a_click_on_the_front_shows_its_motion_and_it_is_downloaded(page):
     button(page, "Front").click()
     said = page.locator(".said .bk-clearfix")
-    api.expect(said).to_have_text("click a point of the front to see its motion")
-    page.mouse.click(*page.evaluate(PLACE, 10))
+    api.expect(said).to_have_text("click near the front to see a motion of it")
+    x, y = page.evaluate(PLACE, 10)
+    page.mouse.click(x + 2, y - 25)  # near it
     api.expect(figures(page)).to_contain_text(re.compile(r"residual \(F1\) 1\d\.\d mm"))
     api.expect(figures(page)).to_contain_text("enter what the drive can do under Limits")
     api.expect(figures(page)).to_contain_text("a point of the front")

@@ -1,0 +1,87 @@
+// The structure in motion, the plain cycloid as a ghost behind it, the tips' trails, and how far they swing.
+const scene = {};
+const swing = {};
+const drawScene = () => {
+  const svg = byId("scene");
+  const { structure } = state.move;
+  const { width, height } = begin(svg);
+  const [[left, bottom], [right, top]] = structure.corners;
+  const margin = { x: 30, top: 20, bottom: 20 };
+  const scale = Math.min((width - 2 * margin.x) / (right - left || 1), (height - margin.top - margin.bottom) / (top - bottom || 1));
+  const x0 = (width - scale * (right - left)) / 2;
+  const y0 = margin.top + (height - margin.top - margin.bottom + scale * (top - bottom)) / 2;
+  scene.at = (x, y) => [x0 + scale * (x - left), y0 - scale * (y - bottom)];
+  const thick = Math.max(0.7, Math.min(1.3, Math.min(width, height) / 320));
+  const solid = structure.parts.filter(({ look }) => look !== "ground");
+  solid.forEach((part, k) => draw(svg, "path", { ...ROUND, d: pathOf(structure.target[k].map(([x, y]) => scene.at(x, y))), stroke: "var(--soft)", "stroke-width": part.points === 1 ? 0 : 1.2, "stroke-dasharray": "5 5", "stroke-opacity": 0.75 }));
+  const trails = (colour) => Array.from({ length: structure.trails }, () => [[1.5, 0.75], [4.5, 0.45]].map(([wide, seen]) => draw(svg, "path", { ...ROUND, stroke: colour, "stroke-width": wide, "stroke-opacity": seen })));
+  const bodies = (colours, seen) => structure.parts.map(({ look, width: wide }) => draw(svg, "path", { ...ROUND, stroke: colours[look], "stroke-width": thick * wide * (look === "ground" ? 0.7 : 1.15), "stroke-opacity": look === "ground" ? 1 : seen }));
+  const grey = "var(--cycloid)";
+  scene.ghostTrails = trails(grey);
+  scene.ghost = bodies({ ground: "var(--edge)", rigid: grey, link: grey }, 0.55);
+  scene.trails = trails("var(--plan)");
+  scene.bodies = bodies({ ground: "var(--edge)", rigid: "var(--metal)", link: "var(--plan)" }, 1);
+  if (!structure.in_space) drawLength(svg, scale, width, height);
+  const view = byId("view");
+  view.textContent = "The motion ";
+  element(view, "span", structure.scale, "unit");
+  svg.setAttribute("aria-label", "The structure in motion: the chosen motion, the plain cycloid in grey, dashed where it shall stand");
+};
+const drawLength = (svg, scale, width, height) => {
+  const metres = niceStep((0.12 * width) / scale);
+  const bar = metres * scale;
+  const words = metres < 1 ? `${fixed(100 * metres, metres < 0.01 ? 1 : 0)} cm` : `${metres} m`;
+  draw(svg, "path", { d: `M${width - 4 - bar} ${height - 8}v4h${bar}v-4`, fill: "none", stroke: "var(--soft)" });
+  draw(svg, "text", { x: width - 4 - bar / 2, y: height - 11, "text-anchor": "middle", class: "halo" }, words);
+};
+const placeBodies = (paths, coordinates) => {
+  let next = 0;
+  state.move.structure.parts.forEach(({ points }, k) => {
+    const line = Array.from({ length: points }, () => scene.at(coordinates[next++], coordinates[next++]));
+    paths[k].setAttribute("d", pathOf(line));
+  });
+};
+const placeTrails = (paths, trails, coordinates) => {
+  const { times, duration } = state.move;
+  const now = lastBefore(times, state.time);
+  const arrival = times.indexOf(duration);
+  trails.forEach((trail, tip) => {
+    const end = coordinates.length - 2 * (trails.length - tip);
+    const here = [coordinates[end], coordinates[end + 1]];
+    const onScreen = (points) => pathOf(points.map(([x, y]) => scene.at(x, y)));
+    const moving = trail.slice(0, Math.min(now, arrival) + 1);
+    const after = state.time > duration ? [...trail.slice(arrival, now + 1), here] : [];
+    paths[tip][0].setAttribute("d", onScreen(after.length ? moving : [...moving, here]));
+    paths[tip][1].setAttribute("d", onScreen(after));
+  });
+};
+
+const drawSwing = () => {
+  const svg = byId("swing");
+  const { width } = begin(svg);
+  const { panels, cycloid, factor, swings_about_rest: band, unit } = state.move;
+  const all = panels.deflection.rows.flat();
+  const low = Math.min(0, ...all.map((row) => Math.min(...row)));
+  const high = Math.max(...all.map((row) => Math.max(...row)), 1e-9);
+  const room = 0.03 * (high - low);
+  const [left, right, y] = [14, width - 14, 27];
+  swing.x = (value) => left + ((value - low + room) / (high - low + 2 * room)) * (right - left);
+  const words = band && width > 400 ? `tip displacement [${unit}]; bands: its range after arrival` : `tip displacement [${unit}]${band ? "; bands: after arrival" : ""}`;
+  draw(svg, "text", { x: 0, y: 11 }, words);
+  draw(svg, "line", { x1: left, x2: right, y1: y, y2: y, stroke: "var(--grid)", "stroke-width": 2 });
+  for (const [value, word] of ticks(low, high, width < 420 ? 5 : 8)) {
+    draw(svg, "line", { x1: swing.x(value), x2: swing.x(value), y1: y + 7, y2: y + 11, stroke: "var(--soft)", "stroke-opacity": 0.6 });
+    draw(svg, "text", { x: swing.x(value), y: y + 23, "text-anchor": "middle" }, word);
+  }
+  swing.ends = (residual) => [Math.max(low, -factor * residual), factor * residual];
+  const bandOf = (fill, high) => draw(svg, "rect", { y: y - high / 2, height: high, rx: high / 2, fill, visibility: band ? "visible" : "hidden" });
+  placeBand(bandOf("var(--band)", 15), cycloid.residual);
+  swing.band = setAll(bandOf("var(--plan)", 9), { "fill-opacity": 0.3 });
+  swing.ghost = ofCycloid(panels.deflection.rows).map(() => draw(svg, "circle", { cy: y, r: 5, fill: "var(--cycloid)" }));
+  swing.dots = ofChosen(panels.deflection.rows).map(() => draw(svg, "circle", { cy: y, r: 5.5, fill: "var(--plan)", stroke: "var(--card)", "stroke-width": 1.5 }));
+  svg.setAttribute("aria-label", "Tip displacement at this time, and its range after arrival");
+};
+const placeBand = (rect, residual) => {
+  const [from, to] = swing.ends(residual).map(swing.x);
+  setAll(rect, { x: from - 1, width: to - from + 2 });
+};

@@ -1,0 +1,307 @@
+"""The page: everything that its scripts draw, as numbers and words, in one file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_hex
+from numpy.typing import NDArray
+
+from quietarm.ocp import Front, Plan
+from quietarm.ocp.checks import instance, positive
+from quietarm.ocp.files import write_whole
+from quietarm.ocp.record import REST
+from quietarm.studies.export.tradeoff.moves import (
+    Answers,
+    Choice,
+    Move,
+    moves_of,
+)
+from quietarm.studies.export.tradeoff.samples import needed_samples, packed, shapes_of
+from quietarm.studies.export.tradeoff.words import (
+    Figures,
+    figure_names,
+    robust_note,
+    sentence,
+    spot_words,
+    swing_words,
+)
+from quietarm.studies.figures.grammar import BLUE, FAINT, GREY, INK, ORANGE, SKY
+from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
+from quietarm.studies.figures.structure import Structure, structures_of
+from quietarm.studies.report.methods import label_of
+from quietarm.studies.report.templates import templates
+from quietarm.studies.report.words import counted, window_words
+from quietarm.studies.tips import tip_scale
+
+Array = NDArray[np.float64]
+MOST_BYTES = 1_500_000
+"""Of a page: what is sent by mail, and opens at once."""
+_OF_CODE = 100_000
+"""Bytes that scripts and styles may take of them."""
+_SCRIPTS = (
+    "numbers.js", "drawing.js", "state.js", "front.js", "arm.js", "panels.js", "main.js",
+)  # fmt: skip
+PANELS = ("torque", "power", "deflection")
+
+
+@dataclass(frozen=True, eq=False)
+class TradeOffPage:
+    """A page on which a motion is chosen along a front: one file that needs no network."""
+
+    title: str
+    moves: tuple[Mapping[str, Any], ...]
+
+    def html(self) -> str:
+        """The page."""
+        environment = templates(autoescape=True)
+        environment.filters["in_script"] = _in_script
+        colours = {name: to_hex(colour) for name, colour in _COLOURS.items()}
+        template = environment.get_template("export/tradeoff/page.html")
+        page = template.render(
+            title=self.title, data={"moves": self.moves}, colours=colours, scripts=_SCRIPTS
+        )
+        return page.lstrip()
+
+    def save(self, path: str | Path) -> None:
+        """Write it, whole or not at all; ValueError where the name does not end in .html."""
+        if Path(path).suffix.lower() not in (".html", ".htm"):
+            raise ValueError(f"{path} is no page; end its name in .html")
+        write_whole(path, self.html())
+
+
+_COLOURS = {"plan": BLUE, "plan_in_dark": SKY, "search": ORANGE, "cycloid": GREY, "ink": INK}
+
+
+def trade_off(
+    answers: Front | Plan | Sequence[Front | Plan] | Answers,
+    *,
+    deflection_scale: float | None = None,
+) -> TradeOffPage:
+    """Make a page on which one drags along a front and sees each point's motion.
+
+    On the left is energy against residual vibration, on the right the structure, with the plain
+    cycloid as a ghost; below are torque, power and tip displacement over time, and the figures.
+
+    Parameters
+    ----------
+    answers : Front, Plan, or a sequence or mapping of these
+        What is shown, a mapping by what it is called. Of fronts of the same move the first is
+        dragged along, and all others lie beside it, as do plans. Plans alone are chosen among
+        themselves. Answers of different moves can be switched between.
+    deflection_scale : float, optional
+        Scale of the deflections, as of `animate`.
+
+    Returns
+    -------
+    TradeOffPage
+        Its `save` writes it, at most 1.5 MB. Of a front with more than 60 points it has 60.
+
+    Raises
+    ------
+    ValueError
+        When there is no answer, or no point in a front; when there are more motions than a page
+        holds.
+    """
+    if deflection_scale is not None:
+        positive("deflection scale", deflection_scale)
+    moves = moves_of(_by_name(answers))
+    budget = (MOST_BYTES - _OF_CODE) / len(moves)
+    shown = tuple(_shown(move, deflection_scale, budget) for move in moves)
+    title = moves[0].title if len(moves) == 1 else "quietarm"
+    page = TradeOffPage(title, shown)
+    size = len(page.html().encode())
+    if size > MOST_BYTES:
+        motions = sum(len(move.choices) for move in moves)
+        raise ValueError(
+            f"{motions} motions of {counted(len(moves), 'move')} make a page of {size / 1e3:.0f} "
+            f"kB, where {MOST_BYTES / 1e3:.0f} kB are the most; give fewer answers"
+        )
+    return page
+
+
+def _by_name(answers: Front | Plan | Sequence[Front | Plan] | Answers) -> Answers:
+    """Answers by their names, or by their methods."""
+    if isinstance(answers, Plan):
+        answers = {"plan": answers}
+    if isinstance(answers, Front):
+        answers = [answers]
+    if isinstance(answers, Mapping):
+        named = dict(answers)
+    else:
+        named = dict[str, Any]()
+        for number, answer in enumerate(answers, start=1):
+            instance(f"answer {number}", answer, Front, Plan)
+            label = label_of(answer.record.method)
+            named[f"{label} ({number})" if label in named else label] = answer
+    for label, answer in named.items():
+        instance(label, answer, Front, Plan)
+    if not named:
+        raise ValueError("no front or plan is given; give one or more")
+    return named
+
+
+def _in_script(value: Any) -> str:
+    """JSON that ends no script, whatever the names in it are."""
+    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _shown(move: Move, scale: float | None, budget: float) -> dict[str, Any]:
+    """All that the scripts need of a move, within a number of bytes."""
+    # a share of a curve's peak that a line between its samples may miss it by: half a pixel
+    tolerance = 0.005
+    coarsest = 0.08
+    curves_of_all = {
+        name: np.array([_lines(plan, name) for plan in move.motions]) for name in PANELS
+    }
+    while True:
+        times, places = _sampled_times(move, curves_of_all, tolerance)
+        structure = _structure(move, times, scale, tolerance)
+        panels = {
+            name: _panel(move, name, values[:, :, places]) for name, values in curves_of_all.items()
+        }
+        content = _content(move, times, structure, panels)
+        if tolerance >= coarsest or len(json.dumps(content)) <= budget:
+            return content
+        tolerance *= 2
+
+
+def _lines(plan: Plan, quantity: str) -> list[Array]:
+    """Curves of a quantity in the unit that is shown; of a tip in space its distance."""
+    lines = curves(plan, quantity)
+    across = plan.task.plant.tip_lines
+    if quantity != "deflection" or across is None:
+        return lines
+    return [np.abs(across @ np.array(lines)).max(axis=0)]
+
+
+def _sampled_times(
+    move: Move, curves_of_all: Mapping[str, Array], tolerance: float
+) -> tuple[Array, NDArray[np.intp]]:
+    """Times at which all motions are sampled [s], and which of the fine samples these are."""
+    times = move.cycloid.trajectory.time
+    rows = [_angles(plan)[None, :] for plan in move.motions]
+    for values in curves_of_all.values():
+        peak = np.abs(values).max() or 1.0
+        rows += list(values / peak)
+    arrival = np.flatnonzero(times == move.task.duration)
+    places = needed_samples(times, np.vstack(rows), arrival, tolerance)
+    return times[places], places
+
+
+def _angles(plan: Plan) -> Array:
+    """The joint's way, from 0 to 1."""
+    return (plan.trajectory.motion.angle - plan.task.start) / plan.task.span
+
+
+def _structure(move: Move, times: Array, scale: float | None, tolerance: float) -> dict[str, Any]:
+    """The moving parts of all motions, as sums of a few shapes."""
+    lines = [Line(plan, "", BLUE) for plan in move.motions]
+    end = move.task.duration + move.task.residual_window
+    structures = structures_of(lines, times, end, scale)
+    coordinates = np.array([_coordinates(structure) for structure in structures])
+    flat = coordinates.reshape(-1, coordinates.shape[-1])
+    points = flat.reshape(len(flat), -1, 2)
+    corners = [points.min(axis=(0, 1)), points.max(axis=(0, 1))]
+    size = float(np.ptp(corners, axis=0).max()) or 1.0
+    shapes = shapes_of(flat, 0.2 * tolerance * size)
+    scores = shapes.scores.reshape(*coordinates.shape[:2], -1).transpose(0, 2, 1)
+    first = structures[0]
+    at_the_end = replace(first, times=times[-1:]).unbent
+    still = [part for part in at_the_end if part.colour != FAINT]
+    return {
+        "scale": first.scale_words,
+        "in_space": move.task.plant.in_space,
+        "parts": [_part(part.points.shape[1], part.colour, part.width) for part in first.bent],
+        "trails": len(first.paths),
+        "mean": shapes.mean.round(6).tolist(),
+        "shapes": shapes.shapes.round(6).tolist(),
+        "scores": packed(scores),
+        "target": [part.points[-1].round(6).tolist() for part in still],
+        "corners": [corner.round(6).tolist() for corner in corners],
+    }
+
+
+def _coordinates(structure: Structure) -> Array:
+    """All points of the parts, then where the tips are drawn, shape (frames, coordinates) [m]."""
+    frames = len(structure.times)
+    parts = [part.points.reshape(frames, -1) for part in structure.bent]
+    return np.hstack([*parts, *structure.paths])
+
+
+def _part(points: int, colour: str, width: float) -> dict[str, Any]:
+    looks = {FAINT: "ground", INK: "rigid"}
+    return {"points": points, "look": looks.get(colour, "link"), "width": width}
+
+
+def _panel(move: Move, quantity: str, values: Array) -> dict[str, Any]:
+    plant = move.task.plant
+    title, _, unit = heading(quantity, plant.joint, plant.tip_unit).partition(" [")
+    lines = [Line(plan, "") for plan in move.motions]
+    limits = []
+    if quantity != "power":
+        limits = limits_in_sight(lines, quantity, values.ravel())
+    return {
+        "title": title[0].upper() + title[1:],
+        "unit": unit.removesuffix("]"),
+        "limits": limits,
+        "values": packed(values),
+    }
+
+
+def _content(
+    move: Move, times: Array, structure: Mapping[str, Any], panels: Mapping[str, Any]
+) -> dict[str, Any]:
+    task = move.task
+    cycloid = Choice(move.cycloid, move.cycloid.residual, move.cycloid.energy)
+    unit, factor = tip_scale(task.plant.tip_unit)
+    count = len(move.choices)
+    left_out = f"{count} of the front's {count + move.left_out} points. " if move.left_out else ""
+    return {
+        "label": move.label,
+        "title": move.title,
+        "method": move.method,
+        "joined": move.joined,
+        "duration": task.duration,
+        "end": task.duration + task.residual_window,
+        "residual": f"residual vibration F1 {window_words(task.residual_window)}",
+        "rest": REST,
+        "unit": unit,
+        "factor": factor,
+        "swings_about_rest": task.final is None and not task.ranges,
+        "times": times.round(7).tolist(),
+        "structure": structure,
+        "panels": panels,
+        "figure_names": figure_names(task),
+        "points": [_point(move, choice) for choice in move.choices],
+        "cycloid": _place(move, cycloid),
+        "beside": [
+            {"label": beside.label, "kind": beside.kind, "points": beside.points}
+            for beside in move.beside
+        ],
+        "note": left_out + robust_note(task),
+    }
+
+
+def _point(move: Move, choice: Choice) -> dict[str, Any]:
+    """A motion that can be chosen, and what it trades."""
+    return {**_place(move, choice), "sentence": sentence(move, choice)}
+
+
+def _place(move: Move, choice: Choice) -> dict[str, Any]:
+    """A motion's place on the front, and its figures."""
+    figures = Figures.of(choice.plan, choice.residual, choice.energy)
+    return {
+        "name": choice.name,
+        "residual": choice.residual,
+        "energy": choice.energy,
+        "cells": figures.cells(move.task),
+        "spot": spot_words(choice),
+        "swing": swing_words(choice.residual, move.task.plant.tip_unit),
+    }

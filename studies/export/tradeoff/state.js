@@ -1,0 +1,23 @@
+// What is chosen: a move, one of its motions, a time; and what is read of it.
+const state = { move: moves[0], point: 0, time: 0, playing: false, speed: 0.5 };
+const chosen = () => state.move.points[state.point];
+const lastPoint = () => state.move.points.length - 1;
+const ofChosen = (rows) => rows[state.point];
+const ofCycloid = (rows) => rows[state.move.points.length];
+
+// Coordinates of all parts of a motion, then of its tips [m], x and y in turn, from the scores of its shapes.
+const coordinatesBy = (scoreOf) => {
+  const { mean, shapes } = state.move.structure;
+  const sum = Float64Array.from(mean);
+  shapes.forEach((shape, k) => {
+    const score = scoreOf(k);
+    for (let i = 0; i < sum.length; i++) sum[i] += score * shape[i];
+  });
+  return sum;
+};
+const coordinatesAt = (scores, time) => coordinatesBy((k) => valueAt(state.move.times, scores[k], time));
+const trailsOf = (scores) => {
+  const count = state.move.structure.trails;
+  const everySample = state.move.times.map((_, sample) => coordinatesBy((k) => scores[k][sample]).slice(-2 * count));
+  return Array.from({ length: count }, (_, tip) => everySample.map((row) => [row[2 * tip], row[2 * tip + 1]]));
+};
