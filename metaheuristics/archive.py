@@ -208,7 +208,8 @@ def entering(front: Array, candidates: Array) -> Places:
     The front's points are in order of residual, shape (n, objectives).
     """
     if candidates.shape[1] > len(RESIDUAL_AND_ENERGY):
-        dominated = (front <= candidates[:, None]).all(axis=2).any(axis=1)
+        within = np.asarray((front <= candidates[:, None]).all(axis=2))
+        dominated = np.any(within, axis=1)
         rows = np.flatnonzero(~dominated)
         remaining = candidates[rows]
         as_good = (remaining <= remaining[:, None]).all(axis=2)
