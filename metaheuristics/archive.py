@@ -220,11 +220,12 @@ def entering(front: Array, candidates: Array) -> Places:
     The front's points are in order of residual, shape (n, objectives).
     """
     if candidates.shape[1] > len(RESIDUAL_AND_ENERGY):
-        dominated = (front <= candidates[:, None]).all(axis=2).any(axis=1)
+        within = np.asarray((front <= candidates[:, None]).all(axis=2))
+        dominated = np.any(within, axis=1)
         rows = np.flatnonzero(~dominated)
         remaining = candidates[rows]
-        as_good = np.all(remaining <= remaining[:, None], axis=2)
-        return rows[~np.tril(as_good, -1).any(axis=1)]
+        as_good = (remaining <= remaining[:, None]).all(axis=2)
+        return rows[~np.any(np.tril(as_good, -1), axis=1)]
     below = np.searchsorted(front[:, 0], candidates[:, 0], side="right") - 1
     least = np.append(front[:, 1], np.inf)[below]  # the last is for those with none below
     rows = np.flatnonzero(candidates[:, 1] < least)

@@ -1,5 +1,6 @@
 """Searches of three objectives and four: every preset, what enters, directions, hypervolumes."""
 
+import json
 from math import comb
 
 import moocore
@@ -109,3 +110,12 @@ def test_a_thinned_surface_has_the_best_of_each_objective():
     # covered evenly: nothing is farther from a chosen point than the extent's fifth
     distances = np.linalg.norm(points[:, None] - points[rows], axis=2).min(axis=1)
     assert distances.max() < 0.2
+
+
+def test_a_file_of_two_objectives_says_nothing_of_more(tmp_path):
+    front = qa.search(SIXTH, PROFILE, bound=0.2, population=12, generations=2)
+    front.save(tmp_path / "front.json")
+    document = json.loads((tmp_path / "front.json").read_text())
+    assert "objectives" not in document
+    assert "peaks" not in document["points"][0]
+    assert not {"peaks", "believed"} & document["entries"].keys()

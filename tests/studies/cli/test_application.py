@@ -84,7 +84,7 @@ def test_plants_problems_and_methods_are_listed(call, done, crane_file):
 def test_reference_fronts_are_written_to_a_folder(done, folder):
     two, torque = (problem_of(f"single-link-30deg-0.8s-{name}") for name in ("2-terms", "torque"))
     out = done(f"list {two.name} {torque.name} --output fronts")
-    assert out.splitlines()[-1] == "wrote 7 fronts to fronts"
+    assert out.splitlines()[-1] == "wrote 8 fronts to fronts"
     for problem in (two, torque):
         loaded = tuple(Front.load(folder / "fronts" / f"{name}.json") for name in problem.tasks())
         assert loaded == problem.fronts()
