@@ -96,7 +96,7 @@ def run_method(method: Any, function: RecordedFunction, seed: int, budget: int) 
 def _ask_and_tell(method: AskTell, function: RecordedFunction, seed: int) -> None:
     method.setup(function, seed)
     while True:
-        candidates = method.ask()
+        candidates: Any = method.ask()
         if candidates is None:
             raise ValueError("ask() returns None; return candidates, one a row")
         objectives, violations = function(candidates)
@@ -137,7 +137,7 @@ def digest_of(method: Method) -> str:
     return digest.hexdigest()[:12]
 
 
-def _code_of(method: Method) -> Iterator[bytes]:
+def _code_of(method: Any) -> Iterator[bytes]:
     """The code of a function, or of the class of an object that is asked and told."""
     if isinstance(method, FunctionType):
         yield from _bytes_of(method.__code__)

@@ -26,6 +26,7 @@ class ArrayAlgorithm(Algorithm):
     # for the type checker: pymoo declares these as optional
     pop: Any
     opt: Any
+    problem: Any
     random_state: Any
 
     def __init__(self, population: int) -> None:

@@ -55,10 +55,12 @@ class Differences:
         """Derivatives of the same, shape (values, variables)."""
         values = self.values(x)
         x = np.clip(x, self._lower, self._upper)
-        if self._slopes is None:
+        slopes = self._slopes
+        if slopes is None:
             steps = np.where(x + self._step <= self._upper, self._step, -self._step)
-            self._slopes = ((self._rows(x + np.diag(steps)) - values) / steps[:, None]).T
-        return self._slopes
+            slopes = ((self._rows(x + np.diag(steps)) - values) / steps[:, None]).T
+            self._slopes = slopes
+        return slopes
 
     def _rows(self, candidates: Array) -> Array:
         objectives, violations = self._function(candidates)
