@@ -59,7 +59,7 @@ class Page:
             "profile": Explored.choose_profile,
             "terms": lambda now, terms: now.choose_profile(now.profile, terms),
         }
-        self._sliders: tuple[list[str], float] = [], 0.0
+        self._sliders: tuple[list[str], tuple[float, ...]] = [], ()
         self._plots = Plots(document, explored.task.plant, self._pick)
         self._file = ColumnDataSource({"name": [], "text": [], "time": []})
         save = CustomJS(args={"file": self._file}, code=(_HERE / "save.js").read_text())

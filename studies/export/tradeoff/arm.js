@@ -42,9 +42,8 @@ const placeBodies = (paths, coordinates) => {
   });
 };
 const placeTrails = (paths, trails, coordinates) => {
-  const { times, duration } = state.move;
+  const { times, duration, arrival } = state.move;
   const now = lastBefore(times, state.time);
-  const arrival = times.indexOf(duration);
   trails.forEach((trail, tip) => {
     const end = coordinates.length - 2 * (trails.length - tip);
     const here = [coordinates[end], coordinates[end + 1]];

@@ -13,7 +13,7 @@ const showMotion = () => {
   showTime();
 };
 const showWords = () => {
-  const { figure_names: names, cycloid, beside, factor, unit } = state.move;
+  const { figure_names: names, cycloid, beside, factor, unit, rest } = state.move;
   const point = chosen();
   byId("sentence").textContent = point.sentence;
   const rows = byId("figures");
@@ -27,8 +27,9 @@ const showWords = () => {
   const others = beside.filter(({ kind, points }) => kind !== "plan" && points.length && points[0][0] !== null);
   byId("nearest").textContent = others.map(({ label, points }) => {
     const [residual, energy] = points.reduce((best, other) => (Math.abs(other[0] - point.residual) < Math.abs(best[0] - point.residual) ? other : best));
-    return `${label}${points.length > 1 ? ", nearest" : ""}: ${(factor * residual).toPrecision(3)} ${unit}, ${energy.toPrecision(3)} J`;
-  }).join(" \u00b7 ");
+    const words = residual < rest ? "at rest" : `${(factor * residual).toPrecision(3)} ${unit}`;
+    return `${label}${points.length > 1 ? ", nearest" : ""}: ${words}, ${energy.toPrecision(3)} J`;
+  }).join("; ");
 };
 const showTime = () => {
   const { move, time } = state;
@@ -138,8 +139,7 @@ addEventListener("message", ({ data }) => {
   if (theme === "auto") delete document.documentElement.dataset.theme;
   if (theme && drawnSize) tellHeight(); // whoever listened too late
 });
-new ResizeObserver(() => {
-  tellHeight();
+const drawInSize = () => {
   const size = [byId("front").clientWidth, byId("scene").clientHeight].join();
   if (!byId("front").clientWidth || size === drawnSize) return;
   const begins = drawnSize === "";
@@ -148,4 +148,8 @@ new ResizeObserver(() => {
   if (stillness.matches) state.time = widestSwing();
   take(moves[0]);
   if (!stillness.matches) play(true);
+};
+new ResizeObserver(() => {
+  drawInSize();
+  if (drawnSize) tellHeight();
 }).observe(document.querySelector("main"));

@@ -44,10 +44,14 @@ MOST_BYTES = 1_500_000
 """Of a page: what is sent by mail, and opens at once."""
 _OF_CODE = 100_000
 """Bytes that scripts and styles may take of them."""
+_COLOURS = {"plan": BLUE, "plan_in_dark": SKY, "search": ORANGE, "cycloid": GREY, "ink": INK}
+"""Those of pictures; in dark the plan is the lighter blue."""
 _SCRIPTS = (
     "numbers.js", "drawing.js", "state.js", "front.js", "arm.js", "panels.js", "main.js",
 )  # fmt: skip
+"""In the order in which they need each other."""
 PANELS = ("torque", "power", "deflection")
+"""Quantities that are drawn over time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +77,6 @@ class TradeOffPage:
         if Path(path).suffix.lower() not in (".html", ".htm"):
             raise ValueError(f"{path} is no page; end its name in .html")
         write_whole(path, self.html())
-
-
-_COLOURS = {"plan": BLUE, "plan_in_dark": SKY, "search": ORANGE, "cycloid": GREY, "ink": INK}
 
 
 def trade_off(
@@ -269,13 +270,14 @@ def _content(
         "method": move.method,
         "joined": move.joined,
         "duration": task.duration,
+        "arrival": int(np.searchsorted(times, task.duration)),
         "end": task.duration + task.residual_window,
         "residual": f"residual vibration F1 {window_words(task.residual_window)}",
         "rest": REST,
         "unit": unit,
         "factor": factor,
         "swings_about_rest": task.final is None and not task.ranges,
-        "times": times.round(7).tolist(),
+        "times": [float(f"{time:.9g}") for time in times],
         "structure": structure,
         "panels": panels,
         "figure_names": figure_names(task),

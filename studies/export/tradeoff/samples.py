@@ -43,7 +43,9 @@ def unpacked(block: dict[str, Any]) -> Array:
     return shaped * np.array(block["units"])[:, None]
 
 
-def needed_samples(times: Array, rows: Array, always: Array, tolerance: float) -> NDArray[np.intp]:
+def needed_samples(
+    times: Array, rows: Array, always: NDArray[np.intp], tolerance: float
+) -> NDArray[np.intp]:
     """Which samples are needed, so that straight lines between them are close to all rows.
 
     Parameters

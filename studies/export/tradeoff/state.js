@@ -5,19 +5,19 @@ const lastPoint = () => state.move.points.length - 1;
 const ofChosen = (rows) => rows[state.point];
 const ofCycloid = (rows) => rows[state.move.points.length];
 
-// Coordinates of all parts of a motion, then of its tips [m], x and y in turn, from the scores of its shapes.
-const coordinatesBy = (scoreOf) => {
+// Coordinates of all parts of a motion, then of its tips [m], x and y in turn, from the scores of its shapes; or the last of them alone.
+const coordinatesBy = (scoreOf, first = 0) => {
   const { mean, shapes } = state.move.structure;
-  const sum = Float64Array.from(mean);
+  const sum = Float64Array.from(mean.slice(first));
   shapes.forEach((shape, k) => {
     const score = scoreOf(k);
-    for (let i = 0; i < sum.length; i++) sum[i] += score * shape[i];
+    for (let i = 0; i < sum.length; i++) sum[i] += score * shape[first + i];
   });
   return sum;
 };
 const coordinatesAt = (scores, time) => coordinatesBy((k) => valueAt(state.move.times, scores[k], time));
 const trailsOf = (scores) => {
-  const count = state.move.structure.trails;
-  const everySample = state.move.times.map((_, sample) => coordinatesBy((k) => scores[k][sample]).slice(-2 * count));
+  const { trails: count, mean } = state.move.structure;
+  const everySample = state.move.times.map((_, sample) => coordinatesBy((k) => scores[k][sample], mean.length - 2 * count));
   return Array.from({ length: count }, (_, tip) => everySample.map((row) => [row[2 * tip], row[2 * tip + 1]]));
 };

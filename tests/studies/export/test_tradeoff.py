@@ -79,6 +79,7 @@ def test_a_point_says_what_it_trades(shown):
 
 def test_curves_and_structure_are_those_of_the_motions(front, shown):
     times = np.array(shown["times"])
+    assert times[shown["arrival"]] == shown["duration"] == 0.8
     torques, tips = (unpacked(shown["panels"][name]["values"]) for name in ("torque", "deflection"))
     structure = shown["structure"]
     scores = unpacked(structure["scores"])
@@ -212,6 +213,13 @@ def test_plans_are_chosen_among_themselves_and_their_limits_are_drawn(plan, cycl
     assert move["panels"]["torque"]["limits"] == [-0.3, 0.2]
     with pytest.raises(ValueError, match="61 plans of one move are given, of which a page shows"):
         trade_off({str(number): plan for number in range(61)})
+
+
+def test_of_a_duration_with_many_digits_the_arrival_is_found(cycloid):
+    duration = 0.8 + 1 / 7
+    longer = evaluate_coefficients(replace(cycloid.task, duration=duration), [])
+    (move,) = trade_off(longer).moves
+    assert move["times"][move["arrival"]] == pytest.approx(duration, abs=1e-8)
 
 
 def test_of_an_uncertain_task_it_says_whose_residual_it_is(front, task):
