@@ -12,22 +12,26 @@ from dataclasses import dataclass, field
 
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
-PAGE = 648
-"""Height of a slide [pixels]."""
 FULL = 900
 """Height up to which a slide is filled [pixels]: it is made smaller, but not too small to read."""
 ROOM = 330
-"""A slide that is less high than this has room for sentences [pixels]."""
-SHORT, TOGETHER = 330, 720
-"""What is less high than the first follows on the slide before, up to the second [pixels]."""
-CODE_LINE, TEXT_LINE, EQUATION, HEADING = 23, 32, 80, 64
-"""Heights of what is on slides [pixels]."""
+"""A slide that is less high than this has room for sentences, and follows on the one before."""
+TOGETHER = 720
+"""Height up to which it does [pixels]."""
+PROGRAM_LINES = 34
+"""Most lines of a program on one slide; a longer one is cut before a definition."""
+OUTPUT_LINES = 26
+"""Most lines that are printed on one slide."""
+
+# How high things are on a slide that is neither enlarged nor made smaller [pixels].
+CODE_LINE = 23
+TEXT_LINE = 32
+EQUATION = 80
+HEADING = 64
+TABLE_ROW = 30
+FILM = 430
 LETTERS = 95
 """Letters on a line of text."""
-PROGRAM_LINES, OUTPUT_LINES = 34, 26
-"""Most lines of a program, and of a text that it prints, on one slide."""
-FILM, TABLE_ROW = 430, 30
-"""Heights of a film and of a row of a table [pixels]."""
 
 HIDDEN = ("%matplotlib", "# Your attempt")
 """How the code cells begin that are not on slides."""
@@ -89,7 +93,7 @@ def _goes_on(unit, following, slide):
     return (
         len(following) == 1
         and not unit.shown.startswith("#")
-        and (not unit.pieces or height < SHORT)
+        and (not unit.pieces or height < ROOM)
         and height + sum(map(_height, slide)) < TOGETHER
     )
 
