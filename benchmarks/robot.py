@@ -230,8 +230,8 @@ def figure_6() -> str:
     toppra = toppra_places(move(**unjerked, duration=TOPPRA_LEAST))
     rung, _, _ = truth_of().residual_and_energy(on_the_line(toppra), TOPPRA_LEAST)
     return (
-        f"fastest with 12 terms, 0.79 s: {fastest.duration:.4f} s, {residual:.3f} mm; toppra, whose "
-        f"jerk has no limit, {TOPPRA_LEAST} s, {1e3 * rung:.1f} mm"
+        f"fastest with 12 terms, 0.79 s: {fastest.duration:.4f} s, {residual:.3f} mm; toppra, "
+        f"whose jerk has no limit, {TOPPRA_LEAST} s, {1e3 * rung:.1f} mm"
     )
 
 

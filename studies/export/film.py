@@ -22,7 +22,7 @@ from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, WIDTHS, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
-from quietarm.studies.figures.motion import Motions, draw_quantity, lines_of
+from quietarm.studies.figures.motion import Line, Motions, draw_quantity, lines_of
 from quietarm.studies.figures.structure import GROUND, Structure, structures_of
 from quietarm.studies.report.saving import as_written
 from quietarm.studies.report.words import (
@@ -38,9 +38,11 @@ _COLUMNS = {1: 1, 2: 2, 4: 2}
 _PANEL = 4.0
 _HIGH = 2.6
 _CURVES_HIGH = 2.0
+_JOINT_HIGH = 0.6
 _LINE = 0.2
 _LETTERS = 11.5
-"""Width and height of a panel, heights of curves and of a line [inch]; letters an inch."""
+"""Width and height of a panel, heights of curves, of one of several joints' and of a line [inch];
+letters an inch."""
 _THIN = 0.8
 _DISC = 1e-5
 """Of the widths of parts; a part as small as this [m] is a disc."""
@@ -202,7 +204,6 @@ _WRITERS: Mapping[str, Callable[..., AbstractMovieWriter]] = {
 
 def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     """The figure, laid out, and what brings it to a frame."""
-    curves = ("angle", "deflection", "power")
     structures = film.structures
     times = film.structures[0].times
     columns = _COLUMNS.get(len(structures), 3)
@@ -213,13 +214,15 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     words = title_of_picture(structures[0].line.plan.task) if same else "several moves on one clock"
     heading = wrap(words, int(_LETTERS * inches) - 24)  # the clock stands beside it
     above = _LINE * len(heading) + rows * (_HIGH + _LINE * max(map(len, titles)))
-    figure = new_figure(inches, above + _CURVES_HIGH)
+    joints = structures[0].line.plan.task.plant.joint_names
+    below = max(_CURVES_HIGH, _JOINT_HIGH * len(joints))
+    figure = new_figure(inches, above + below)
     figure.set_dpi(film.width / inches)
     figure.suptitle("\n".join(heading), x=0.01, ha="left", fontsize=11)
     clock = figure.text(0.99, 0.99, "", ha="right", va="top", fontsize=11)
     at_speed = f", speed x {film.speed:g}" if film.speed != 1 else ""
     updates: list[Update] = [lambda k: clock.set_text(f"t = {times[k]:.2f} s{at_speed}")]
-    subfigures: Any = figure.subfigures(2, 1, height_ratios=[above, _CURVES_HIGH])
+    subfigures: Any = figure.subfigures(2, 1, height_ratios=[above, below])
     upper, lower = subfigures
     panels = list(upper.subplots(rows, columns, squeeze=False).flat)
     for spare in panels[len(structures) :]:
@@ -231,8 +234,7 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
             if drawn.line.plan.task.plant.name == name:
                 ax.update_datalim(drawn.corners)
         updates += _draw_structure(ax, structure)
-    for ax, quantity in zip(lower.subplots(1, len(curves)), curves):
-        draw_quantity([structure.line for structure in structures], quantity, ax)
+    for ax in _curves(lower, [structure.line for structure in structures]):
         ax.set_xlim(0.0, film.end)
         ax.xaxis.label.set_fontsize(9)
         cursor = ax.axvline(0.0, color="0.2", linewidth=1.2)
@@ -241,6 +243,29 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
         figure.draw_without_rendering()
     figure.set_layout_engine(None)  # any, even one that does nothing, draws every frame twice
     return figure, lambda k: [update(k) for update in updates]
+
+
+def _curves(figure: Any, lines: Sequence[Line]) -> Iterator[Axes]:
+    """Angle, deflection and power side by side; several joints above each other."""
+    names = lines[0].plan.task.plant.joint_names
+    quantities = ("angle", "deflection", "power")
+    if len(names) == 1:
+        for ax, quantity in zip(figure.subplots(1, len(quantities)), quantities):
+            yield draw_quantity(lines, quantity, ax)
+        return
+    left, *others = figure.subfigures(1, len(quantities))
+    of_joints = left.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+    for joint, (name, ax) in enumerate(zip(names, of_joints)):
+        draw_quantity(lines, "angle", ax, curve=joint)
+        ax.set_ylabel(name.removesuffix("_joint"), rotation=0, ha="right", fontsize=8)
+        ax.tick_params(labelsize=7)
+        if joint > 0:
+            ax.set_title("", loc="left")
+        if joint < len(names) - 1:
+            ax.set_xlabel("")
+        yield ax
+    for part, quantity in zip(others, quantities[1:]):
+        yield draw_quantity(lines, quantity, part.subplots())
 
 
 def _title(structure: Structure, same: bool, room: int) -> list[str]:
