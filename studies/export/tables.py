@@ -71,9 +71,8 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     """Columns, as `columns_of` reads them, by their headings, as `angle_deg`, at a rate [Hz].
 
     The last row is the first tick at or after arrival. Each of several joints has columns of its
-    own, `elbow_angle_deg`; each tip has one, of a robot each
-    axis of its tip's frame along which that moves, `tip_x_mm`, and of a robust plan in each scenario, which its
-    heading names.
+    own, `elbow_angle_deg`. Each tip has one, or of a robot each axis of its tip's frame along which
+    that moves, `tip_x_mm`; of a robust plan in each scenario, which its heading names.
     """
     linear_names = {"angle": "position", "torque": "force"}
     times = times_of(plan, rate)

@@ -170,7 +170,7 @@ def test_payloads_are_swept_and_their_moves_exported_to_c(call):
     plan = qa.Plan.load("move.json")
     assert plan.task.plant.payload == 1.05
     assert call("export moves.zarr --output moves.c")[0] == 0
-    library = compiled(Path("moves.c"))
+    library = compiled(Path("moves.c").resolve())
     coefficients = (c_double * 6)()
     assert library.moves_plan(c_double(1.05), c_double(0.95), coefficients) == 0
     assert list(coefficients) == pytest.approx(plan.coefficients, abs=1e-12)
