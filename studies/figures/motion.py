@@ -169,7 +169,10 @@ def _which(plant: Plant, quantity: str, curve: int) -> str:
 
 def _which_tip(plant: Plant, curve: int) -> str:
     """Which of several tips, or along which axis a tip moves that moves in space."""
-    return f", {plant.tip_names[curve].replace('_', ' ')}"
+    place = plant.tip_names[curve].removeprefix("tip_")
+    if plant.tip_lines is None:
+        return f", tip {place}"
+    return f", along {place}" if place.isalpha() else f", direction {place}"
 
 
 def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
