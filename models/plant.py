@@ -208,6 +208,12 @@ class Plant(ABC):
         return None
 
     @property
+    def tip_names(self) -> tuple[str, ...]:
+        """What displacements of the tips are called in tables: tip_1, tip_2; of one tip, tip."""
+        numbers = range(1, self.tips + 1)
+        return ("tip",) if self.tips == 1 else tuple(f"tip_{number}" for number in numbers)
+
+    @property
     def tip_lines(self) -> np.ndarray | None:
         """Lines along which displacements count as residual, shape (lines, tips), unit vectors.
 

@@ -82,7 +82,7 @@ def right():
         "task": task, "one": task, "other": task, "tasks": [task], "plant": link,
         "profile": qa.CycloidPolynomial(1), "coefficients": [0.0], "target": 0.5, "duration": 0.8,
         "plans": {}, "fronts": [], "quantity": "speed", "floor": object.__new__(qa.ocp.Floor),
-        "front": object.__new__(qa.Front),
+        "front": object.__new__(qa.Front), "plan": object.__new__(qa.Plan),
     }  # fmt: skip
 
 

@@ -29,6 +29,7 @@ from quietarm.models.robot.full import FullRobot
 from quietarm.models.robot.mechanism import BEAM_END, Mechanism, build_mechanism
 from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
 from quietarm.models.robot.path import GeometricPath
+from quietarm.models.robot.piecewise import Place
 from quietarm.models.robot.robot_file import read_robot
 from quietarm.models.robot.stick_figure import stick_figure_of
 from quietarm.models.robot.tables import (
@@ -39,6 +40,7 @@ from quietarm.models.robot.tables import (
     STIFFNESS,
     VARIED,
     Tables,
+    groups_at,
     modes_on,
     reach,
     tables_of,
@@ -464,6 +466,11 @@ class RobotOnPath(Plant):
         return FullRobot(self)
 
     @property
+    def tip_names(self) -> tuple[str, ...]:
+        """The axes of its frame along which the tip moves: tip_x, tip_y."""
+        return tuple(f"tip_{'xyz'[axis]}" for axis in self.tables.directions)
+
+    @property
     def tip_lines(self) -> Array | None:
         """So many that a displacement of the tip is at most 5 % longer than along one of them."""
         return lines_in(self.tables.tips.shape[2])
@@ -570,13 +577,17 @@ class RobotOnPath(Plant):
 
     def _coefficients(self, path: JointMotion, group: str) -> dict[str, Array]:
         """All of a group at the place on the path, by one product for each."""
+        errors = self._errors
+        if all(isinstance(error, Real) for error in errors.values()):
+            numbers = {name: float(error) for name, error in errors.items()}
+            tables = groups_at(self.robot, self.path, tuple(numbers.items()))[group]
+            terms = max(table.shape[1] for table in tables.values())
+            place = Place(self.tables.knots, path.angle, terms)
+            return {name: place.values(table) for name, table in tables.items()}
         place = self.tables.at(path.angle)
         coefficients = {
             name: place.values(table) for name, table in self.tables.groups[group].items()
         }
-        errors = self._errors
-        if not errors:
-            return coefficients
         for powers, groups in variations_of(self.robot, self.path, tuple(errors)).items():
             factor = _power(errors.values(), powers)
             for name, table in groups[group].items():

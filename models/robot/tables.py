@@ -53,6 +53,8 @@ class Tables:
         Positions and their first three derivatives.
     frequencies : ndarray
         Of all modes in the middle of the path [rad/s].
+    directions : tuple of int
+        Axes of the tip's frame along which it moves, from 0, those of `tips`.
     """
 
     knots: Array
@@ -62,6 +64,7 @@ class Tables:
     tip_rates: Array
     path: Sequence[Array]
     frequencies: Array
+    directions: tuple[int, ...]
 
     def at(self, place: Expression) -> Place:
         """The basis at a place."""
@@ -173,6 +176,7 @@ def tables_of(robot: Robot, path: GeometricPath) -> Tables:
         tip_rates=_filled(_slopes(found.knots, by_name["tips"]), terms),
         path=[_filled(order.coefficients, terms) for order in derivatives],
         frequencies=reduction.all_frequencies,
+        directions=tuple(reduction.directions.tolist()),
     )
 
 
@@ -235,6 +239,25 @@ def variations_of(
             },
         }
     return variations
+
+
+@lru_cache(maxsize=64)
+def groups_at(robot: Robot, path: GeometricPath, errors: tuple[tuple[str, float], ...]) -> Groups:
+    """The tables where multiples of `VARIED` have these errors: as many numbers as of none."""
+    groups = tables_of(robot, path).groups
+    if not errors:
+        return groups
+    names, sizes = zip(*errors)
+    variations = variations_of(robot, path, names)
+    summed = {group: dict(entries) for group, entries in groups.items()}
+    for powers, changes in variations.items():
+        factor = math.prod(size**power for size, power in zip(sizes, powers))
+        for group, entries in changes.items():
+            for name, change in entries.items():
+                before = summed[group][name]
+                terms = max(before.shape[1], change.shape[1])
+                summed[group][name] = _filled(before, terms) + factor * _filled(change, terms)
+    return summed
 
 
 def _design(count: int) -> tuple[Array, list[tuple[int, ...]]]:

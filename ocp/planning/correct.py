@@ -29,7 +29,7 @@ _ROUNDS = 8
 """Most corrections: each leaves a tenth of what the one before left, where modes are 1 % off."""
 
 
-@takes(plan=Plan)
+@takes(plan=Plan, solver=Solver)
 def correct_in_full(plan: Plan, *, left: float = 1e-5, solver: Solver = Sqp()) -> Plan:
     """Correct a plan until hardly anything is left after it by the whole equations.
 

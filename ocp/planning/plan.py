@@ -222,9 +222,8 @@ class Plan(MotionAnswer):
         """
         ticks = ticks_of_move(self.task.duration, sample_rate)
         sampled = self.sampled(np.arange(ticks + 1) / sample_rate)
-        tips = sampled.tips.shape[1]
-        numbers = [""] if tips == 1 else [f"_{i + 1}" for i in range(tips)]
-        tip_names = [f"tip{number}_{self.task.plant.tip_unit}" for number in numbers]
+        plant = self.task.plant
+        tip_names = [f"{name}_{plant.tip_unit}" for name in plant.tip_names]
         if self.task.plant.joint == ROTARY:
             of_joint = ["angle_rad", "speed_rad_s", "acceleration_rad_s2"]
             force = "torque_Nm"

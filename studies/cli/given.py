@@ -9,7 +9,7 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from quietarm.models import Plant, Robot
+from quietarm.models import Plant, Robot, RobotOnPath
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import JointProfile, PointToPoint, Solver
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
@@ -158,7 +158,7 @@ class Given:
         return MoveGrid(task, tuple(axes))
 
     def _read_robot(self, robot: Robot, **known: float) -> MoveGrid:
-        """The task of a robot along its path, and an axis where there are several durations."""
+        """The task of a robot along its path; axes over durations and multiples of the robot's."""
         text: str | None = self._context.params["duration"]
         duration = known.get("duration")
         if duration is None and text is None:
@@ -166,5 +166,12 @@ class Given:
         durations: tuple[float, ...] = (duration,) if duration is not None else ()
         if not durations:
             durations = parse_of_plant("duration", str(text), "rotary", "m")
-        axes = (Axis("duration", durations, "s"),) if len(durations) > 1 else ()
-        return MoveGrid(read_robot_task(self, robot, max(durations)), axes)
+        multiples = parse_parameters(RobotOnPath, self.parameters)
+        task = read_robot_task(self, robot, max(durations), multiples)
+        units = RobotOnPath.units() | {"duration": OF_MOVES["duration"]}
+        axes = [
+            Axis(name, values, units[name])
+            for name, values in {**multiples, "duration": durations}.items()
+            if len(values) > 1
+        ]
+        return MoveGrid(task, tuple(axes))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from quietarm.models import GeometricPath, Robot, RobotOnPath
@@ -13,6 +14,8 @@ from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.cli.quantities import once
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from quietarm.studies.cli.given import Given
 
 LINE_NAMES = ("line_to", "line_by", "link")
@@ -21,9 +24,13 @@ OF_ROBOT = "is for a robot, whose file is PLANT, as ur5.yaml"
 _OTHERS = ("residual_window", "initial", "final", "energy")
 
 
-def read_robot_task(given: Given, robot: Robot, duration: float) -> PointToPoint:
-    """The task of a robot along the path that was typed, within its own limits and those typed."""
-    given.refuse(["parameters"], "is not for a robot; change its file")
+def read_robot_task(
+    given: Given, robot: Robot, duration: float, multiples: Mapping[str, Sequence[float]]
+) -> PointToPoint:
+    """The task of a robot along the path that was typed, within its own limits and those typed.
+
+    Of several multiples of its payload, or stiffness, the least counts: the others are an axis.
+    """
     path = path_of(given, robot)
     if path is None:
         names = ", ".join(robot.joints)
@@ -31,7 +38,7 @@ def read_robot_task(given: Given, robot: Robot, duration: float) -> PointToPoint
             f"the robot has no path; give --start and --target, a position of each of {names}, or "
             "--path waypoints.csv, or --start and --line-by"
         )
-    plant = robot.along(path)
+    plant = replace(robot.along(path), **{name: min(values) for name, values in multiples.items()})
     limits: dict[str, Any] = {
         QUANTITIES[name].limit: dict(bounds) for name, bounds in robot.limits.items() if bounds
     }

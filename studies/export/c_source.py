@@ -52,11 +52,6 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
     move = dict(zip(OF_MOVES, map(repr, task.move)))
     plant = task.plant
     names = plant.joint_names if len(plant.joint_names) > 1 else ()
-    if names and between is not None:
-        raise ValueError(
-            "C of the moves of a sweep is of one joint, and these have "
-            f"{len(names)}; export their plans one by one"
-        )
     helpers, statements = _path_in_c(moves.profile, plant)
     ends = [_positions(plant, place) for place in (task.start, task.target)] if names else []
     texts = templates(keep_trailing_newline=True)

@@ -71,8 +71,8 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     """Columns, as `columns_of` reads them, by their headings, as `angle_deg`, at a rate [Hz].
 
     The last row is the first tick at or after arrival. Each of several joints has columns of its
-    own, `elbow_angle_deg`; each tip has one, and of a robust plan in each scenario, which its
-    heading names.
+    own, `elbow_angle_deg`. Each tip has one, or of a robot each axis of its tip's frame along which
+    that moves, `tip_x_mm`; of a robust plan in each scenario, which its heading names.
     """
     linear_names = {"angle": "position", "torque": "force"}
     times = times_of(plan, rate)
@@ -114,7 +114,7 @@ def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:
         named = zip(plan.task.error_names, errors)
         scenario = "".join(f" {name} {100 * error:+.4g} %" for name, error in named if error)
         tips = candidate.sample(times).tips.T
-        names = ["tip"] if len(tips) == 1 else [f"tip_{i}" for i in range(1, len(tips) + 1)]
+        names = plan.task.plant.tip_names
         by_name |= {(name, scenario): tip for name, tip in zip(names, tips)}
     return by_name
 

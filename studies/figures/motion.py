@@ -87,7 +87,9 @@ class Line:
 Motions = Sequence[Line] | Plan | Floor
 
 
-def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Axes:
+def draw_quantity(
+    motions: Motions, quantity: str, ax: Axes | None = None, *, curve: int | None = None
+) -> Axes:
     """Draw one quantity of motions against time, with its limits and the moment of arrival.
 
     Parameters
@@ -98,6 +100,8 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
         A name in `QUANTITIES_DRAWN`: angle, speed, acceleration, jerk, deflection, torque or power.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
+    curve : int, optional
+        The joint or the tip by its number from 0; by default all of them.
 
     Returns
     -------
@@ -112,7 +116,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     """
     if quantity not in QUANTITIES_DRAWN:
         raise ValueError(unknown("quantity", quantity, QUANTITIES_DRAWN))
-    return _draw(lines_of(motions), quantity, axes_or_new(ax))
+    return _draw(lines_of(motions), quantity, axes_or_new(ax), curve)
 
 
 def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = None) -> Axes:
@@ -182,8 +186,11 @@ def _which(plant: Plant, quantity: str, curve: int) -> str:
 
 
 def _which_tip(plant: Plant, curve: int) -> str:
-    """Which of several tips, or in which direction a tip moves that moves in space."""
-    return f", {'tip' if plant.tip_lines is None else 'direction'} {curve + 1}"
+    """Which of several tips, or along which axis a tip moves that moves in space."""
+    place = plant.tip_names[curve].removeprefix("tip_")
+    if plant.tip_lines is None:
+        return f", tip {place}"
+    return f", along {place}" if place.isalpha() else f", direction {place}"
 
 
 def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:

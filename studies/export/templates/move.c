@@ -96,17 +96,19 @@ static const double coefficients[] = { {{- coefficients | row or "0.0" -}} };
 {% endif %}
 
 {% if joints %}
+{% if not axes %}
 /* Where the joints rest before and after the move. */
 static const double start[] = { {{- ends[0] | row -}} };
 static const double target[] = { {{- ends[1] | row -}} };
 
+{% endif %}
 const char *const {{ name }}_joints[{{ upper }}_JOINTS] = {
 {% for joint in joints %}
     "{{ joint }}",
 {% endfor %}
 };
 
-void {{ name }}_at(double time, double position[{{ upper }}_JOINTS],
+void {{ name }}_at({{ given }}double time, double position[{{ upper }}_JOINTS],
     double speed[{{ upper }}_JOINTS], double acceleration[{{ upper }}_JOINTS])
 {
     const double move[] = { {{- moving | join(", ") -}} };
@@ -117,10 +119,16 @@ void {{ name }}_at(double time, double position[{{ upper }}_JOINTS],
 
     fraction = time / move[2];
     moves = fraction > 0.0 && fraction < 1.0; /* not where it is no number */
+{% if axes %}
+    if (!moves)
+        fraction = fraction >= 1.0 ? 1.0 : 0.0;
+    path(arg, res);
+{% else %}
     if (moves)
         path(arg, res);
+{% endif %}
     for (i = 0; i < {{ upper }}_JOINTS; i++) {
-        position[i] = moves ? joint[i] : fraction >= 1.0 ? target[i] : start[i];
+        position[i] = {% if axes %}joint[i]{% else %}moves ? joint[i] : fraction >= 1.0 ? target[i] : start[i]{% endif %};
         speed[i] = moves ? joint[{{ upper }}_JOINTS + i] : 0.0;
         acceleration[i] = moves ? joint[2 * {{ upper }}_JOINTS + i] : 0.0;
     }

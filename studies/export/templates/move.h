@@ -15,9 +15,21 @@
    at a change of motion. */
 int {{ name }}_plan({{ places }}, double coefficients[{{ size }}]);
 
+{% if joints %}
+/* How many joints move, and their names. */
+#define {{ upper }}_JOINTS {{ joints | length }}
+extern const char *const {{ name }}_joints[{{ upper }}_JOINTS];
+
+/* Positions [{{ unit }}; m of sliding joints], speeds [/s] and accelerations [/s^2] of all joints on such a move, a
+   time [s] after its start. They rest at the start before the move, and where a time or the duration is
+   no number; at the target after it. */
+void {{ name }}_at({{ given }}double time, double position[{{ upper }}_JOINTS],
+    double speed[{{ upper }}_JOINTS], double acceleration[{{ upper }}_JOINTS]);
+{% else %}
 /* The joint's {{ "angle" if unit == "rad" else "position" }} [{{ unit }}], speed [{{ unit }}/s] and acceleration [{{ unit }}/s^2] on such a move, a time [s]
    after its start. The joint rests at the start before the move, and where a time or the duration is no
    number; at the target after it. */
+{% endif %}
 {% elif joints %}
 /* How long the move takes [s], how many joints it has, and their names. */
 #define {{ upper }}_DURATION {{ move.duration }}

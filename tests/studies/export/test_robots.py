@@ -18,8 +18,10 @@ from scipy.io import loadmat
 
 import quietarm as qa
 from quietarm.studies.export import animate
+from quietarm.studies.export.film import _draw
 from quietarm.studies.export.formats import export_plan
 from quietarm.studies.export.interpolation import interpolation_note, residual_between
+from quietarm.studies.export.tables import csv_text
 from quietarm.studies.figures import Line
 from quietarm.studies.figures.structure import structures_of
 
@@ -140,10 +142,21 @@ def test_the_film_shows_the_robot_where_pinocchio_says(tmp_path):
     assert seen[1] == pytest.approx(way[2] * np.cos(np.radians(25)), abs=0.02)
 
 
+def test_displacements_of_the_tip_are_named_by_the_axes_of_its_frame(tmp_path):
+    """The bar lies along z of its link: it bends along x and y."""
+    header = csv_text(_plan(), "time,tip:mm", 100.0).splitlines()[0]
+    assert header == "time_s,tip_x_mm,tip_y_mm"
+    _plan().save_csv(tmp_path / "move.csv")
+    assert ",tip_x_m,tip_y_m," in (tmp_path / "move.csv").read_text().splitlines()[0]
+
+
 def test_a_film_of_a_robot_moves_and_has_the_cycloid_beside_it(tmp_path):
     film = animate(_plan(), width=240, rate=3)
     film.save(tmp_path / "film.gif")
     assert [structure.line.label for structure in film.structures] == ["plain cycloid", "this plan"]
+    figure, _ = _draw(film)
+    beside = [ax.get_ylabel() for ax in figure.axes]
+    assert [f"{name}_joint" for name in beside if name] == list(UR5_JOINTS)  # above each other
     with Image.open(tmp_path / "film.gif") as image:
         assert image.n_frames == 7
         frames = []

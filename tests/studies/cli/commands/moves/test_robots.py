@@ -1,11 +1,13 @@
 """Robots on the command line, as typed: from a file and waypoints to a trajectory."""
 
 import csv
+from ctypes import c_char_p, c_double
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from c_library import compiled, needs_compiler
 from robots import UR5_JOINTS, urdf_of
 
 import quietarm as qa
@@ -155,6 +157,37 @@ def test_durations_are_swept_and_points_are_searched(call):
     assert qa.Front.load("found.json").points
 
 
+@pytest.mark.slow
+@needs_compiler
+def test_payloads_are_swept_and_their_moves_exported_to_c(call):
+    """Payloads are multiples of the mass at the tip; C gives what the dataset's plans give."""
+    line = f"sweep ur5_bar.yaml {ENDS} --set payload=0.95,1.1 --duration 0.9,1.0"
+    code, out, _ = call(f"{line} --terms 6 --output moves.zarr")
+    assert code == 0
+    assert "payload" in out
+    code, _, _ = call("plan --from moves.zarr --set payload=1.05 --duration 0.95 -o move.json")
+    assert code == 0
+    plan = qa.Plan.load("move.json")
+    assert plan.task.plant.payload == 1.05
+    assert call("export moves.zarr --output moves.c")[0] == 0
+    library = compiled(Path("moves.c").resolve())
+    coefficients = (c_double * 6)()
+    assert library.moves_plan(c_double(1.05), c_double(0.95), coefficients) == 0
+    assert list(coefficients) == pytest.approx(plan.coefficients, abs=1e-12)
+    assert library.moves_plan(c_double(1.2), c_double(0.95), coefficients) == 1
+    names = (c_char_p * 6).in_dll(library, "moves_joints")
+    assert tuple(name.decode() for name in names) == UR5_JOINTS
+    times = [-1.0, 0.0, 0.1, 0.4, 0.94, 0.95, 2.0, float("nan")]
+    for time in times:
+        values = [(c_double * 6)() for _ in range(3)]
+        library.moves_at(coefficients, c_double(0.95), c_double(time), *values)
+        held = np.clip(np.nan_to_num(time), 0.0, 0.95)
+        sample = plan.sampled([held] if held else [0.0]).sample
+        for order, found in enumerate(values):
+            expected = [float(joint[order][0]) for joint in sample.joints]
+            assert list(found) == pytest.approx(expected, abs=1e-7), (time, order)
+
+
 def test_the_page_of_sliders_is_of_plants_of_one_joint(refused):
     assert "give it to quietarm plan, evaluate, front or search" in refused("explore ur5_bar.yaml")
 
@@ -204,8 +237,10 @@ def test_a_robot_is_listed_with_what_was_read(call):
     (f"plan ur5_bar.yaml {START} --target=far,0,0,0,0,0 --duration 1", "'far' is not a position"),
     (f"plan ur5_bar.yaml {START} --target=9,0,0,0,0,0 --duration 1", "its range is -6.28"),
     (f"plan ur5_bar.yaml {START} {START.replace('start', 'target')} --duration 1", "a length of 0"),
-    (f"plan ur5_bar.yaml {ENDS} --duration 1 --set x=1", "--set is not for a robot"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --set x=1", "robot has no parameter 'x'"),
     (f"plan ur5_bar.yaml {ENDS} --duration 1 --path corner.csv", "--start is in the file of"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --set payload=1.5", "its tables reach from 0.7 to"),
+    (f"plan ur5_bar.yaml {ENDS} --duration 1 --set payload=0.9,1.1", "payload has 2 values here"),
     (f"plan ur5_bar.yaml {ENDS} --duration 1 --torque-limit elbow=3", "has no joint 'elbow'"),
     ("plan ur5_bar.yaml --path corner.csv --duration 1", "turns back at waypoint 2, a corner"),
     ("plan ur5_bar.yaml --path short.csv --duration 1", "is of 3 joints, and the robot drives 6"),
