@@ -190,8 +190,8 @@ def fronts_compared(quick: bool) -> tuple[bytes, Shown]:
     from quietarm.studies.reproduce.paper import ARM_HALF, paper_points
 
     task = ARM_HALF.task
-    fewer = {"generations": 5, "population": 20} if quick else {}
-    fronts = [qa.epsilon_front(task, bound=ARM_HALF.bound, points=10 if quick else 50)]
+    fewer = {"generations": 60} if quick else {}  # by then every method comes within 1 mm
+    fronts = [qa.epsilon_front(task, bound=ARM_HALF.bound, points=50)]
     fronts += [
         qa.search(task, algorithm=method, bound=ARM_HALF.bound, seed=seed, **fewer)
         for method in ("vepso", "nsga2-paper")
@@ -342,7 +342,12 @@ def recorded() -> dict[str, Shown]:
 
 
 def has_values(name: str) -> bool:
-    """Whether what a picture shows is the same on every machine."""
+    """Whether a picture made quickly has the same values, on every machine.
+
+    A film has fewer frames then, and so other points along its trails.
+    """
+    if name.endswith(".gif"):
+        return False
     command = command_of(name)
     by_chance = command is not None and command.line.split()[1] in BY_CHANCE
     return not by_chance and name not in BY_CHANCE
