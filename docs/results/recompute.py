@@ -509,6 +509,20 @@ def repeats(results: Results) -> dict[str, int]:
     return {"problems": several, "same": same}
 
 
+def beaten(results: Results) -> dict[str, Any]:
+    """Where another run has less energy within 1 mm than the gradient's front of 50 points."""
+    share = 0.1  # per cent: more than rounding and tolerances of the points
+    excess = {
+        name: results.excess(runs[0])
+        for name in results.whole
+        if not Problem(name).kind.endswith("objectives")
+        and np.isfinite(results.least_energy[name])
+        and (runs := results.control(name))
+    }
+    worse = {name: value for name, value in excess.items() if value > share}
+    return {"problems": len(excess), "share": share, "excess": dict(sorted(worse.items()))}
+
+
 FEATURES = ("coefficients", "best_basin", "condition", "walk_residual", "walk_energy",
             "within_1mm", "within_5mm", "opposed")  # fmt: skip
 
@@ -766,6 +780,7 @@ def compute(folder: Path) -> dict[str, Any]:
         **objective_figures(results),
         "energy_by_terms": energy_by_terms(results, crossed),
         "repeats": repeats(results),
+        "beaten": beaten(results),
         "centre": both(results, centre, methods),
         "paper": both(results, centre, paper),
         "large": both(results, centre, searches_in(results, ("large",), 100_000, centre, 3)),
