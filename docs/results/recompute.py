@@ -649,12 +649,13 @@ def both(
 def efforts(results: Results) -> dict[str, Any]:
     """Runs, hours and seeds by axis, beside the runs of the plan."""
     with (results.folder / "plan.csv").open(newline="") as file:
-        plan = {row["axis"]: int(row["jobs"]) for row in csv.DictReader(file)}
+        planned = list(csv.DictReader(file))
     runs = defaultdict[str, list[Run]](list)
     for run in results.runs:
         runs[run.axis].append(run)
     return {
-        "plan": plan,
+        "plan": {row["axis"]: int(row["jobs"]) for row in planned},
+        "plan_hours": {row["axis"]: float(row["hours"]) for row in planned},
         "runs": {axis: len(found) for axis, found in runs.items()},
         "hours": {axis: sum(run.seconds for run in found) / 3600 for axis, found in runs.items()},
         "seeds": {axis: 1 + max(run.seed for run in found) for axis, found in runs.items()},

@@ -6,7 +6,6 @@ import importlib.util
 import json
 import platform
 import re
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ import jinja2
 import pandas as pd
 
 from .pictures import write_pictures
-from .run import plan_of
+from .run import plan_table
 from .tables import write_table
 from .words import short_label, spelled_budget
 
@@ -39,10 +38,8 @@ def write_page(results: Path, choose: Path | None = None) -> None:
 
 
 def write_plan(results: Path) -> None:
-    """How many jobs every axis has in all, as a table."""
-    count = Counter(planned.axis for planned in plan_of(results))
-    rows = pd.DataFrame({"axis": list(count), "jobs": list(count.values())})
-    write_table(rows, results / "plan.csv", 17)
+    """How many jobs every axis has in all, and their hours, as a table."""
+    write_table(plan_table(results).drop(columns="done"), results / "plan.csv", 3)
 
 
 def recomputed(results: Path) -> dict[str, Any]:

@@ -37,8 +37,7 @@ def plan_of(results: Path) -> list[Planned]:
 
 def done_keys(results: Path) -> set[tuple[str, str, str, str, int]]:
     """Keys of all runs that tables have."""
-    paths = sorted((results / "runs").glob("*.csv.gz"))
-    return {key_of(row) for path in paths for row in read_rows(path)}
+    return {key_of(row) for row in all_rows(results)}
 
 
 def part_of(text: str) -> tuple[int, int]:
@@ -180,15 +179,21 @@ def describe(folder: Path, results: Path) -> None:
     add_features(ordered, folder, results / "landscapes.csv")
 
 
-def print_plan(results: Path) -> None:
-    """Jobs and hours by axis, of the mean seconds of the runs that are there.
+def all_rows(results: Path) -> list[Row]:
+    """The rows of all tables."""
+    paths = sorted((results / "runs").glob("*.csv.gz"))
+    return [row for path in paths for row in read_rows(path)]
 
-    A method without runs is taken for the mean of all by its candidates. Beyond these hours each
-    job is judged, packed, and in every process rehearsed once.
+
+def plan_table(results: Path) -> pd.DataFrame:
+    """By axis: jobs of the plan, those that are done, and hours of all by the mean of those.
+
+    Hours are of the methods alone. A method without runs is taken for the mean of all by its
+    candidates. Beyond these hours each job is judged, packed, and in every process rehearsed once.
     """
     plan = plan_of(results)
-    paths = sorted((results / "runs").glob("*.csv.gz"))
-    rows = [row for path in paths for row in read_rows(path)]
+    rows = all_rows(results)
+    done = {key_of(row) for row in rows}
     seconds = defaultdict[tuple[str, str], list[float]](list)
     for row in rows:
         seconds[row["method"], row["budget"]].append(float(row["seconds"]))
@@ -199,7 +204,7 @@ def print_plan(results: Path) -> None:
         {
             "axis": planned.axis,
             "jobs": 1,
-            "done": 0,
+            "done": int(planned.key in done),
             "hours": usual.get(
                 (planned.method, str(planned.budget or "")), of_candidate * (planned.budget or 1e4)
             )
@@ -207,10 +212,14 @@ def print_plan(results: Path) -> None:
         }
         for planned in plan
     )
-    done = done_keys(results)
-    table["done"] = [int(planned.key in done) for planned in plan]
-    print(table.groupby("axis", sort=False).sum().round(2).to_string())
-    moves = len({planned.case.move.name for planned in plan})
-    print(f"signed ranks of {moves} moves can give p = {2 / 2**moves:.2g} at least, of 10 0.002")
+    return table.groupby("axis", sort=False).sum().reset_index()
+
+
+def print_plan(results: Path) -> None:
+    """Jobs, hours, and what the tests can tell."""
+    table = plan_table(results)
+    print(table.round(2).to_string(index=False))
+    for moves in (18, 10, 5):
+        print(f"signed ranks of {moves} moves can give p = {2 / 2**moves:.2g} at least")
     hours = f"{table['hours'].sum():.1f} hours of one core"
-    print(f"{len(plan)} jobs, {table['done'].sum()} done, {hours}")
+    print(f"{table['jobs'].sum()} jobs, {table['done'].sum()} done, {hours}")
