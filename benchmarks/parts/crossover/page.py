@@ -145,10 +145,10 @@ def times_of(log_ratio: float) -> str:
 
 def decision_in(page: str) -> str:
     """The lines between the marks."""
-    found = re.search(f"{re.escape(BEGIN)}\n(.*?){re.escape(END)}", page, re.DOTALL)
-    if found is None:
+    lines = re.search(f"{re.escape(BEGIN)}\n(.*?){re.escape(END)}", page, re.DOTALL)
+    if lines is None:
         raise ValueError("the page has no decision between its marks")
-    return found.group(1)
+    return lines.group(1)
 
 
 def with_decision(text: str, decision: str) -> str:

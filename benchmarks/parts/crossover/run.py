@@ -55,15 +55,15 @@ def refuse_axes(axes: Sequence[str]) -> None:
             raise ValueError(f"no axis is called {axis!r}; give one of {', '.join(AXES)}")
 
 
-def merge(results: Path, other: Path) -> None:
-    """Add the rows and scales of other results, as of another part."""
-    for path in sorted((other / "runs").glob("*.csv.gz")):
-        mine = results / "runs" / path.name
-        rows = {key_of(row): row for row in [*read_rows(path), *read_rows(mine)]}
-        write_rows(rows.values(), mine)
-    scales = [pd.read_csv(folder / "scales.csv") for folder in (results, other)]
-    table = pd.concat(scales).drop_duplicates("problem")
-    write_table(table.sort_values("problem"), results / "scales.csv", 10)
+def merge(results: Path, added: Path) -> None:
+    """Add the rows and scales of further results, as of another part."""
+    for path in sorted((added / "runs").glob("*.csv.gz")):
+        table = results / "runs" / path.name
+        rows = {key_of(row): row for row in [*read_rows(path), *read_rows(table)]}
+        write_rows(rows.values(), table)
+    scales = pd.concat([pd.read_csv(folder / "scales.csv") for folder in (results, added)])
+    scales = scales.drop_duplicates("problem").sort_values("problem")
+    write_table(scales, results / "scales.csv", 10)
 
 
 def missing_of(
@@ -75,10 +75,10 @@ def missing_of(
     """What is to be run still."""
     plan = plan_of(results)
     done = done_keys(results)
-    mine = plan[part[0] - 1 :: part[1]]
+    of_part = plan[part[0] - 1 :: part[1]]
     return [
         planned
-        for planned in mine
+        for planned in of_part
         if planned.key not in done
         and (not axes or planned.axis in axes)
         and (most_rounds is None or planned.round < most_rounds)
