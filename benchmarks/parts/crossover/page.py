@@ -13,7 +13,7 @@ from typing import Any
 import jinja2
 import pandas as pd
 
-from .pictures import write_pictures
+from .pictures import WAYS, write_pictures
 from .run import plan_table
 from .tables import write_table
 from .words import short_label, spelled_budget
@@ -81,6 +81,7 @@ def page_of(figures: Mapping[str, Any], results: Path) -> str:
         takes_derivatives=takes_derivatives,
         nearest=nearest,
         verdicts=verdicts,
+        ways=WAYS,
         row_of=row_of,
         begin=BEGIN,
         end=END,
