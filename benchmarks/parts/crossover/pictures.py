@@ -138,6 +138,7 @@ def labelled_lines(ax: Axes, lines: Mapping[str, tuple[Any, Any]], *, log_y: boo
         ax.annotate(
             name, (x, 10**place if log_y else place), xytext=(7, 0), textcoords="offset points",
             color=colour, fontsize=8, va="center", annotation_clip=False,
+            bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5},
         )  # fmt: skip
     ax.grid(alpha=0.25)
     ax.spines[["top", "right"]].set_visible(False)
