@@ -51,36 +51,36 @@ def parser() -> argparse.ArgumentParser:
 
 def main(typed: list[str] | None = None) -> int:
     """Run what is missing, or what else is asked for."""
-    given = parser().parse_args(typed)
+    options = parser().parse_args(typed)
 
     from parts.crossover.problems import read_moves
     from parts.crossover.run import describe, merge, part_of, print_plan, refuse_axes, run
 
     try:
-        part = part_of(given.part)
-        refuse_axes(given.axis)
+        part = part_of(options.part)
+        refuse_axes(options.axis)
     except ValueError as error:
         parser().error(str(error))
-    if given.plan:
-        print_plan(given.results)
-    elif given.merge:
-        merge(given.results, given.merge)
-    elif given.landscapes:
-        describe(given.folder, given.results)
-    elif given.page:
+    if options.plan:
+        print_plan(options.results)
+    elif options.merge:
+        merge(options.results, options.merge)
+    elif options.landscapes:
+        describe(options.folder, options.results)
+    elif options.page:
         from parts.crossover.page import write_page
 
-        write_page(given.results)
-    elif given.tune:
+        write_page(options.results)
+    elif options.tune:
         from parts.crossover.tuning import tune
 
-        moves = read_moves(given.results / "moves.csv")
-        table = given.results / "tuning.csv"
-        for method in given.tune:
-            tune(method, moves, given.budget, given.trials, given.folder, table)
+        moves = read_moves(options.results / "moves.csv")
+        table = options.results / "tuning.csv"
+        for method in options.tune:
+            tune(method, moves, options.budget, options.trials, options.folder, table)
     else:
-        workers = given.scheduler or given.workers
-        return run(given.folder, given.results, workers, part, given.axis, given.rounds)
+        workers = options.scheduler or options.workers
+        return run(options.folder, options.results, workers, part, options.axis, options.rounds)
     return 0
 
 

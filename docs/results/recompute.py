@@ -173,14 +173,14 @@ class Results:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.runs = read_runs(folder)
-        found = defaultdict[str, list[Array]](list)
+        points_of = defaultdict[str, list[Array]](list)
         energies = defaultdict[str, list[float]](list)
         for run in self.runs:
-            found[run.problem].append(run.points)
+            points_of[run.problem].append(run.points)
             if len(run.between):  # of two objectives alone
-                found[run.problem].append(run.between)
+                points_of[run.problem].append(run.between)
             energies[run.problem].append(run.energy)
-        self.whole = {name: best_known(np.vstack(points)) for name, points in found.items()}
+        self.whole = {name: best_known(np.vstack(points)) for name, points in points_of.items()}
         self.least_energy = {
             name: min(filter(np.isfinite, values), default=np.inf)
             for name, values in energies.items()
@@ -358,7 +358,7 @@ def searches_in(results: Results, axes: Sequence[str], budget: int, problems: Se
     for run in results.runs:
         if run.axis in axes and run.budget == budget and run.problem in names:
             count[run.label].add(run.problem)
-    return sorted((label, budget) for label, found in count.items() if len(found) >= least)
+    return sorted((label, budget) for label, known in count.items() if len(known) >= least)
 
 
 def takes_derivatives(label: str) -> bool:
@@ -403,8 +403,8 @@ def lines_over(
 
     def runs_at(method: str, terms: int, budget: int) -> dict[str, list[Run]]:
         spent = 0 if method == control else budget
-        found = {name: results.of(method, spent, name) for name in results.problems(terms)}
-        return {Problem(name).move: runs for name, runs in found.items() if runs}
+        runs_of = {name: results.of(method, spent, name) for name in results.problems(terms)}
+        return {Problem(name).move: runs for name, runs in runs_of.items() if runs}
 
     table = {
         (method, x): runs_at(method, terms, budget)
@@ -431,45 +431,48 @@ def tuned(results: Results) -> dict[str, Any]:
         return {}
     with path.open(newline="") as file:
         trials = list(csv.DictReader(file))
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for method in sorted({trial["method"] for trial in trials}):
-        mine = [trial for trial in trials if trial["method"] == method]
-        best = min(mine, key=lambda trial: float(trial["score"]))
-        runs = [run for run in results.runs if run.axis == "tuned" and run.method == method]
-        problems = sorted(
-            {run.problem for run in runs if results.of(method, run.budget, run.problem)}
-        )
-        labels = sorted({run.label for run in runs})
-        found[method] = {
-            "trials": len(mine),
+        of_method = [trial for trial in trials if trial["method"] == method]
+        best = min(of_method, key=lambda trial: float(trial["score"]))
+        figures[method] = {
+            "trials": len(of_method),
             "budget": int(best["budget"]),
-            "default_score": 10 ** float(mine[0]["score"]),
+            "default_score": 10 ** float(of_method[0]["score"]),
             "best_score": 10 ** float(best["score"]),
             "settings": json.loads(best["settings"]),
+            **on_testing(results, method),
         }
-        if labels and len(problems) > 1:
-            label = labels[-1]
-            for measure in MEASURES:
-                pairs = np.array(
-                    [
-                        [
-                            results.median(
-                                results.of(name, 10_000, problem), results.missing, measure
-                            )
-                            for name in (method, label)
-                        ]
-                        for problem in problems
-                        if results.of(label, 10_000, problem)
-                    ]
-                )
-                found[method][measure] = {
-                    "moves": len(pairs),
-                    "default": float(np.median(pairs[:, 0])),
-                    "tuned": float(np.median(pairs[:, 1])),
-                    "nearer": int((pairs[:, 1] < pairs[:, 0]).sum()),
-                    "p": signed_ranks(pairs[:, 1] - pairs[:, 0]),
-                }
-    return found
+    return figures
+
+
+def on_testing(results: Results, method: str) -> dict[str, Any]:
+    """Default and tuned settings on the moves of testing, by measure; nothing where not run."""
+    runs = [run for run in results.runs if run.axis == "tuned" and run.method == method]
+    problems = sorted({run.problem for run in runs})
+    problems = [name for name in problems if results.of(method, 10_000, name)]
+    if not problems:
+        return {}
+    label = runs[-1].label
+    figures = {}
+    for measure in MEASURES:
+        default, better = (
+            np.array(
+                [
+                    results.median(results.of(name, 10_000, problem), results.missing, measure)
+                    for problem in problems
+                ]
+            )
+            for name in (method, label)
+        )
+        figures[measure] = {
+            "moves": len(problems),
+            "default": float(np.median(default)),
+            "tuned": float(np.median(better)),
+            "nearer": int((better < default).sum()),
+            "p": signed_ranks(better - default),
+        }
+    return figures
 
 
 def attained(results: Results, problems: Sequence[str], labels: Sequence[tuple[str, int]],
@@ -507,6 +510,20 @@ def repeats(results: Results) -> dict[str, int]:
             for run in runs[1:]
         )
     return {"problems": several, "same": same}
+
+
+def beaten(results: Results) -> dict[str, Any]:
+    """Where another run has less energy within 1 mm than the gradient's front of 50 points."""
+    share = 0.1  # per cent: more than rounding and tolerances of the points
+    excess = {
+        name: results.excess(runs[0])
+        for name in results.whole
+        if not Problem(name).kind.endswith("objectives")
+        and np.isfinite(results.least_energy[name])
+        and (runs := results.control(name))
+    }
+    worse = {name: value for name, value in excess.items() if value > share}
+    return {"problems": len(excess), "share": share, "excess": dict(sorted(worse.items()))}
 
 
 FEATURES = ("coefficients", "best_basin", "condition", "walk_residual", "walk_energy",
@@ -635,15 +652,16 @@ def both(
 def efforts(results: Results) -> dict[str, Any]:
     """Runs, hours and seeds by axis, beside the runs of the plan."""
     with (results.folder / "plan.csv").open(newline="") as file:
-        plan = {row["axis"]: int(row["jobs"]) for row in csv.DictReader(file)}
+        planned = list(csv.DictReader(file))
     runs = defaultdict[str, list[Run]](list)
     for run in results.runs:
         runs[run.axis].append(run)
     return {
-        "plan": plan,
-        "runs": {axis: len(found) for axis, found in runs.items()},
-        "hours": {axis: sum(run.seconds for run in found) / 3600 for axis, found in runs.items()},
-        "seeds": {axis: 1 + max(run.seed for run in found) for axis, found in runs.items()},
+        "plan": {row["axis"]: int(row["jobs"]) for row in planned},
+        "plan_hours": {row["axis"]: float(row["hours"]) for row in planned},
+        "runs": {axis: len(rows) for axis, rows in runs.items()},
+        "hours": {axis: sum(run.seconds for run in rows) / 3600 for axis, rows in runs.items()},
+        "seeds": {axis: 1 + max(run.seed for run in rows) for axis, rows in runs.items()},
         "problems": len(results.whole),
     }
 
@@ -749,8 +767,8 @@ def compute(folder: Path) -> dict[str, Any]:
     """All figures."""
     results = Results(folder)
     centre = results.problems()
-    found = searches_in(results, ("crossing",), 10_000, results.problems(4), 5)
-    crossed = [label for label, _ in found]
+    in_crossing = searches_in(results, ("crossing",), 10_000, results.problems(4), 5)
+    crossed = [label for label, _ in in_crossing]
     central = searches_in(results, ("centre",), 10_000, centre, 10)
     methods = [*central, *gradient_labels(results, centre)]
     times = np.logspace(-2, 1.5, 36)
@@ -766,6 +784,7 @@ def compute(folder: Path) -> dict[str, Any]:
         **objective_figures(results),
         "energy_by_terms": energy_by_terms(results, crossed),
         "repeats": repeats(results),
+        "beaten": beaten(results),
         "centre": both(results, centre, methods),
         "paper": both(results, centre, paper),
         "large": both(results, centre, searches_in(results, ("large",), 100_000, centre, 3)),
@@ -807,11 +826,11 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     parser.add_argument("--write", action="store_true")
-    given = parser.parse_args()
+    options = parser.parse_args()
     folder = Path(__file__).parent
     figures = json.loads(json.dumps(compute(folder)))
     path = folder / "figures.json"
-    if given.write:
+    if options.write:
         path.write_text(json.dumps(figures, indent=1) + "\n")
         return 0
     lines = differences(json.loads(path.read_text()), figures)

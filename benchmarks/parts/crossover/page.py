@@ -6,7 +6,6 @@ import importlib.util
 import json
 import platform
 import re
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,8 +13,8 @@ from typing import Any
 import jinja2
 import pandas as pd
 
-from .pictures import write_pictures
-from .run import plan_of
+from .pictures import WAYS, write_pictures
+from .run import plan_table
 from .tables import write_table
 from .words import short_label, spelled_budget
 
@@ -39,10 +38,8 @@ def write_page(results: Path, choose: Path | None = None) -> None:
 
 
 def write_plan(results: Path) -> None:
-    """How many jobs every axis has in all, as a table."""
-    count = Counter(planned.axis for planned in plan_of(results))
-    rows = pd.DataFrame({"axis": list(count), "jobs": list(count.values())})
-    write_table(rows, results / "plan.csv", 17)
+    """How many jobs every axis has in all, and their hours, as a table."""
+    write_table(plan_table(results).drop(columns="done"), results / "plan.csv", 3)
 
 
 def recomputed(results: Path) -> dict[str, Any]:
@@ -84,6 +81,7 @@ def page_of(figures: Mapping[str, Any], results: Path) -> str:
         takes_derivatives=takes_derivatives,
         nearest=nearest,
         verdicts=verdicts,
+        ways=WAYS,
         row_of=row_of,
         begin=BEGIN,
         end=END,
@@ -148,10 +146,10 @@ def times_of(log_ratio: float) -> str:
 
 def decision_in(page: str) -> str:
     """The lines between the marks."""
-    found = re.search(f"{re.escape(BEGIN)}\n(.*?){re.escape(END)}", page, re.DOTALL)
-    if found is None:
+    lines = re.search(f"{re.escape(BEGIN)}\n(.*?){re.escape(END)}", page, re.DOTALL)
+    if lines is None:
         raise ValueError("the page has no decision between its marks")
-    return found.group(1)
+    return lines.group(1)
 
 
 def with_decision(text: str, decision: str) -> str:

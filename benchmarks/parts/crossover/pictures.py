@@ -130,15 +130,16 @@ def labelled_lines(ax: Axes, lines: Mapping[str, tuple[Any, Any]], *, log_y: boo
     low, high = ax.get_ylim()
     transform = np.log10 if log_y else np.asarray
     gap = 0.055 * (transform(high) - transform(low))
-    ends.sort()
-    places = list[float]()
-    for y, *_ in ends:
+    last = dict[float, float]()
+    for y, name, colour, x in sorted(ends):
         place = float(transform(max(y, low)))
-        places.append(max(place, places[-1] + gap) if places else place)
-    for place, (_, name, colour, x) in zip(places, ends, strict=True):
-        y = 10**place if log_y else place
-        ax.annotate(name, (x, y), xytext=(7, 0), textcoords="offset points", color=colour,
-                    fontsize=8, va="center", annotation_clip=False)  # fmt: skip
+        place = max(place, last[x] + gap) if x in last else place
+        last[x] = place
+        ax.annotate(
+            name, (x, 10**place if log_y else place), xytext=(7, 0), textcoords="offset points",
+            color=colour, fontsize=8, va="center", annotation_clip=False,
+            bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5},
+        )  # fmt: skip
     ax.grid(alpha=0.25)
     ax.spines[["top", "right"]].set_visible(False)
 
@@ -228,9 +229,9 @@ def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
 def noise_figure(noise: Mapping[str, Any]) -> Figure:
     """What searches lack where they see objectives with noise, and the gradient, which has none."""
     rows = {
-        share: [{**row, "method": row["method"].partition(" ")[0]} for row in found]
-        for share, found in noise.items()
-        if found
+        share: [{**row, "method": row["method"].partition(" ")[0]} for row in compared]
+        for share, compared in noise.items()
+        if compared
     }
     return _over_groups(rows, {"0": "no noise", "0.01": "1 %", "0.05": "5 %"}, 7.0)
 

@@ -37,8 +37,7 @@ def plan_of(results: Path) -> list[Planned]:
 
 def done_keys(results: Path) -> set[tuple[str, str, str, str, int]]:
     """Keys of all runs that tables have."""
-    paths = sorted((results / "runs").glob("*.csv.gz"))
-    return {key_of(row) for path in paths for row in read_rows(path)}
+    return {key_of(row) for row in all_rows(results)}
 
 
 def part_of(text: str) -> tuple[int, int]:
@@ -56,15 +55,15 @@ def refuse_axes(axes: Sequence[str]) -> None:
             raise ValueError(f"no axis is called {axis!r}; give one of {', '.join(AXES)}")
 
 
-def merge(results: Path, other: Path) -> None:
-    """Add the rows and scales of other results, as of another part."""
-    for path in sorted((other / "runs").glob("*.csv.gz")):
-        mine = results / "runs" / path.name
-        rows = {key_of(row): row for row in [*read_rows(path), *read_rows(mine)]}
-        write_rows(rows.values(), mine)
-    scales = [pd.read_csv(folder / "scales.csv") for folder in (results, other)]
-    table = pd.concat(scales).drop_duplicates("problem")
-    write_table(table.sort_values("problem"), results / "scales.csv", 10)
+def merge(results: Path, added: Path) -> None:
+    """Add the rows and scales of further results, as of another part."""
+    for path in sorted((added / "runs").glob("*.csv.gz")):
+        table = results / "runs" / path.name
+        rows = {key_of(row): row for row in [*read_rows(path), *read_rows(table)]}
+        write_rows(rows.values(), table)
+    scales = pd.concat([pd.read_csv(folder / "scales.csv") for folder in (results, added)])
+    scales = scales.drop_duplicates("problem").sort_values("problem")
+    write_table(scales, results / "scales.csv", 10)
 
 
 def missing_of(
@@ -76,10 +75,10 @@ def missing_of(
     """What is to be run still."""
     plan = plan_of(results)
     done = done_keys(results)
-    mine = plan[part[0] - 1 :: part[1]]
+    of_part = plan[part[0] - 1 :: part[1]]
     return [
         planned
-        for planned in mine
+        for planned in of_part
         if planned.key not in done
         and (not axes or planned.axis in axes)
         and (most_rounds is None or planned.round < most_rounds)
@@ -180,15 +179,21 @@ def describe(folder: Path, results: Path) -> None:
     add_features(ordered, folder, results / "landscapes.csv")
 
 
-def print_plan(results: Path) -> None:
-    """Jobs and hours by axis, of the mean seconds of the runs that are there.
+def all_rows(results: Path) -> list[Row]:
+    """The rows of all tables."""
+    paths = sorted((results / "runs").glob("*.csv.gz"))
+    return [row for path in paths for row in read_rows(path)]
 
-    A method without runs is taken for the mean of all by its candidates. Beyond these hours each
-    job is judged, packed, and in every process rehearsed once.
+
+def plan_table(results: Path) -> pd.DataFrame:
+    """By axis: jobs of the plan, those that are done, and hours of all by the mean of those.
+
+    Hours are of the methods alone. A method without runs is taken for the mean of all by its
+    candidates. Beyond these hours each job is judged, packed, and in every process rehearsed once.
     """
     plan = plan_of(results)
-    paths = sorted((results / "runs").glob("*.csv.gz"))
-    rows = [row for path in paths for row in read_rows(path)]
+    rows = all_rows(results)
+    done = {key_of(row) for row in rows}
     seconds = defaultdict[tuple[str, str], list[float]](list)
     for row in rows:
         seconds[row["method"], row["budget"]].append(float(row["seconds"]))
@@ -199,7 +204,7 @@ def print_plan(results: Path) -> None:
         {
             "axis": planned.axis,
             "jobs": 1,
-            "done": 0,
+            "done": int(planned.key in done),
             "hours": usual.get(
                 (planned.method, str(planned.budget or "")), of_candidate * (planned.budget or 1e4)
             )
@@ -207,10 +212,14 @@ def print_plan(results: Path) -> None:
         }
         for planned in plan
     )
-    done = done_keys(results)
-    table["done"] = [int(planned.key in done) for planned in plan]
-    print(table.groupby("axis", sort=False).sum().round(2).to_string())
-    moves = len({planned.case.move.name for planned in plan})
-    print(f"signed ranks of {moves} moves can give p = {2 / 2**moves:.2g} at least, of 10 0.002")
+    return table.groupby("axis", sort=False).sum().reset_index()
+
+
+def print_plan(results: Path) -> None:
+    """Jobs, hours, and what the tests can tell."""
+    table = plan_table(results)
+    print(table.round(2).to_string(index=False))
+    for moves in (18, 10, 5):
+        print(f"signed ranks of {moves} moves can give p = {2 / 2**moves:.2g} at least")
     hours = f"{table['hours'].sum():.1f} hours of one core"
-    print(f"{len(plan)} jobs, {table['done'].sum()} done, {hours}")
+    print(f"{table['jobs'].sum()} jobs, {table['done'].sum()} done, {hours}")

@@ -68,7 +68,7 @@ def bench(given: Given) -> None:
     two objectives. With --objectives the gradient finds the reference fronts first. --noise is of
     the searches: the gradient is that of the model, which has none.
     Every run is a file in the folder as soon as it is done; the same line again goes on after any
-    stop.
+    stop. When a search is worth its candidates at all: docs/results/report.md.
 
     \b
     Examples:
