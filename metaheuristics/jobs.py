@@ -111,6 +111,8 @@ class Job:
                     f"{method} takes the gradient of the model, which has no noise; leave the "
                     "noise out"
                 )
+        elif isinstance(method, str):
+            preset_of(method.removesuffix(POLISH)).refuse_unfit(len(problem.objectives), share)
         for name, value in fields.items():
             object.__setattr__(self, name, value)
 

@@ -139,6 +139,7 @@ def search(
     if isinstance(algorithm, str):
         method = algorithm
         preset = preset_of(algorithm)
+        preset.refuse_unfit(len(names), noise)
         chosen, stated = _of_preset(preset, task, population, evaluations, settings, len(names))
         size = preset.evaluations(stated["population"], 1, len(names))
         usual = preset.generations

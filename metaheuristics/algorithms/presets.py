@@ -49,6 +49,10 @@ class Preset:
     is_function : bool
         Whether it is a function of a problem's recorded function, a seed and a budget, which has no
         population: a generation is a candidate.
+    residual_and_energy : bool
+        Whether it is for these two objectives alone.
+    takes_gradients : bool
+        Whether it takes steps of the model's gradient, which no noise reaches.
     most : int
         Most individuals. pymoo's methods compare all pairs: these fill up to 2 GB of memory.
     """
@@ -65,6 +69,8 @@ class Preset:
     keeps_limits: bool = True
     needs: str = ""
     is_function: bool = False
+    residual_and_energy: bool = False
+    takes_gradients: bool = False
     most: int = 10_000
 
     @property
@@ -135,6 +141,19 @@ class Preset:
         They are fewer only if crossover finds too few new ones.
         """
         return (objectives if self.by_swarms else 1) * population * generations
+
+    def unfit_for(self, objectives: int, noise: float = 0.0) -> str:
+        """Why it is not for a problem of so many objectives, or with noise; empty where it is."""
+        if self.residual_and_energy and objectives > 2:
+            return f"{self.name} is for residual and energy alone, not for {objectives} objectives"
+        if self.takes_gradients and noise > 0:
+            return f"{self.name} takes steps of the model's gradient, which has no noise"
+        return ""
+
+    def refuse_unfit(self, objectives: int, noise: float = 0.0) -> None:
+        """Refuse a problem that it is not for; ValueError says what to give."""
+        if reason := self.unfit_for(objectives, noise):
+            raise ValueError(f"{reason}; give another method, as moead-de")
 
     def refuse_less_than_one(self, evaluations: int, population: int, objectives: int = 2) -> None:
         """Refuse whole numbers of evaluations that are less than a generation."""
@@ -291,6 +310,8 @@ _ALL = (
         population=50,
         generations=800,
         by_directions=True,
+        residual_and_energy=True,
+        takes_gradients=True,
     ),
     Preset(
         "mo-cma-es",
@@ -406,6 +427,7 @@ _ALL = (
         population=1,
         generations=40_000,
         is_function=True,
+        residual_and_energy=True,
     ),
     Preset(
         "random",

@@ -125,6 +125,10 @@ def jobs_of(
                 if problem.task.limits and preset is not None and not preset.keeps_limits:
                     left_out[f"{name} knows no limits: left out on {problem.name}"] = None
                     continue
+                unfit = preset.unfit_for(len(problem.objectives), noise) if preset else ""
+                if unfit:
+                    left_out[f"{unfit}: left out on {problem.name}"] = None
+                    continue
                 if name in GRADIENT:
                     jobs.append(Job(problem, name, run_seed, None, of_method[name]))
                     if noise:

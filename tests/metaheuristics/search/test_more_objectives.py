@@ -1,6 +1,7 @@
 """Searches of three objectives and four: every preset, what enters, directions, hypervolumes."""
 
 import json
+from dataclasses import replace
 from math import comb
 
 import moocore
@@ -13,20 +14,25 @@ from pymoo.util.ref_dirs import get_reference_directions
 from small_searches import SIXTH, exactly
 
 import quietarm as qa
-from quietarm.metaheuristics import PRESETS
+from quietarm.metaheuristics import PRESETS, Job, problem_of
 from quietarm.metaheuristics.algorithms.building import directions
 from quietarm.metaheuristics.archive import Archive, entering
 from quietarm.metaheuristics.objective.stated_figures import check_figures
 from quietarm.metaheuristics.score import CORNER, Scale, hypervolume, share_of_box
 from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import CycloidPolynomial
+from quietarm.studies.bench.planned_jobs import jobs_of
 
 THREE = ("residual", "energy", "peak_torque")
 PROFILE = CycloidPolynomial(2)
 SMALL = {"bound": 0.2, "population": 12, "generations": 3, "objectives": THREE}
 
 
-@pytest.mark.parametrize("name", [name for name in PRESETS if not PRESETS[name].needs])
+OF_TWO = [name for name in PRESETS if PRESETS[name].residual_and_energy]
+OF_ANY = [name for name in PRESETS if name not in OF_TWO and not PRESETS[name].needs]
+
+
+@pytest.mark.parametrize("name", OF_ANY)
 def test_every_method_searches_three_objectives_and_its_seed_decides(name):
     one, same = (qa.search(SIXTH, PROFILE, algorithm=name, seed=2, **SMALL) for _ in range(2))
     assert exactly(one) == exactly(same)
@@ -34,6 +40,27 @@ def test_every_method_searches_three_objectives_and_its_seed_decides(name):
     assert one.record.evaluations == PRESETS[name].evaluations(12, 3, objectives=3)
     assert moocore.is_nondominated(one.objective_values).all()
     check_figures(one, name)
+
+
+@pytest.mark.parametrize("name", OF_TWO)
+def test_what_is_for_residual_and_energy_alone_says_so(name):
+    refusal = f"{name} is for residual and energy alone, not for 3 objectives; give another"
+    with pytest.raises(ValueError, match=refusal):
+        qa.search(SIXTH, PROFILE, algorithm=name, bound=0.2, evaluations=20, objectives=THREE)
+    problem = replace(problem_of("single-link-30deg-0.8s"), objectives=THREE)
+    with pytest.raises(ValueError, match=refusal):
+        Job(problem, name, budget=2000)
+
+
+def test_steps_of_the_models_gradient_have_no_noise():
+    refusal = "memetic takes steps of the model's gradient, which has no noise; give another"
+    with pytest.raises(ValueError, match=refusal):
+        qa.search(SIXTH, PROFILE, algorithm="memetic", bound=0.2, evaluations=500, noise=0.01)
+    jobs, words = jobs_of(
+        [problem_of("single-link-30deg-0.8s")], ["memetic", "gde3"], 1, 500, noise=0.01
+    )
+    assert [job.method for job in jobs] == ["gde3"]
+    assert "memetic takes steps of the model's gradient, which has no noise: left out" in words[0]
 
 
 def test_a_swarm_each_for_vepso():
