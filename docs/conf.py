@@ -36,6 +36,7 @@ extensions = [
     "sphinx_inline_tabs",
     "glossary_links",
     "search_snippets",
+    "whole_words",
 ]
 root_doc = "docs/index"
 include_patterns = [

@@ -1,4 +1,4 @@
-"""The pictures of the pages: each is as its command makes it, and none older than what it shows."""
+"""The pictures of the pages: each is its command's, and none is older than what it shows."""
 
 import importlib.util
 import re
@@ -19,22 +19,22 @@ def load():
     return module
 
 
-made = load()
+maker = load()
 REMEDY = "run python docs/make_pictures.py {}"
 
 
 def test_every_picture_of_a_page_says_what_it_shows_and_nothing_else_does():
-    pictures = {path.name for path in made.IMAGES.iterdir()} - {made.SHOWN.name}
-    assert set(made.names()) == pictures == set(made.kept())
+    pictures = {path.name for path in maker.IMAGES.iterdir()} - {maker.SHOWN.name}
+    assert set(maker.names()) == pictures == set(maker.recorded())
 
 
-@pytest.mark.parametrize("name", made.names())
+@pytest.mark.parametrize("name", maker.names())
 def test_a_picture_is_that_of_the_command_on_its_page(name):
-    shown = made.kept()[name]
-    content = (made.IMAGES / name).read_bytes()
-    assert shown["file"] == made.digest(content), REMEDY.format(name)
-    if name not in made.MAKERS and not made.python_of(name):
-        assert shown["command"] == made.command_of(name).line, REMEDY.format(name)
+    shown = maker.recorded()[name]
+    content = (maker.IMAGES / name).read_bytes()
+    assert shown["file"] == maker.digest(content), REMEDY.format(name)
+    if name not in maker.MAKERS and not maker.python_of(name):
+        assert shown["command"] == maker.command_of(name).line, REMEDY.format(name)
 
 
 def test_the_gallery_has_a_dozen_pictures_each_below_its_one_command():
@@ -43,41 +43,41 @@ def test_the_gallery_has_a_dozen_pictures_each_below_its_one_command():
     pairs = re.findall(pair, page)
     assert len(pairs) == page.count("![") == page.count("```console") == 12
     for line, name in pairs:
-        assert made.command_of(name).line == line
+        assert maker.command_of(name).line == line
 
 
 def chromium():
-    return any(map(made.shutil.which, ("chromium", "chromium-browser", "google-chrome")))
+    return any(map(maker.shutil.which, ("chromium", "chromium-browser", "google-chrome")))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", made.names())
+@pytest.mark.parametrize("name", maker.names())
 def test_no_picture_is_older_than_what_it_shows(name):
     if name == "explore.png":
         pytest.importorskip("playwright.sync_api")
         if not chromium():
             pytest.skip("there is no Chromium here")
-    _, now = made.make(name, quick=True)
-    assert made.differences(made.kept()[name], now, made.has_values(name)) == [], REMEDY.format(
-        name
+    _, now = maker.make(name, quick=True)
+    assert maker.differences(maker.recorded()[name], now, maker.has_values(name)) == [], (
+        REMEDY.format(name)
     )
 
 
 def test_a_picture_is_older_where_words_looks_or_values_are_others():
     line = ["plan", "#0072b2", "-", "None", [0.0, 1.0], [0.0, 0.5]]
     before = {"words": ["energy # J"], "lines": [line], "areas": [[0.5, 0.25]]}
-    assert made.differences(before, before, with_values=True) == []
+    assert maker.differences(before, before, with_values=True) == []
     near = {**before, "lines": [[*line[:5], [0.0, 0.501]]]}  # another machine
-    assert made.differences(before, near, with_values=True) == []
+    assert maker.differences(before, near, with_values=True) == []
     far = {**before, "lines": [[*line[:5], [0.0, 0.6]]]}
-    assert made.differences(before, far, with_values=True) == ["other values of plan"]
-    assert made.differences(before, far, with_values=False) == []
+    assert maker.differences(before, far, with_values=True) == ["other values of plan"]
+    assert maker.differences(before, far, with_values=False) == []
     green = {**before, "lines": [["plan", "#009e73", *line[2:]]]}
-    assert made.differences(before, green, with_values=False) == ["lines with other looks"]
+    assert maker.differences(before, green, with_values=False) == ["lines with other looks"]
     words = {**before, "words": ["power [W]"]}
-    assert made.differences(before, words, with_values=True) == [
+    assert maker.differences(before, words, with_values=True) == [
         "no longer: energy # J",
         "new: power [W]",
     ]
     other = {**before, "areas": [[0.5, 0.3]]}
-    assert made.differences(before, other, with_values=True) == ["other values of an area"]
+    assert maker.differences(before, other, with_values=True) == ["other values of an area"]
