@@ -53,7 +53,7 @@ def toppra_motion(task: PointToPoint) -> FreeMotion:
         )
     grid = np.linspace(0.0, 1.0, _POINTS)
     with _quiet():
-        program = TOPPRA(_constraints(task, limits), _way_of(task), gridpoints=grid)
+        program: Any = TOPPRA(_constraints(task, limits), _way_of(task), gridpoints=grid)
         _, speed, _ = program.compute_parameterization(0.0, 0.0)
     if speed is None:
         raise ValueError("toppra finds no motion; give wider limits")
@@ -89,8 +89,13 @@ def _way_of(task: PointToPoint) -> Any:
     class Way(AbstractGeometricPath):
         """From the start, 0, to the target, 1."""
 
-        path_interval = np.array([0.0, 1.0])
-        dof = len(task.plant.joint_names)
+        @property
+        def path_interval(self) -> Array:
+            return np.array([0.0, 1.0])
+
+        @property
+        def dof(self) -> int:
+            return len(task.plant.joint_names)
 
         def __call__(self, path_positions: Any, order: int = 0) -> Array:
             rows = _along(task, path_positions)[order]
