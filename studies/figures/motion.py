@@ -289,8 +289,8 @@ def _figure_of_joints(
     axes = _panels_of_joints(figure, upper, lines, of_joints) if of_joints else []
     lower = grid[1].subgridspec(1, len(below) + 1)  # the last one is the legend's
     last = list[Axes]()
-    for (quantity, curve), place in zip(below, lower):
-        ax = _draw(lines, quantity, axes_or_new(figure.add_subplot(place)), curve)
+    for place, (quantity, curve) in enumerate(below):
+        ax = _draw(lines, quantity, axes_or_new(figure.add_subplot(lower[place])), curve)
         if sum(name == quantity for name, _ in below) > 1:
             ax.set_title(ax.get_title(loc="left") + _which_tip(task.plant, curve), **TITLE)
         last.append(ax)

@@ -118,9 +118,8 @@ def _window(motions: Sequence[JudgedMotion]) -> float | None:
 
 def motions_figure(motions: Sequence[JudgedMotion], title: str, tip_unit: str = "m") -> Figure:
     """Draw motions over each other: `draw_motions`, and `draw_robustness` for each error."""
-    with_curve = [motion for motion in motions if motion.robustness is not None]
-    curves = {motion.name: motion.robustness for motion in with_curve}
-    meanings = [motion.meaning for motion in with_curve]
+    curves = {motion.name: motion.robustness for motion in motions if motion.robustness is not None}
+    meanings = [motion.meaning for motion in motions if motion.robustness is not None]
     names = list(next(iter(curves.values())).ranges) if curves else []
     caption = caption_of_judged(motions, tip_unit)
     figure, axes = side_by_side(1 + len(names), caption, raised(title), width=6.0)
