@@ -111,6 +111,7 @@ def draw_parallel(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     names = ["\n".join([*objective.label.split(), _unit(objective)]) for objective in objectives]
     ax.set_xticks(places, names, fontsize=8)
     ax.set_yticks([])
+    ax.set_ylabel("from the least to the largest [unit below]")
     for place, objective, low, size in zip(places, objectives, least, extent):
         at_rest = objective.name == RESIDUAL and low < REST
         ends = [f"{end:.3g}" for end in _shown(objective, np.array([low, low + size]))]

@@ -1,5 +1,8 @@
 """The colours that a picture is drawn in."""
 
+from typing import Any
+
+from matplotlib.artist import Artist
 from matplotlib.collections import Collection, QuadMesh
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
@@ -18,7 +21,7 @@ def inks_of(figure: Figure) -> set[str]:
     """Colours of all that a figure shows, without their opacity, beside matplotlib's own."""
     inks = set()
     for artist in figure.findobj():
-        if not artist.get_visible() or isinstance(artist, OVER_AN_AREA):
+        if not artist.get_visible() or has_a_scale(artist):
             continue
         if isinstance(artist, Line2D):
             inks |= {artist.get_color(), artist.get_markerfacecolor()}
@@ -32,6 +35,13 @@ def inks_of(figure: Figure) -> set[str]:
     return hexadecimal - OF_MATPLOTLIB
 
 
+def has_a_scale(artist: Artist) -> bool:
+    """Whether its colours are values: of an area, or of points that are coloured by a quantity."""
+    by_value = isinstance(artist, Collection) and artist.get_array() is not None
+    return by_value or isinstance(artist, OVER_AN_AREA)
+
+
 def scales_of(figure: Figure) -> set[str]:
-    """Names of the scales of colours over areas."""
-    return {artist.get_cmap().name for kind in OVER_AN_AREA for artist in figure.findobj(kind)}
+    """Names of the scales of colours."""
+    scaled: Any = filter(has_a_scale, figure.findobj())
+    return {artist.get_cmap().name for artist in scaled}

@@ -42,6 +42,20 @@ def gradient(front_of):
 
 
 @pytest.fixture(scope="module")
+def surface(task):
+    """Motions with three objectives."""
+    random = np.random.default_rng(0)
+    return qa.Front.from_coefficients(
+        task,
+        random.uniform(-0.1, 0.1, (12, 2)),
+        method="random",
+        profile=CycloidPolynomial(2),
+        bound=0.2,
+        objectives=("residual", "energy", "peak_torque"),
+    )
+
+
+@pytest.fixture(scope="module")
 def machine():
     """A swing of 3.2 Hz, twice, and the beam that it is of."""
     time = np.arange(0, 3, 0.005)
@@ -52,7 +66,7 @@ def machine():
 
 
 @pytest.fixture(scope="module")
-def figures(task, plan, robust, seeds, gradient, machine):
+def figures(task, plan, robust, seeds, gradient, surface, machine):
     """Every public figure by its name, and a frame of a film."""
     named = {"plan": plan, "robust plan": robust}
     lines = [Line(motion, name) for name, motion in named.items()]
@@ -70,6 +84,8 @@ def figures(task, plan, robust, seeds, gradient, machine):
         "polish_figure": of.polish_figure(seeds[0], polish),
         "draw_fronts": of.draw_fronts([gradient, *seeds]).figure,
         "draw_hypervolume": of.draw_hypervolume(seeds).figure,
+        "draw_peak": of.draw_peak([surface]).figure,
+        "draw_parallel": of.draw_parallel([surface, surface]).figure,
         "draw_seed_energies": of.draw_seed_energies(seeds).figure,
         "comparison_figure": of.comparison_figure(comparison),
         "draw_comparison": of.draw_comparison(comparison, small=True).figure,
@@ -98,7 +114,10 @@ def test_titles_stand_left_and_axes_have_units(figures):
             assert ax.get_title() == "", name  # that in the middle
             if ax.axison and ax.lines:
                 # a panel over time has its quantity with its unit at the head of the axis
-                heads = [ax.get_ylabel() + ax.get_title(loc="left"), ax.get_xlabel() or "[s]"]
+                # parallel coordinates have a unit at each of their ticks
+                ticks = "".join(label.get_text() for label in ax.get_xticklabels())
+                below = ax.get_xlabel() or (ticks if "[" in ticks else "[s]")
+                heads = [ax.get_ylabel() + ax.get_title(loc="left"), below]
                 counted = ("ring-down", "candidates evaluated", "seed (x:", "share of the box")
                 for words in heads:
                     assert "[" in words or any(word in words for word in counted), (name, words)
