@@ -10,20 +10,17 @@ Notebooks are shown as they are committed, with outputs that the tests hold agai
 import re
 import shutil
 import sys
-from dataclasses import replace
 from importlib import import_module
-from math import pi
 from pathlib import Path
 
 from docutils import nodes
 from latex2mathml.converter import convert
 
-import quietarm as qa
 from quietarm import __version__
 from quietarm.studies.cli.application import COMMANDS
-from quietarm.studies.export import trade_off
 
 sys.path.insert(0, str(Path(__file__).with_name("_extensions")))
+from site_front import page_of_fronts  # beside the extensions
 
 project, author, release = "quietarm", "The quietarm developers", __version__
 copyright = f"2026, {author}"  # noqa: A001  # as Sphinx calls it
@@ -159,19 +156,9 @@ def _write_front(app):
     """
     if app.builder.format != "html":
         return
-    link, arm = qa.SingleLinkManipulator(), qa.ArmOnFlexibleLink()
-    sixth = qa.PointToPoint(link, target=pi / 6, duration=0.8)
-    weaker = replace(sixth, torque_limit=0.15)
-    half = qa.PointToPoint(arm, target=pi / 2, duration=0.8)
-    fronts = {
-        "Flexible link": qa.epsilon_front(sixth, bound=0.2),
-        "Same link, weaker motor": qa.epsilon_front(weaker, bound=0.2),
-        "Arm on a flexible link": qa.epsilon_front(half, bound=0.5),
-        "searched": qa.search(sixth, algorithm="nsga2", bound=0.2, seed=0),
-    }
     folder = Path(app.outdir, "docs")
     folder.mkdir(parents=True, exist_ok=True)
-    trade_off(fronts).save(folder / "front.html")
+    page_of_fronts().save(folder / "front.html")
     # and the pages that notebooks show
     notebooks = Path(app.outdir, "notebooks")
     notebooks.mkdir(exist_ok=True)

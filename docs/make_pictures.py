@@ -201,46 +201,75 @@ def fronts_compared(quick: bool) -> tuple[bytes, Shown]:
     return Path("front.png").read_bytes(), shown_by(figure)
 
 
-def page_of_sliders(quick: bool) -> tuple[bytes, Shown]:
-    """The page of explore, with a plan and a front, in the machine's own Chromium."""
+@contextmanager
+def a_page(width: int, height: int, **settings: Any) -> Iterator[Any]:
+    """An empty page of the machine's own Chromium, which waits as long as a slow machine takes."""
     from playwright.sync_api import expect, sync_playwright
 
+    milliseconds = 240_000
+    expect.set_options(milliseconds)
     browsers = map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=next(filter(None, browsers)))
+        page = browser.new_page(viewport={"width": width, "height": height}, **settings)
+        page.set_default_timeout(milliseconds)
+        yield page
+        browser.close()
+
+
+def page_of_sliders(quick: bool) -> tuple[bytes, Shown]:
+    """The page of explore, with a front, and a plan within its box."""
+    from playwright.sync_api import expect
+
     line = [sys.executable, "-m", "quietarm", "explore", "--no-browser"]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None
-    seconds = 240
-    expect.set_options(1e3 * seconds)
     try:
         address = process.stdout.readline().strip()
-        with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=next(filter(None, browsers)))
-            page = browser.new_page(viewport={"width": 1280, "height": 800})
-            page.set_default_timeout(1e3 * seconds)
+        with a_page(1400, 900) as page:
             page.goto(address)
             figures = page.locator(".figures .bk-clearfix")
             expect(figures).to_contain_text("0 to 30 deg")
+            box = page.get_by_label("largest |a_n|")
+            box.fill("0.2")
+            box.press("Enter")
+            page.get_by_role("button", name="Front", exact=True).click()
+            page.get_by_text(re.compile("click near the front")).wait_for()
             page.get_by_role("button", name="Plan", exact=True).click()
             expect(figures).to_contain_text("found a local optimum")
-            page.get_by_role("button", name="Front", exact=True).click()
-            plot = "Bokeh.documents[0].get_model_by_name('front')"
-            page.wait_for_function(f"{plot}.title.text.startsWith('front')")
-            page.wait_for_timeout(1000)  # the curves are drawn
+            page.wait_for_timeout(1300)  # the curves are drawn
             words = page.evaluate("document.body.innerText").splitlines()
             titles = page.evaluate(
                 "[...Bokeh.documents[0]._all_models.values()]"
                 ".map(model => model.title?.text ?? model.axis_label).filter(Boolean)"
             )
             picture = page.screenshot(full_page=True)
-            browser.close()
     finally:
         process.send_signal(signal.SIGINT)
-        process.communicate(timeout=seconds)
+        process.communicate(timeout=240)
     return picture, {"words": masked([*words, *map(str, titles)]), "lines": [], "areas": []}
+
+
+def page_to_drag(quick: bool) -> tuple[bytes, Shown]:
+    """The front to drag of the site's first page, a fifth of the way, as the cycloid swings."""
+    sys.path.insert(0, str(DOCS / "_extensions"))
+    from site_front import page_of_fronts
+
+    page_of_fronts().save("front.html")
+    with a_page(1200, 700, reduced_motion="reduce") as page:
+        page.goto(Path("front.html").resolve().as_uri())
+        page.focus("#handle")
+        for _ in range(11):
+            page.keyboard.press("ArrowRight")
+        page.evaluate("document.activeElement.blur()")
+        words = page.evaluate("document.body.innerText").splitlines()
+        picture = page.locator(".cards").screenshot()
+    return picture, {"words": masked(words), "lines": [], "areas": []}
 
 
 MAKERS: Mapping[str, Callable[[bool], tuple[bytes, Shown]]] = {
     "front.png": fronts_compared,
+    "drag.png": page_to_drag,
     "explore.png": page_of_sliders,
 }
 """Makers of pictures that no command writes; told whether less will do."""

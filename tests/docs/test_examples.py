@@ -34,7 +34,7 @@ MOVE, ENERGY = blocks("moves", "python")
 (PROFILE,) = blocks("extend", "python")
 (PLAIN,) = blocks("casadi", "python")
 (PLAIN_PRINTS,) = blocks("casadi", "text")
-SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
+SEARCH_OF_PYMOO, FRONT, FOUR_OBJECTIVES = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
 COUNTS, CRANE, ANGLES, GANTRY = blocks("plants", "python")
@@ -113,6 +113,15 @@ def test_the_examples_of_fronts_find_and_save_them(run_python):
     assert len(front.points) == 20
 
 
+def test_the_example_of_four_objectives_has_the_peaks_beside_them(run_python):
+    printed = run_python(FOUR_OBJECTIVES)
+    least = [float(number) for number in printed[: printed.index("]")].strip("[ ").split()]
+    assert 0 <= least[0] < 1e-6  # at rest
+    assert min(least[1:]) > 0
+    assert "{'torque': " in printed
+    assert printed.strip().endswith("]")
+
+
 def test_the_examples_of_robustness_say_what_is_left(run_python):
     low, high, residual = map(float, re.sub(r"[(),]", "", run_python(ROBUSTNESS)).split())
     assert -0.1 < low < 0 < high < 0.1  # docs/physics.md, 'Robustness': a few per cent
@@ -187,7 +196,7 @@ def test_the_example_of_a_robot_plans_through_its_waypoints(run_python):
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 17
+    assert sum(len(blocks(page, "python")) for page in others) == 19
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "sh", "text"}
 
