@@ -16,7 +16,7 @@ import pandas as pd
 from .pictures import WAYS, write_pictures
 from .run import plan_table
 from .tables import write_table
-from .words import short_label, spelled_budget
+from .words import short_label, spelled_budget, two_digits
 
 BEGIN = "<!-- what to take: benchmarks/crossover.py writes these lines -->"
 END = "<!-- end of what to take -->"
@@ -118,18 +118,6 @@ def verdicts(cells: Sequence[Mapping[str, Any]], way: str) -> dict[str, Any]:
         "gradient": [cell for cell, row in sure if row["log_ratio"] > 0],
         "none": len(rows) - len(sure),
     }
-
-
-def two_digits(value: float | None) -> str:
-    """Two significant digits, without an exponent; a dash where there is no number."""
-    if value is None or value != value:
-        return "-"
-    if value in (float("inf"), float("-inf")):
-        return "none"
-    magnitude = abs(value)
-    if magnitude >= 10:
-        return f"{value:.0f}"
-    return f"{value:.1f}" if magnitude >= 1 else f"{value:.2g}"
 
 
 def p_value(value: float | None) -> str:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from .words import short_label, spelled_budget
+from .words import short_label, spelled_budget, two_digits
 
 WAYS = (
     ("points, to its end", "50 points each, the gradient to its end"),
@@ -74,9 +74,11 @@ def map_figure(cells: Sequence[Mapping[str, Any]]) -> Figure:
                         corner, 1, 1, fill=False, hatch="////", edgecolor="#999999", linewidth=0
                     )
                 )
-            text = f"{short_label(row['method'])}\n{row['missing']:.2g} %\ngradient\n"
+            text = f"{short_label(row['method'])}\n{two_digits(row['missing'])} %\ngradient\n"
             theirs = (
-                "nothing yet" if row["no_control"] * 2 > row["moves"] else f"{row['control']:.2g} %"
+                "nothing yet"
+                if row["no_control"] * 2 > row["moves"]
+                else f"{two_digits(row['control'])} %"
             )
             middle(ax, corner, text + theirs, "white" if dark else "black", not row["verdict"])
         ax.set(

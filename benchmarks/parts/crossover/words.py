@@ -27,3 +27,15 @@ def short_label(method: str) -> str:
 def spelled_budget(budget: float) -> str:
     """A number of candidates with commas."""
     return f"{budget:,.0f}"
+
+
+def two_digits(value: float | None) -> str:
+    """Two significant digits, without an exponent; a dash where there is no number."""
+    if value is None or value != value:
+        return "-"
+    if value in (float("inf"), float("-inf")):
+        return "none"
+    magnitude = abs(value)
+    if magnitude >= 10:
+        return f"{value:.0f}"
+    return f"{value:.1f}" if magnitude >= 1 else f"{value:.2g}"
