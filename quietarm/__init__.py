@@ -18,6 +18,6 @@ _FOLDER = Path(__file__).parent
 if not (_FOLDER / "ocp").is_dir():  # in a checkout without the links of an editable installation
     __path__.append(str(_FOLDER.parent))
 
-__version__ = "2.0.0.dev0"
+__version__ = "2.0.0"
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
