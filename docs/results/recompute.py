@@ -24,7 +24,7 @@ from typing import Any
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import spearmanr, wilcoxon
+from scipy.stats import rankdata, spearmanr, wilcoxon
 
 Array = NDArray[np.float64]
 CORNER = 1.1
@@ -291,6 +291,7 @@ def compare(
 
     Its row has medians over problems, Wilcoxon's p and Holm's, in how many plants and moves the
     search is nearer, and the decimal logarithm of the ratio of what both lack, with its interval.
+    In the same time these are of the problems alone on which the gradient has a front by then.
     """
     problems = [
         name
@@ -308,11 +309,9 @@ def compare(
             results.control_within(name, spent) if same_time else results.control(name)
             for name, spent in zip(problems, seconds, strict=True)
         ]
+        known = np.array([bool(control) for control in controls], dtype=bool)
         theirs = np.array(
-            [
-                results.median(control, results.missing, measure) if control else 100.0
-                for control in controls
-            ]
+            [results.median(control, results.missing, measure) for control in controls if control]
         )
         row: dict[str, Any] = {
             "method": label,
@@ -324,18 +323,20 @@ def compare(
             "control_seconds": _median(
                 np.array([control[0].seconds for control in controls if control])
             ),
-            "no_control": sum(not control for control in controls),
+            "no_control": int((~known).sum()),
             "excess": _median(excess),
             "seconds": _median(seconds),
         }
-        if problems:
+        if known.any():
             floor = 1e-3  # per cent: what the files' digits can tell
+            lacks = lacks[known]
+            of_known = [plant for plant, has in zip(plants, known, strict=True) if has]
             ratios = np.log10(np.maximum(lacks, floor) / np.maximum(theirs, floor))
-            by_plant = [np.median(ratios[np.array(plants) == plant]) for plant in set(plants)]
+            by_plant = [np.median(ratios[np.array(of_known) == plant]) for plant in set(of_known)]
             row |= {
                 "p": signed_ranks(lacks - theirs),
                 "log_ratio": float(np.median(ratios)),
-                "interval": interval(ratios, plants),
+                "interval": interval(ratios, of_known),
                 "moves_nearer": int((lacks < theirs).sum()),
                 "plants_nearer": int(sum(value < 0 for value in by_plant)),
                 "plants": len(by_plant),
@@ -381,9 +382,12 @@ def cell(results: Results, terms: int, budget: int, crossed: Sequence[str]) -> d
             if not rows:
                 continue
             best = min(rows, key=lambda row: row["missing"])
-            enough = least_p(best["moves"]) * len(rows) <= LEVEL
-            best["verdict"] = bool(enough and best["holm"] <= LEVEL)
-            best["least_p_holm"] = least_p(best["moves"]) * len(rows)
+            compared = best["moves"] - best["no_control"]
+            best["compared"] = compared
+            best["least_p_holm"] = least_p(compared) * len(rows)
+            best["enough"] = bool(best["least_p_holm"] <= LEVEL)
+            best["verdict"] = bool(best["enough"] and best["holm"] <= LEVEL)
+            best["no_front"] = 2 * best["no_control"] > best["moves"]
             ways[f"{measure}, {'same time' if same_time else 'to its end'}"] = best
     return {"terms": terms, "budget": budget, "ways": ways}
 
@@ -443,6 +447,10 @@ def tuned(results: Results) -> dict[str, Any]:
             "settings": json.loads(best["settings"]),
             **on_testing(results, method),
         }
+    for measure in MEASURES:
+        rows = [row[measure] for row in figures.values() if measure in row]
+        for row, p in zip(rows, holm([row["p"] for row in rows]), strict=True):
+            row["holm"] = p
     return figures
 
 
@@ -570,6 +578,11 @@ def prediction(
         correlations[feature] = (
             float(spearmanr(table[known, i], outcome[known]).statistic) if varied else None
         )
+    within = {
+        feature: within_equal(table[:, 0], table[:, i], outcome)
+        for i, feature in enumerate(FEATURES)
+        if i > 0
+    }
     right = 0
     usual = 0
     rules = list[str]()
@@ -585,15 +598,38 @@ def prediction(
         "problems": len(data),
         "search_nearer": int((outcome < 0).sum()),
         "correlations": correlations,
+        "within": within,
         "right": right,
         "usual": usual,
         "rules": rules,
         "holds": right > usual,
         "one_basin": sum(row["best_basin"] >= 1.0 for row in shown),
+        "with_basins": sum(bool(np.isfinite(row["best_basin"])) for row in shown),
         "strongest": strongest_of(correlations),
-        "least_basin": min(row["best_basin"] for row in shown),
+        "least_basin": float(np.nanmin([row["best_basin"] for row in shown])),
         "table": shown,
     }
+
+
+def within_equal(groups: Array, feature: Array, outcome: Array) -> float | None:
+    """Rank correlation among problems of one group, as of equal coefficients; of all groups.
+
+    Ranks are those within a group, about its mean, as shares of its size.
+    """
+    pairs = list[Array]()
+    for group in np.unique(groups):
+        members = (groups == group) & np.isfinite(feature)
+        size = int(members.sum())
+        if size < 3:
+            continue
+        ranks = np.column_stack([rankdata(feature[members]), rankdata(outcome[members])])
+        pairs.append((ranks - (size + 1) / 2) / size)
+    if not pairs:
+        return None
+    first, second = np.vstack(pairs).T
+    if not (first.any() and second.any()):
+        return None
+    return float(first @ second / np.sqrt((first @ first) * (second @ second)))
 
 
 def strongest_of(correlations: Mapping[str, float | None]) -> list[str | float]:

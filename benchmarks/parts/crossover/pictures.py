@@ -24,6 +24,8 @@ WAYS = (
 )
 MOST_DECADES = 1.5
 """A ratio of this many decades has the darkest colour."""
+NO_FRONT = "#f3e7b3"
+"""Of a cell where the gradient has no front yet on most moves, so that nothing is compared."""
 COLOURS = ("#1b1b1b", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7f7f00", "#56b4e9", "#8c510a")
 
 
@@ -65,21 +67,22 @@ def map_figure(cells: Sequence[Mapping[str, Any]]) -> Figure:
                 ax.add_patch(Rectangle(corner, 1, 1, facecolor="#eeeeee", edgecolor="white"))
                 middle(ax, corner, "not run", "#777777")
                 continue
+            text = f"{short_label(row['method'])}\n{two_digits(row['missing'])} %\ngradient\n"
+            if row["no_front"]:
+                ax.add_patch(Rectangle(corner, 1, 1, facecolor=NO_FRONT, edgecolor="white"))
+                middle(ax, corner, f"{text}nothing yet", "black")
+                continue
             colour = colours(norm(np.clip(row["log_ratio"], -MOST_DECADES, MOST_DECADES)))
             dark = abs(row["log_ratio"]) > 0.6 * MOST_DECADES and row["verdict"]
             ax.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white"))
             if not row["verdict"]:
+                hatch = "////" if row["enough"] else "...."
                 ax.add_patch(
                     Rectangle(
-                        corner, 1, 1, fill=False, hatch="////", edgecolor="#999999", linewidth=0
+                        corner, 1, 1, fill=False, hatch=hatch, edgecolor="#999999", linewidth=0
                     )
                 )
-            text = f"{short_label(row['method'])}\n{two_digits(row['missing'])} %\ngradient\n"
-            theirs = (
-                "nothing yet"
-                if row["no_control"] * 2 > row["moves"]
-                else f"{two_digits(row['control'])} %"
-            )
+            theirs = f"{two_digits(row['control'])} %"
             middle(ax, corner, text + theirs, "white" if dark else "black", not row["verdict"])
         ax.set(
             xlim=(0, len(terms)),
