@@ -57,13 +57,20 @@ const drawAll = () => {
   ghostTrails = trailsOf(ofCycloid(state.move.scores));
   showMotion();
 };
+const invitation = (move, several) => {
+  if (!several) return "A motion of an arm that bends, beside the plain cycloid.";
+  if (move.joined) return "Every point is a motion of an arm that bends, and the blue curve the best of them. Drag along it.";
+  return "Every point is a motion of an arm that bends. Drag from one to the next.";
+};
 const take = (move) => {
   state.move = move;
   state.point = Math.min(state.point, lastPoint());
   state.time = Math.min(state.time, move.end);
   byId("time").max = move.end;
   const several = lastPoint() > 0;
-  byId("invitation").textContent = several ? `Every point is a motion of an arm that bends${move.joined ? ", and the blue curve the best of them" : ""}. Drag along it.` : "A motion of an arm that bends, beside the plain cycloid.";
+  byId("heading").textContent = several ? "How still, for how much energy?" : "A motion, and the plain cycloid";
+  byId("choosing").hidden = !several;
+  byId("invitation").textContent = invitation(move, several);
   byId("title").textContent = `${move.title}.`;
   byId("note").textContent = move.note;
   drawAll();

@@ -76,7 +76,7 @@ def sentence(move: Move, choice: Choice) -> str:
     if stillest.residual >= REST:
         at_rest = f"the stillest motion, {_residual(stillest)},"
     return (
-        f"{_residual(choice)} of residual vibration for {percents([saved])} of the energy: "
+        f"{_residual(choice)} of residual vibration saves {percents([saved])} of the energy: "
         f"{_joules(choice)}, where {at_rest} takes {_joules(stillest)}."
         f"{_next_step(move, choice)}"
     )

@@ -72,7 +72,7 @@ def test_a_point_says_what_it_trades(shown):
     )
     share = 1 - second["energy"] / first["energy"]
     assert second["sentence"].startswith(
-        f"{1e3 * second['residual']:#.3g} mm of residual vibration for {100 * share:.0f} % of the "
+        f"{1e3 * second['residual']:#.3g} mm of residual vibration saves {100 * share:.0f} % of the "
         f"energy: {second['energy']:#.3g} J, where arriving at rest takes {first['energy']:#.3g} J."
     )
 

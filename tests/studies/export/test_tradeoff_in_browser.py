@@ -113,7 +113,7 @@ def test_the_mouse_drags_along_the_front_and_the_arm_follows(opened):
     assert number(page) > 4
     after = arm(page), curves(page), page.inner_text("#sentence")
     assert all(then != now for then, now in zip(before, after, strict=True))
-    assert "of residual vibration for" in after[2]
+    assert "of residual vibration saves" in after[2]
     # a click beside the front takes the nearest point
     now = number(page)
     page.mouse.click(x + 5, y + 60)
