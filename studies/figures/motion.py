@@ -131,7 +131,8 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
                 continue
             alone = i == 0 or curve is not None
             style = line.style if alone else other_styles[(i - 1) % len(other_styles)]
-            label = line.label + ("" if curve is not None else _which(plant, quantity, i))
+            of = "" if curve is not None else _which(line.plan.task.plant, quantity, i)
+            label = line.label + of
             drawn.append(values)
             _draw_curve(ax, line, values, style, label)
     for duration in {line.plan.task.duration for line in lines}:

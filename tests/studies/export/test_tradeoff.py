@@ -71,9 +71,10 @@ def test_a_point_says_what_it_trades(shown):
         first["sentence"],
     )
     share = 1 - second["energy"] / first["energy"]
+    residual = f"{1e3 * second['residual']:#.3g} mm"
     assert second["sentence"].startswith(
-        f"{1e3 * second['residual']:#.3g} mm of residual vibration saves {100 * share:.0f} % of the "
-        f"energy: {second['energy']:#.3g} J, where arriving at rest takes {first['energy']:#.3g} J."
+        f"{residual} of residual vibration saves {100 * share:.0f} % of the energy: "
+        f"{second['energy']:#.3g} J, where arriving at rest takes {first['energy']:#.3g} J."
     )
 
 
