@@ -236,6 +236,38 @@ class Robot:
         joints = [self.description.joints[name] for name in self.joints]
         return [(joint.lower, joint.upper) for joint in joints]
 
+    def fitted(self, path: GeometricPath) -> GeometricPath:
+        """A path with its positions in the order of the driven joints.
+
+        Raises
+        ------
+        ValueError
+            When it has other joints, or leaves the range of one.
+        """
+        names = self.joints
+        if path.joints and set(path.joints) != set(names):
+            raise ValueError(
+                f"the path is of the joints {', '.join(path.joints)}, and the robot drives "
+                f"{', '.join(names)}; give positions of these"
+            )
+        if path.count != len(names):
+            raise ValueError(
+                f"the path is of {path.count} joints, and the robot drives {len(names)}, "
+                f"{', '.join(names)}; give positions of these, in this order"
+            )
+        if path.joints and path.joints != names:
+            path = path.of_joints(names)
+        places = np.linspace(0.0, 1.0, 1001)
+        for name, (least, most), column in zip(names, self.ranges(), path(places).T):
+            beyond = np.maximum(column - most, least - column)
+            if beyond.max() > _OVER:
+                at = int(beyond.argmax())
+                raise ValueError(
+                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path; "
+                    f"its range is {least:g} to {most:g}, give a path within it"
+                )
+        return path
+
     def frequencies(self, q: Sequence[float] | Array) -> Array:
         """Of all modes with the driven joints held at q [rad/s], under gravity.
 
@@ -407,21 +439,7 @@ class RobotOnPath(Plant):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._check_multiples()
-        path = self.path
-        names = self.robot.joints
-        if path.joints and set(path.joints) != set(names):
-            raise ValueError(
-                f"the path is of the joints {', '.join(path.joints)}, and the robot drives "
-                f"{', '.join(names)}; give positions of these"
-            )
-        if path.count != len(names):
-            raise ValueError(
-                f"the path is of {path.count} joints, and the robot drives {len(names)}, "
-                f"{', '.join(names)}; give positions of these, in this order"
-            )
-        if path.joints and path.joints != names:
-            object.__setattr__(self, "path", path.of_joints(names))
-        self._check_ranges()
+        object.__setattr__(self, "path", self.robot.fitted(self.path))
         _ = self.tables
 
     @property
@@ -625,19 +643,6 @@ class RobotOnPath(Plant):
                 "the robot has no mass at the end of a beam, so payload is 1; give the beam a "
                 "tip_mass"
             )
-
-    def _check_ranges(self) -> None:
-        """Refuse a path beyond a joint's range."""
-        places = np.linspace(0.0, 1.0, 1001)
-        positions = self.path(places)
-        for name, (least, most), column in zip(self.joint_names, self.robot.ranges(), positions.T):
-            beyond = np.maximum(column - most, least - column)
-            if beyond.max() > _OVER:
-                at = int(beyond.argmax())
-                raise ValueError(
-                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path; "
-                    f"its range is {least:g} to {most:g}, give a path within it"
-                )
 
 
 def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:

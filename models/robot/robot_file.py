@@ -12,7 +12,7 @@ from quietarm.models.checks import has_no
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.files import read_text, read_yaml
 from quietarm.models.robot.flexibility import Base, Measured, Spring
-from quietarm.models.robot.urdf import read_urdf
+from quietarm.models.robot.urdf import PRISMATIC, UrdfJoint, read_urdf
 from quietarm.models.units import parse_quantity
 
 Read = Callable[[Any, str], Any]
@@ -38,7 +38,7 @@ def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     readers: dict[str, Read] = {
         "urdf": lambda entry, _: read_text(_beside(entry, folder, "urdf"), "URDF"),
         "joints": _names,
-        "held": partial(_by_joint, read=_quantity("rad")),
+        "held": lambda entry, _: entry,
         "beam": _beam,
         "elastic_joints": partial(_by_joint, read=_spring),
         "springs": partial(_by_joint, read=_spring),
@@ -60,9 +60,23 @@ def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     given = {
         name: readers[name](entry, name) for name, entry in document.items() if entry is not None
     }
+    if "held" in given:
+        given["held"] = _held(given["held"], given["urdf"])
     if "limits" in given:
         given["limits"] = _limits(given["limits"], given["urdf"], folder)
     return given
+
+
+def _held(entry: Any, urdf: str) -> dict[str, float]:
+    """Positions of joints that are not driven, of one that slides in metres."""
+    if not isinstance(entry, dict):
+        raise ValueError(f"held is {entry!r}; give positions by joint, as {{finger_joint: 20mm}}")
+    joints = read_urdf(urdf).joints
+    slides = {name for name, joint in joints.items() if joint.kind == PRISMATIC}
+    return {
+        str(joint): _number(value, f"held position of {joint}", "m" if joint in slides else "rad")
+        for joint, value in entry.items()
+    }
 
 
 def limits_of(urdf: str) -> dict[str, dict[str, float]]:
@@ -97,6 +111,7 @@ def _limits(entry: Any, urdf: str, folder: Path) -> dict[str, dict[str, float]]:
             raise ValueError(
                 f"limits of {joint} are {entries!r}; give has_velocity_limits and so on"
             )
+        _refuse_narrower(known[joint], entries)
         for theirs, quantity in _LIMITS.items():
             limit = entries.get(f"max_{theirs}")
             if entries.get(f"has_{theirs}_limits", limit is not None):
@@ -107,6 +122,23 @@ def _limits(entry: Any, urdf: str, folder: Path) -> dict[str, dict[str, float]]:
                     )
                 limits.setdefault(quantity, {})[joint] = number
     return limits
+
+
+def _refuse_narrower(joint: UrdfJoint, entries: Mapping[str, Any]) -> None:
+    """Refuse position limits that are narrower than the URDF's, which are those that are kept."""
+    if not entries.get("has_position_limits", False):
+        return
+    rounding = 1e-3  # MoveIt's files have fewer digits than the URDF
+    for end, of_urdf, side in (("min", joint.lower, 1.0), ("max", joint.upper, -1.0)):
+        name = f"{end}_position"
+        if name not in entries:
+            continue
+        position = _number(entries[name], f"{name} of {joint.name} in limits", "-")
+        if side * (position - of_urdf) > rounding:
+            raise ValueError(
+                f"{name} of {joint.name} in limits is {position:g}, and the URDF, whose ranges are "
+                f"kept, has {of_urdf:g}; write {position:g} there, or leave it out here"
+            )
 
 
 def _beam(entry: Any, what: str) -> Beam:

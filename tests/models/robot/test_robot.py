@@ -97,6 +97,27 @@ joint_limits:
     assert "jerk" not in robot.limits
 
 
+def test_positions_are_limited_by_the_urdf(tmp_path):
+    # the UR5's elbow goes from -pi to pi
+    text = "joint_limits: {{elbow_joint: {{has_position_limits: true, max_position: {}}}}}"
+    (tmp_path / "joint_limits.yaml").write_text(text.format(3.1416))
+    robot = qa.Robot.load(_file(tmp_path, "limits: joint_limits.yaml\n"))
+    assert robot.ranges()[2][1] == pytest.approx(math.pi, abs=1e-6)
+    (tmp_path / "joint_limits.yaml").write_text(text.format(1.5))
+    with pytest.raises(ValueError, match=r"max_position of elbow_joint in limits is 1\.5, and the"):
+        qa.Robot.load(_file(tmp_path, "limits: joint_limits.yaml\n"))
+
+
+def test_a_joint_that_slides_is_held_in_metres(tmp_path):
+    fingers = "{panda_finger_joint1: 20mm, panda_finger_joint2: 0.02}"
+    (tmp_path / "robot.yaml").write_text(
+        f"urdf: {urdf_of('panda.urdf')}\nheld: {fingers}\n"
+        "elastic_joints: {panda_joint1: 1e4}\nmodes: 1\n"
+    )
+    robot = qa.Robot.load(tmp_path / "robot.yaml")
+    assert robot.held == {"panda_finger_joint1": 0.02, "panda_finger_joint2": 0.02}
+
+
 def test_gears_bend_under_gravity_and_swing_at_their_frequency(tmp_path):
     """Two links of 1 kg hang on springs: k angle = m g r, and sqrt(k / J) with the elbow held."""
     upright = URDF.replace('xyz="0 0 1"', 'xyz="0 1 0"').replace(

@@ -231,6 +231,14 @@ def test_a_robot_is_listed_with_what_was_read(call):
 
 
 @pytest.mark.parametrize(("line", "words"), [
+    ("list ur5_bar.yaml --path short.csv", "is of 3 joints, and the robot drives 6"),
+    (f"list ur5_bar.yaml {START} --target=9,0,0,0,0,0", "its range is -6.28"),
+])  # fmt: skip
+def test_a_list_refuses_the_paths_that_a_plan_does(refused, line, words):
+    assert words in refused(line)
+
+
+@pytest.mark.parametrize(("line", "words"), [
     ("plan ur5_bar.yaml --duration 1", "has no path; give --start and --target"),
     (f"plan ur5_bar.yaml {ENDS}", "Missing option '--duration'"),
     (f"plan ur5_bar.yaml {START} --target=1,2 --duration 1", "--target has 2 positions"),
