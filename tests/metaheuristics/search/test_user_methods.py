@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 import pytest
-from bench_problems import NAME
+from bench_problems import NAME, called
 
 from quietarm.metaheuristics import Job, LostJobsError, run_jobs
 from quietarm.metaheuristics.user_method import digest_of
@@ -33,12 +33,6 @@ class Asked:
         assert objectives.shape == (len(candidates), 2)
         assert violations.shape == (len(candidates), 0)
         self.told += len(candidates)
-
-
-def called(function, seed, budget):
-    random = np.random.default_rng(seed)
-    while True:
-        function(random.uniform(function.lower, function.upper, (25, 2)))
 
 
 def test_an_object_that_is_asked_and_told_counts_as_a_function_does(tmp_path):
