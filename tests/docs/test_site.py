@@ -209,12 +209,14 @@ def test_a_command_breaks_nowhere_and_scrolls_on_a_phone(page, tmp_path):
 
 
 def pages_of_site():
+    """The pages of the site, without lists and without the pages to drag that stand in frames."""
     made_by_sphinx = {"index.html", "genindex.html", "search.html", "py-modindex.html"}
-    pages = sorted(SITE.rglob("*.html"))
     return [
         path
-        for path in pages
-        if "_static" not in path.parts and not (path.parent == SITE and path.name in made_by_sphinx)
+        for path in sorted(SITE.rglob("*.html"))
+        if "_static" not in path.parts
+        and not (path.parent == SITE and path.name in made_by_sphinx)
+        and "<article" in path.read_text()
     ]
 
 
