@@ -76,6 +76,16 @@ def refuse_more_objectives(name: str, objectives: Sequence[str]) -> None:
         )
 
 
+def refuse_peaks(what: str, objectives: Sequence[str]) -> None:
+    """Refuse a front with peaks among its objectives, for a page that has no place for them."""
+    if tuple(objectives) != RESIDUAL_AND_ENERGY:
+        typed = ", ".join(objectives).replace("_", "-")
+        raise ValueError(
+            f"{what} has the objectives {typed}, and the page has residual and energy; give a "
+            "front of these"
+        )
+
+
 def _spelt(name: Any) -> str:
     return name.strip().lower().replace("-", "_") if isinstance(name, str) else repr(name)
 

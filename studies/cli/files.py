@@ -15,6 +15,7 @@ from rich.console import Console
 from quietarm.models.interrupts import note_interrupts
 from quietarm.ocp import Plan, QuietarmError
 from quietarm.ocp.files import check_writable, unwritable
+from quietarm.ocp.objectives import refuse_peaks
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
 from quietarm.studies.report.saving import STDOUT, SUFFIXES, File, drawing
@@ -97,6 +98,12 @@ def answer_files(
     ways[TRAJECTORY] = partial(_save_trajectory, answer)
     ways[PAGE] = partial(_save_page, [answer, *beside])
     return [(path, ways.get(ending_of(path)) or drawing(draw)) for path in output]
+
+
+def check_page(output: Sequence[Path], objectives: Sequence[str]) -> None:
+    """Refuse a page of a front that has peaks among its objectives, before it is found."""
+    if PAGE in map(ending_of, output):
+        refuse_peaks("the front", objectives)
 
 
 def _save_trajectory(plan: Plan, path: Path) -> None:

@@ -9,9 +9,10 @@ from pathlib import Path
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, evaluate_coefficients
+from quietarm.ocp.objectives import refuse_peaks
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.reading.saved import format_of, load_front, load_plans
-from quietarm.studies.report.words import objective_words, plant_words
+from quietarm.studies.report.words import plant_words
 from quietarm.studies.sweep.library import MoveLibrary
 
 
@@ -33,11 +34,7 @@ def open_file(path: Path) -> Explored:
         return Explored(library.plan(**middle), library=library)
     if format_of(path) == f"quietarm-{Front.kind}":
         front = load_front(path)
-        if len(front.objectives) > 2:
-            raise ValueError(
-                f"{path} has the objectives {objective_words(front.objectives)}, and the page has "
-                "residual and energy; give a front of these"
-            )
+        refuse_peaks(str(path), front.objectives)
         coefficients = front.points[0].coefficients
         plan = evaluate_coefficients(front.task, coefficients, profile=front.profile)
         return Explored(plan, bound=front.record.bound, front=front).pick(0)

@@ -11,7 +11,14 @@ from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies import figures
 from quietarm.studies.cli.commands.plan import Answer, finish_motion
-from quietarm.studies.cli.files import PAGE, PICTURE, answer_files, finish, output_option
+from quietarm.studies.cli.files import (
+    PAGE,
+    PICTURE,
+    answer_files,
+    check_page,
+    finish,
+    output_option,
+)
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -110,6 +117,7 @@ def _evaluate_table(given: Given) -> None:
 
     task = given.read_task()
     given.refuse(["sensitivities"], "is not for a table")
+    check_page(given.output, given.objectives)
     if given.profile in SHAPERS:
         raise ValueError(
             f"{given.profile} has no coefficients; give one of {', '.join(families())}"

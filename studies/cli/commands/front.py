@@ -9,7 +9,14 @@ from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_f
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.studies import figures
-from quietarm.studies.cli.files import PAGE, PICTURE, answer_files, finish, output_option
+from quietarm.studies.cli.files import (
+    PAGE,
+    PICTURE,
+    answer_files,
+    check_page,
+    finish,
+    output_option,
+)
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -80,6 +87,7 @@ def front(given: Given) -> None:
         given.refuse(["points"], "is for weights that are chosen by the method")
         wanted = "weights"
     refuse_more_objectives(given.method, given.objectives)
+    check_page(given.output, given.objectives)
     if given.check and given.objectives != RESIDUAL_AND_ENERGY:
         raise ValueError(
             "--check is for residual and energy; find the front again with the other --solver"

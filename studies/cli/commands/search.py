@@ -16,7 +16,15 @@ from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies import figures
 from quietarm.studies.cli.effort import refuse_endless
-from quietarm.studies.cli.files import PAGE, PICTURE, answer_files, ending_of, finish, output_option
+from quietarm.studies.cli.files import (
+    PAGE,
+    PICTURE,
+    answer_files,
+    check_page,
+    ending_of,
+    finish,
+    output_option,
+)
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -86,6 +94,7 @@ def search(given: Given) -> None:
     several = given.runs > 1
     if several and STDOUT in given.output:
         raise ValueError("--output - is for one run; with --runs give the name of a file")
+    check_page(given.output, given.objectives)
     # not at the top: --help needs it not
     from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 

@@ -17,6 +17,7 @@ from quietarm.ocp import (
     task_difference,
 )
 from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.objectives import refuse_peaks
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.studies.report.methods import is_gradient, label_of
 from quietarm.studies.report.words import title_of_picture
@@ -112,6 +113,8 @@ def moves_of(answers: Answers) -> list[Move]:
     for label, answer in (fronts | plans).items():
         if isinstance(answer, Front) and not answer.points:
             raise ValueError(f"{label}: {answer.why_empty()}")
+        if isinstance(answer, Front):
+            refuse_peaks(label, answer.objectives)
         for group in groups:
             if _belong_together(next(iter(group.values())), answer):
                 group[label] = answer
