@@ -23,8 +23,9 @@ LARGE, MILLION = 100_000, 1_000_000
 KINDS = ("copper", "stages", "motor-map")
 SEEDS = {1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7, 1_000_000: 3}
 """Rounds of the full plan, by budget."""
-LADDER = (10, 50, 200)
+LADDER = (3, 5, 10, 50, 200)
 """Points of the gradient's fronts: more of them take more time, as a search's candidates do."""
+LONGEST = LADDER[-1]
 CROSSED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic")
 """Searches that are run in every cell of the map."""
 CENTRAL = ("cmopso", "smsemoa", "moead", "slsqp", "nsga2+polish", "gde3+polish", "random")
@@ -149,7 +150,7 @@ def crossing(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
     if not seed:
         for terms in TERMS:
             for move in moves if terms != CENTRE_TERMS else ():
-                for points in LADDER[:2]:
+                for points in LADDER[:-1]:
                     yield Planned(
                         "crossing", 0, Case(move, terms), "epsilon", None, (("points", points),)
                     )
@@ -209,14 +210,14 @@ def tuned(tested: Sequence[Move], settings: Settings, seed: int) -> Iterator[Pla
 
 
 def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
-    """Coefficients with the large budget, on one move of every plant."""
+    """Coefficients with the large budget, on two moves of every plant: fewer tell no difference."""
     if seed >= SEEDS[LARGE]:
         return
     for terms in (6, 2, 16, 4, 10, 24):
-        for move in first_of_plants(tested, 1):
+        for move in first_of_plants(tested, 2):
             case = Case(move, terms)
             if not seed and terms != CENTRE_TERMS:
-                yield Planned("large", 0, case, "epsilon", None, (("points", 200),))
+                yield Planned("large", 0, case, "epsilon", None, (("points", LONGEST),))
             for method in AT_LARGE:
                 yield Planned("large", seed, case, method, LARGE)
 
