@@ -1,12 +1,14 @@
 """SLSQP with differences: what is left of the gradient where an energy is a black box.
 
-The energy is minimised within one residual limit after another, each from a random start. The first
-has no limit; the others are drawn between zero and what the cheapest motion leaves. Derivatives are
-forward differences, and every candidate that they take counts.
+The energy is minimised within one residual limit after another, by derivatives that are forward
+differences; every candidate that they take counts. The first has no limit, from a random start.
+Those between zero and what the cheapest motion leaves are halved, each from the motion of the next
+larger one (continuation), or drawn, each from a random start.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -68,7 +70,9 @@ class Differences:
         return np.hstack([objectives, violations])
 
 
-def slsqp(function: Any, seed: int, budget: int, step: float = 1e-6) -> None:
+def slsqp(
+    function: Any, seed: int, budget: int, step: float = 1e-6, continuation: bool = True
+) -> None:
     """Ask a problem's recorded function for candidates until its budget is spent.
 
     Parameters
@@ -81,19 +85,50 @@ def slsqp(function: Any, seed: int, budget: int, step: float = 1e-6) -> None:
         Candidates that count.
     step : float
         Of a difference, as a share of the box.
+    continuation : bool
+        Start at the motion of the next larger limit, else at random.
     """
     random = np.random.default_rng(seed)
     differences = Differences(function, step)
-    reach = np.inf
+    limits = _halved_limits if continuation else _random_limits
     while True:
-        limit = random.uniform(0.0, reach) if np.isfinite(reach) else np.inf
+        with suppress(_LostError):
+            limits(differences, function, random)
+
+
+def _halved_limits(differences: Differences, function: Any, random: np.random.Generator) -> None:
+    """Limits between those that are solved, each from the motion of the next larger one.
+
+    They end before they are closer than points of a front need, and another random start follows.
+    """
+    start = random.uniform(function.lower, function.upper)
+    motions = {1.0: _least_energy(differences, function, start, np.inf, np.inf)}
+    reach = _residual_left(differences, motions[1.0])
+    halvings = 6
+    for parts in 2 ** np.arange(1, halvings + 1):
+        for share in np.arange(parts - 1, 0, -2) / parts:
+            above = min(solved for solved in motions if solved > share)
+            motions[share] = _least_energy(
+                differences, function, motions[above], share * reach, reach
+            )
+
+
+def _random_limits(
+    differences: Differences, function: Any, random: np.random.Generator
+) -> None:
+    """One random limit after another, each from a random start, until a start is lost."""
+    start = random.uniform(function.lower, function.upper)
+    cheapest = _least_energy(differences, function, start, np.inf, np.inf)
+    reach = _residual_left(differences, cheapest)
+    while True:
+        limit = random.uniform(0.0, reach)
         start = random.uniform(function.lower, function.upper)
-        try:
-            cheapest = _least_energy(differences, function, start, limit, reach)
-            if not np.isfinite(limit):
-                reach = max(float(differences.values(cheapest)[0]), 1e-12)
-        except _LostError:
-            continue
+        _least_energy(differences, function, start, limit, reach)
+
+
+def _residual_left(differences: Differences, cheapest: Array) -> float:
+    """By the cheapest motion, and more than nothing."""
+    return max(float(differences.values(cheapest)[0]), 1e-12)
 
 
 def _least_energy(

@@ -423,7 +423,7 @@ _ALL = (
         "SLSQP with differences",
         "Kraft 1988",
         f"{_OURS}.differences:slsqp",
-        {"step": 1e-6},
+        {"step": 1e-6, "continuation": True},
         population=1,
         generations=40_000,
         is_function=True,

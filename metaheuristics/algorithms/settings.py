@@ -90,6 +90,11 @@ _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
     ),
     "gradient_iterations": ("gradient_iterations", "iterations of each at a time", _count(1)),
     "step": ("step", "step of a difference, as a share of the box", _positive_share),
+    "continuation": (
+        "continuation",
+        "start at the motion of the next larger limit, else at random",
+        _yes_or_no,
+    ),
     "first_step": (
         "first_step",
         "standard deviation at first, as a share of the box",

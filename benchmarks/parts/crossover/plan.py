@@ -26,11 +26,13 @@ SEEDS = {1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7, 1_000_000: 3}
 LADDER = (3, 5, 10, 50, 200)
 """Points of the gradient's fronts: more of them take more time, as a search's candidates do."""
 LONGEST = LADDER[-1]
-CROSSED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic")
-"""Searches that are run in every cell of the map."""
-CENTRAL = ("cmopso", "smsemoa", "moead", "slsqp", "nsga2+polish", "gde3+polish", "random")
-"""Searches that are run at the centre beside these."""
-AT_LARGE = ("gde3", "moead-de", "nsga2", "memetic")
+CROSSED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic", "slsqp")
+"""Methods of candidates that are run in every cell of the map."""
+CENTRAL = ("cmopso", "smsemoa", "moead", "nsga2+polish", "gde3+polish", "random")
+"""Methods of candidates that are run at the centre beside these."""
+RANDOM_STARTS = (("continuation", False),)
+"""Settings of `slsqp` by which each of its starts is random."""
+AT_LARGE = ("gde3", "moead-de", "nsga2", "memetic", "slsqp")
 OF_KINDS = ("nsga2", "gde3", "moead-de", "memetic", "slsqp")
 PEAKS = ("peak_torque", "peak_deflection")
 OF_OBJECTIVES = ("nsga2", "nsga3", "gde3", "moead-de")
@@ -40,6 +42,8 @@ NOISES = (0.01, 0.05)
 NOISY = ("nsga2", "gde3", "moead-de", "mo-cma-es", "slsqp")
 PAPER = {"nsga2-paper": 100_000, "vepso": 40_000}
 """The paper's methods with the paper's candidates."""
+WIDE_STEPS = (0.01, 0.1)
+"""Steps of differences as shares of the box, where a noise hides what small ones tell."""
 
 
 @dataclass(frozen=True)
@@ -136,6 +140,7 @@ def centre(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
         case = Case(move)
         for method in (*CROSSED, *CENTRAL):
             yield Planned("centre", seed, case, method, 10_000)
+        yield Planned("centre", seed, case, "slsqp", 10_000, RANDOM_STARTS)
         if seed < 2:  # the second to see that it repeats itself
             for points in LADDER:
                 yield Planned("centre", seed, case, "epsilon", None, (("points", points),))
@@ -171,6 +176,7 @@ def kinds(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
             for method in OF_KINDS:
                 yield Planned("energy", seed, case, method, 10_000)
             if not seed:
+                yield Planned("energy", 0, case, "slsqp", 10_000, RANDOM_STARTS)
                 points = 20 if kind == "motor-map" else 50  # the solver takes long where it jumps
                 yield Planned("energy", 0, case, "epsilon", None, (("points", points),))
 
@@ -189,6 +195,11 @@ def noise(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
         for move in moves:
             for method in NOISY:
                 yield Planned("noise", seed, Case(move), method, 10_000, noise=share)
+            for step in WIDE_STEPS:
+                settings = (("step", step),)
+                yield Planned("noise", seed, Case(move), "slsqp", 10_000, settings, noise=share)
+            if not seed:
+                yield Planned("noise", 0, Case(move), "slsqp", 10_000, RANDOM_STARTS, noise=share)
 
 
 def objectives(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
