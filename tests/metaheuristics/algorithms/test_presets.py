@@ -75,7 +75,7 @@ OTHERS = {
     "cognitive": 1, "social": 1, "elites": 4,
     "first_velocity": "zero", "variant": "DE/best/2/exp", "scale": 0.6, "jitter": 0,
     "repair": "midway", "delta": 0.01, "objective_crowding": False, "coefficient_crowding": False,
-    "replaced": 3, "first_step": 0.3, "step": 1e-5,
+    "replaced": 3, "first_step": 0.3, "step": 1e-5, "continuation": False,
     "gradient_every": 3, "gradient_points": 4, "gradient_iterations": 2,
 }  # fmt: skip
 
