@@ -113,9 +113,7 @@ def _halved_limits(differences: Differences, function: Any, random: np.random.Ge
             )
 
 
-def _random_limits(
-    differences: Differences, function: Any, random: np.random.Generator
-) -> None:
+def _random_limits(differences: Differences, function: Any, random: np.random.Generator) -> None:
     """One random limit after another, each from a random start, until a start is lost."""
     start = random.uniform(function.lower, function.upper)
     cheapest = _least_energy(differences, function, start, np.inf, np.inf)
