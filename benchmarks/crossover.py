@@ -7,7 +7,7 @@
     python benchmarks/crossover.py FOLDER --page
 
 Goes on where it stopped, on a new machine, too: what docs/results/runs has is not run again. A run
-is a file of FOLDER; what the page needs of it becomes a row of docs/results/runs/AXIS.csv.gz after
+is a file of FOLDER; what the page needs of it becomes a row of docs/results/runs/AXIS.csv.xz after
 every batch. With --part the tables are those of --results, a folder of each part's own: copy
 docs/results there before, and bring the rows together with --merge OTHER after.
 """

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import argparse
 import csv
-import gzip
 import json
+import lzma
 import re
 import sys
 from collections import defaultdict
@@ -35,6 +35,7 @@ LEVEL = 0.05
 CENTRE = 6
 CONTROL = "epsilon"
 CONTROL_SETTINGS = "points=50"
+DIFFERENCES = "slsqp"
 KINDS = ("absolute", "copper", "stages", "motor-map")
 PAPER = ("nsga2-paper", "vepso")
 TARGETS = (50, 20, 10, 5, 2, 1)
@@ -107,8 +108,8 @@ def read_runs(folder: Path) -> list[Run]:
     with (folder / "scales.csv").open(newline="") as file:
         scales = {row["problem"]: row for row in csv.DictReader(file)}
     runs = list[Run]()
-    for path in sorted((folder / "runs").glob("*.csv.gz")):
-        with gzip.open(path, "rt", newline="") as file:
+    for path in sorted((folder / "runs").glob("*.csv.xz")):
+        with lzma.open(path, "rt", newline="") as file:
             for row in csv.DictReader(file):
                 runs.append(run_of(row, scales[row["problem"]], path.name.partition(".")[0]))
     return runs
@@ -279,20 +280,24 @@ def interval(values: Array, plants: Sequence[str], draws: int = 2000) -> tuple[f
     return float(low), float(high)
 
 
+Rival = Callable[[str, float], list[Run]]
+"""Runs on a problem that a search is held against, by the processor time that it took."""
+
+
 def compare(
     results: Results,
     problems: Sequence[str],
     searches: Sequence[tuple[str, int]],
     measure: str,
-    *,
-    same_time: bool = False,
+    rival: Rival | None = None,
 ) -> list[dict[str, Any]]:
-    """Every search against the gradient over the problems that all of them have.
+    """Every search against the gradient, or another rival, over the problems that all have.
 
     Its row has medians over problems, Wilcoxon's p and Holm's, in how many plants and moves the
     search is nearer, and the decimal logarithm of the ratio of what both lack, with its interval.
-    In the same time these are of the problems alone on which the gradient has a front by then.
+    These are of the problems alone on which the rival has a front.
     """
+    against: Rival = rival or (lambda name, spent: results.control(name))
     problems = [
         name
         for name in problems
@@ -305,10 +310,7 @@ def compare(
         lacks = np.array([results.median(r, results.missing, measure) for r in runs])
         excess = np.array([results.median(r, results.excess, measure) for r in runs])
         seconds = np.array([np.median([run.seconds for run in r]) for r in runs])
-        controls = [
-            results.control_within(name, spent) if same_time else results.control(name)
-            for name, spent in zip(problems, seconds, strict=True)
-        ]
+        controls = [against(name, spent) for name, spent in zip(problems, seconds, strict=True)]
         known = np.array([bool(control) for control in controls], dtype=bool)
         theirs = np.array(
             [results.median(control, results.missing, measure) for control in controls if control]
@@ -321,7 +323,7 @@ def compare(
             "missing": _median(lacks),
             "control": _median(theirs),
             "control_seconds": _median(
-                np.array([control[0].seconds for control in controls if control])
+                np.array([np.median([r.seconds for r in runs]) for runs in controls if runs])
             ),
             "no_control": int((~known).sum()),
             "excess": _median(excess),
@@ -362,22 +364,27 @@ def searches_in(results: Results, axes: Sequence[str], budget: int, problems: Se
     return sorted((label, budget) for label, known in count.items() if len(known) >= least)
 
 
-def takes_derivatives(label: str) -> bool:
-    """Whether a search takes steps of the gradient."""
-    return "memetic" in label or "+polish" in label
+def takes_slopes(label: str) -> bool:
+    """Whether a method of candidates takes the gradient's steps, or differences."""
+    return any(word in label for word in ("memetic", "+polish", DIFFERENCES))
 
 
 def cell(results: Results, terms: int, budget: int, crossed: Sequence[str]) -> dict[str, Any]:
-    """A cell of the map: the nearest search against the gradient, four ways."""
+    """A cell of the map: the nearest search against the gradient or differences, in six ways."""
     problems = results.problems(terms)
     have = searches_in(results, ("centre", "crossing", "large"), budget, problems, 5)
     searches = [
-        (label, spent) for label, spent in have if label in crossed and not takes_derivatives(label)
+        (label, spent) for label, spent in have if label in crossed and not takes_slopes(label)
     ]
+    rivals: dict[str, Rival] = {
+        "to its end": lambda name, spent: results.control(name),
+        "same time": results.control_within,
+        "differences": lambda name, spent: results.of(DIFFERENCES, budget, name),
+    }
     ways = {}
     for measure in MEASURES:
-        for same_time in (False, True):
-            rows = compare(results, problems, searches, measure, same_time=same_time)
+        for title, rival in rivals.items():
+            rows = compare(results, problems, searches, measure, rival)
             rows = [row for row in rows if row["moves"]]
             if not rows:
                 continue
@@ -388,7 +395,7 @@ def cell(results: Results, terms: int, budget: int, crossed: Sequence[str]) -> d
             best["enough"] = bool(best["least_p_holm"] <= LEVEL)
             best["verdict"] = bool(best["enough"] and best["holm"] <= LEVEL)
             best["no_front"] = 2 * best["no_control"] > best["moves"]
-            ways[f"{measure}, {'same time' if same_time else 'to its end'}"] = best
+            ways[f"{measure}, {title}"] = best
     return {"terms": terms, "budget": budget, "ways": ways}
 
 
@@ -553,7 +560,7 @@ def prediction(
     data = list[tuple[str, list[float], float]]()
     shown = list[dict[str, Any]]()
     for name, row in sorted(rows.items()):
-        searches = [label for label in crossed if not takes_derivatives(label)]
+        searches = [label for label in crossed if not takes_slopes(label)]
         runs = [r for label in searches if (r := results.of(label, budget, name))]
         if len(runs) < len(searches) or not results.control(name):
             continue

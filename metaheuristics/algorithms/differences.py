@@ -2,12 +2,13 @@
 
 The energy is minimised within one residual limit after another, by derivatives that are forward
 differences; every candidate that they take counts. The first has no limit, from a random start.
-Those between zero and what the cheapest motion leaves are halved, each from the motion of the next
-larger one (continuation), or drawn, each from a random start.
+Those between zero and what the cheapest motion leaves fall, each from the motion of the next larger
+one (continuation), or are drawn, each from a random start.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
@@ -90,27 +91,37 @@ def slsqp(
     """
     random = np.random.default_rng(seed)
     differences = Differences(function, step)
-    limits = _halved_limits if continuation else _random_limits
+    limits = _falling_limits if continuation else _random_limits
     while True:
         with suppress(_LostError):
             limits(differences, function, random)
 
 
-def _halved_limits(differences: Differences, function: Any, random: np.random.Generator) -> None:
-    """Limits between those that are solved, each from the motion of the next larger one.
-
-    They end before they are closer than points of a front need, and another random start follows.
-    """
+def _falling_limits(differences: Differences, function: Any, random: np.random.Generator) -> None:
+    """Limits below that of the cheapest motion, each from the motion of the next larger one."""
     start = random.uniform(function.lower, function.upper)
     motions = {1.0: _least_energy(differences, function, start, np.inf, np.inf)}
     reach = _residual_left(differences, motions[1.0])
-    halvings = 6
-    for parts in 2 ** np.arange(1, halvings + 1):
-        for share in np.arange(parts - 1, 0, -2) / parts:
-            above = min(solved for solved in motions if solved > share)
-            motions[share] = _least_energy(
-                differences, function, motions[above], share * reach, reach
-            )
+    for share in falling_shares():
+        above = min(solved for solved in motions if solved > share)
+        motions[share] = _least_energy(differences, function, motions[above], share * reach, reach)
+
+
+def falling_shares() -> Iterator[float]:
+    """A half, its half and so on to a thousandth, then middles of the widest gaps.
+
+    They end with some 130 motions: another start tells more then.
+    """
+    shares = [2.0**-halvings for halvings in range(11)]
+    yield from shares[1:]
+    while True:
+        gaps = -np.diff(shares)
+        widest = int(np.argmax(gaps))
+        if gaps[widest] < 1 / 64:
+            return
+        middle = (shares[widest] + shares[widest + 1]) / 2
+        shares.insert(widest + 1, middle)
+        yield middle
 
 
 def _random_limits(differences: Differences, function: Any, random: np.random.Generator) -> None:

@@ -116,7 +116,7 @@ def test_what_cannot_be_is_refused_in_a_line(tmp_path, capsys, typed, words):
 def test_tables_come_back_as_they_were_with_the_same_bytes(tmp_path):
     row = {name: f"{number} 0.5" for number, name in enumerate(packed.COLUMNS)} | {"seed": "3"}
     other = row | {"seed": "1"}
-    path = tmp_path / "runs" / "centre.csv.gz"
+    path = tmp_path / "runs" / "centre.csv.xz"
     packed.write_rows([row, other], path)
     before = path.read_bytes()
     assert packed.read_rows(path) == [other, row]

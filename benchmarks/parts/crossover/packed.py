@@ -10,8 +10,8 @@ value of each objective. Areas, or volumes, are dominated up to 1.1 in that scal
 from __future__ import annotations
 
 import csv
-import gzip
 import io
+import lzma
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -90,7 +90,7 @@ def read_rows(path: Path) -> list[Row]:
     """The rows of a table; none where it is missing."""
     if not path.exists():
         return []
-    with gzip.open(path, "rt", newline="") as file:
+    with lzma.open(path, "rt", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -105,7 +105,7 @@ def write_rows(rows: Iterable[Row], path: Path) -> None:
     writer.writerows(sorted(rows, key=key_of))
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_suffix(".tmp")
-    temporary.write_bytes(gzip.compress(text.getvalue().encode(), 9, mtime=0))
+    temporary.write_bytes(lzma.compress(text.getvalue().encode(), preset=9 | lzma.PRESET_EXTREME))
     os.replace(temporary, path)
 
 

@@ -14,14 +14,15 @@ import jinja2
 import pandas as pd
 
 from .pictures import WAYS, write_pictures
+from .plan import LADDER
 from .run import plan_table
 from .tables import write_table
-from .words import short_label, spelled_budget, two_digits
+from .words import short_label, spelled_budget, two_digits, without_noise
 
 BEGIN = "<!-- what to take: benchmarks/crossover.py writes these lines -->"
 END = "<!-- end of what to take -->"
-DERIVATIVE = ("epsilon", "multistart", "memetic", "+polish")
-"""What takes derivatives, by name."""
+SLOPES = ("epsilon", "multistart", "memetic", "+polish", "slsqp")
+"""What takes derivatives or differences, by name."""
 
 
 def write_page(results: Path, choose: Path | None = None) -> None:
@@ -71,16 +72,20 @@ def page_of(figures: Mapping[str, Any], results: Path) -> str:
         keep_trailing_newline=True,
     )
     environment.filters.update(
-        short=short_label, budget=spelled_budget, two=two_digits, p=p_value, times=times_of
+        short=short_label, budget=spelled_budget, two=two_digits, p=p_value, times=times_of,
+        without_noise=without_noise,
     )
     moves = pd.read_csv(results / "moves.csv")
     return environment.get_template("page.md").render(
         figures=figures,
         moves=moves,
         plants=moves["plant"].unique().tolist(),
-        takes_derivatives=takes_derivatives,
+        takes_slopes=takes_slopes,
         nearest=nearest,
         verdicts=verdicts,
+        cell_of=cell_of,
+        best_of=best_of,
+        ladder=LADDER,
         ways=WAYS,
         row_of=row_of,
         begin=BEGIN,
@@ -90,16 +95,31 @@ def page_of(figures: Mapping[str, Any], results: Path) -> str:
     )
 
 
-def takes_derivatives(method: str) -> bool:
-    """Whether a method of the tables takes derivatives, in whole or in part."""
-    return any(word in method for word in DERIVATIVE)
+def takes_slopes(method: str) -> bool:
+    """Whether a method of the tables takes derivatives or differences, in whole or in part."""
+    return any(word in method for word in SLOPES)
 
 
 def nearest(rows: Sequence[Mapping[str, Any]]) -> Mapping[str, Any]:
-    """The search without derivatives that misses least."""
+    """The search that misses least: of what takes neither derivatives nor differences."""
     return min(
-        (row for row in rows if not takes_derivatives(row["method"])),
+        (row for row in rows if not takes_slopes(row["method"])),
         key=lambda row: row["missing"],
+    )
+
+
+def best_of(rows: Sequence[Mapping[str, Any]], method: str) -> Mapping[str, Any]:
+    """The row of a method with those of its settings that miss least."""
+    return min(
+        (row for row in rows if row["method"].partition(" ")[0] == method),
+        key=lambda row: row["missing"],
+    )
+
+
+def cell_of(cells: Sequence[Mapping[str, Any]], terms: int, budget: int) -> Mapping[str, Any]:
+    """The comparisons of a cell of the map."""
+    return next(
+        cell["ways"] for cell in cells if (cell["terms"], cell["budget"]) == (terms, budget)
     )
 
 

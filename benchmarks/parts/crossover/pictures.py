@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from .words import short_label, spelled_budget, two_digits
+from .words import RANDOM_STARTS, short_label, spelled_budget, two_digits, without_noise
 
 WAYS = (
     ("points, to its end", "50 points each, the gradient to its end"),
@@ -22,8 +22,14 @@ WAYS = (
     ("between, to its end", "with motions between, the gradient to its end"),
     ("between, same time", "with motions between, in the search's time"),
 )
+VALUES = (
+    ("points, differences", "50 points each, differences with as many candidates"),
+    ("between, differences", "with motions between, differences with as many candidates"),
+)
 MOST_DECADES = 1.5
 """A ratio of this many decades has the darkest colour."""
+NORM = TwoSlopeNorm(0.0, -MOST_DECADES, MOST_DECADES)
+DIVERGING = matplotlib.colormaps["RdBu_r"]
 NO_FRONT = "#f3e7b3"
 """Of a cell where the gradient has no front yet on most moves, so that nothing is compared."""
 COLOURS = ("#1b1b1b", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7f7f00", "#56b4e9", "#8c510a")
@@ -32,7 +38,8 @@ COLOURS = ("#1b1b1b", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7f7f00", "#5
 def write_pictures(figures: Mapping[str, Any], folder: Path) -> None:
     """All pictures of a page."""
     drawn = {
-        "map.png": map_figure(figures["map"]),
+        "map.png": map_figure(figures["map"], WAYS, "gradient"),
+        "values.png": map_figure(figures["map"], VALUES, "differences"),
         "coefficients.png": coefficients_figure(figures["map_rows"]),
         "budget.png": budget_figure(figures["map_rows"]),
         "attained.png": attained_figure(figures["attained"]),
@@ -51,39 +58,19 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def map_figure(cells: Sequence[Mapping[str, Any]]) -> Figure:
-    """Coefficients by budget: blue where a search is nearer, red where the gradient is."""
-    figure = new_figure(11.0, 7.0)
-    axes = figure.subplots(2, 2, sharex=True, sharey=True)
+def map_figure(
+    cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
+) -> Figure:
+    """Coefficients by budget: blue where a search is nearer, red where its rival is."""
+    rows = len(ways) // 2
+    figure = new_figure(11.0, 0.7 + 3.15 * rows)
+    axes = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
     terms = sorted({cell["terms"] for cell in cells})
     budgets = sorted({cell["budget"] for cell in cells})
-    norm = TwoSlopeNorm(0.0, -MOST_DECADES, MOST_DECADES)
-    colours = matplotlib.colormaps["RdBu_r"]
-    for ax, (way, title) in zip(axes.flat, WAYS, strict=True):
+    for ax, (way, title) in zip(axes.flat, ways, strict=True):
         for cell in cells:
-            row = cell["ways"].get(way)
             corner = (terms.index(cell["terms"]), budgets.index(cell["budget"]))
-            if row is None:
-                ax.add_patch(Rectangle(corner, 1, 1, facecolor="#eeeeee", edgecolor="white"))
-                middle(ax, corner, "not run", "#777777")
-                continue
-            text = f"{short_label(row['method'])}\n{two_digits(row['missing'])} %\ngradient\n"
-            if row["no_front"]:
-                ax.add_patch(Rectangle(corner, 1, 1, facecolor=NO_FRONT, edgecolor="white"))
-                middle(ax, corner, f"{text}nothing yet", "black")
-                continue
-            colour = colours(norm(np.clip(row["log_ratio"], -MOST_DECADES, MOST_DECADES)))
-            dark = abs(row["log_ratio"]) > 0.6 * MOST_DECADES and row["verdict"]
-            ax.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white"))
-            if not row["verdict"]:
-                hatch = "////" if row["enough"] else "...."
-                ax.add_patch(
-                    Rectangle(
-                        corner, 1, 1, fill=False, hatch=hatch, edgecolor="#999999", linewidth=0
-                    )
-                )
-            theirs = f"{two_digits(row['control'])} %"
-            middle(ax, corner, text + theirs, "white" if dark else "black", not row["verdict"])
+            draw_cell(ax, corner, cell["ways"].get(way), rival)
         ax.set(
             xlim=(0, len(terms)),
             ylim=(0, len(budgets)),
@@ -94,15 +81,38 @@ def map_figure(cells: Sequence[Mapping[str, Any]]) -> Figure:
         )
         ax.set_title(title, fontsize=10)
         ax.tick_params(length=0)
-    for ax in axes[1]:
+    for ax in axes[-1]:
         ax.set_xlabel("coefficients")
     for ax in axes[:, 0]:
         ax.set_ylabel("candidates")
-    bar = figure.colorbar(
-        matplotlib.cm.ScalarMappable(norm, colours), ax=axes, shrink=0.6, ticks=[-1, 0, 1]
-    )
+    scale = matplotlib.cm.ScalarMappable(NORM, DIVERGING)
+    bar = figure.colorbar(scale, ax=axes, shrink=0.6, ticks=[-1, 0, 1])
     bar.ax.set_yticklabels(["search misses a tenth", "alike", "search misses tenfold"], fontsize=8)
     return figure
+
+
+def draw_cell(
+    ax: Axes, corner: tuple[int, int], row: Mapping[str, Any] | None, rival: str
+) -> None:
+    """What the nearest search lacks and its rival; hatched or dotted without a verdict."""
+    if row is None:
+        ax.add_patch(Rectangle(corner, 1, 1, facecolor="#eeeeee", edgecolor="white"))
+        middle(ax, corner, "not run", "#777777")
+        return
+    text = f"{short_label(row['method'])}\n{two_digits(row['missing'])} %\n{rival}\n"
+    if row["no_front"]:
+        ax.add_patch(Rectangle(corner, 1, 1, facecolor=NO_FRONT, edgecolor="white"))
+        middle(ax, corner, f"{text}nothing yet", "black")
+        return
+    colour = DIVERGING(NORM(np.clip(row["log_ratio"], -MOST_DECADES, MOST_DECADES)))
+    ax.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white"))
+    if not row["verdict"]:
+        hatch = "////" if row["enough"] else "...."
+        pattern: dict[str, Any] = {"fill": False, "edgecolor": "#999999", "linewidth": 0}
+        ax.add_patch(Rectangle(corner, 1, 1, hatch=hatch, **pattern))
+    dark = abs(row["log_ratio"]) > 0.6 * MOST_DECADES and row["verdict"]
+    theirs = f"{two_digits(row['control'])} %"
+    middle(ax, corner, text + theirs, "white" if dark else "black", not row["verdict"])
 
 
 def middle(
@@ -203,7 +213,8 @@ def _over_groups(
     """What methods lack in each group: lines of the gradient and of seven others at most."""
     figure = new_figure(width, 3.6)
     ax = figure.subplots()
-    names = sorted({row["method"] for rows in groups.values() for row in rows})[:7]
+    methods = {row["method"] for rows in groups.values() for row in rows}
+    names = sorted(name for name in methods if RANDOM_STARTS not in name)[:7]
     series: dict[str, tuple[list[int], list[float]]] = {}
     for place, rows in enumerate(groups.values()):
         values = {row["method"]: row["missing"] for row in rows}
@@ -234,7 +245,7 @@ def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
 def noise_figure(noise: Mapping[str, Any]) -> Figure:
     """What searches lack where they see objectives with noise, and the gradient, which has none."""
     rows = {
-        share: [{**row, "method": row["method"].partition(" ")[0]} for row in compared]
+        share: [{**row, "method": without_noise(row["method"])} for row in compared]
         for share, compared in noise.items()
         if compared
     }

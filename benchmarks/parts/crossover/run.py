@@ -26,7 +26,7 @@ BATCH = 60
 
 def runs_path(results: Path, axis: str) -> Path:
     """The table of an axis."""
-    return results / "runs" / f"{axis}.csv.gz"
+    return results / "runs" / f"{axis}.csv.xz"
 
 
 def plan_of(results: Path) -> list[Planned]:
@@ -57,7 +57,7 @@ def refuse_axes(axes: Sequence[str]) -> None:
 
 def merge(results: Path, added: Path) -> None:
     """Add the rows and scales of further results, as of another part."""
-    for path in sorted((added / "runs").glob("*.csv.gz")):
+    for path in sorted((added / "runs").glob("*.csv.xz")):
         table = results / "runs" / path.name
         rows = {key_of(row): row for row in [*read_rows(path), *read_rows(table)]}
         write_rows(rows.values(), table)
@@ -181,7 +181,7 @@ def describe(folder: Path, results: Path) -> None:
 
 def all_rows(results: Path) -> list[Row]:
     """The rows of all tables."""
-    paths = sorted((results / "runs").glob("*.csv.gz"))
+    paths = sorted((results / "runs").glob("*.csv.xz"))
     return [row for path in paths for row in read_rows(path)]
 
 

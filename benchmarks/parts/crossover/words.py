@@ -9,10 +9,18 @@ LABELS = {
     "epsilon points=50": "gradient, 50 points",
     "epsilon points=10": "gradient, 10 points",
     "epsilon points=200": "gradient, 200 points",
+    "epsilon points=3": "gradient, 3 points",
+    "epsilon points=5": "gradient, 5 points",
     "multistart starts=100": "multistart",
     "nsga2+polish": "NSGA-II, polished",
     "gde3+polish": "GDE3, polished",
+    "slsqp": "differences",
+    "slsqp continuation=False": "differences, random starts",
+    "slsqp step=0.01": "differences of 1 % of the box",
+    "slsqp step=0.1": "differences of 10 % of the box",
 }
+RANDOM_STARTS = "continuation=False"
+"""Setting of the differences that pictures leave out."""
 
 
 def short_label(method: str) -> str:
@@ -39,3 +47,8 @@ def two_digits(value: float | None) -> str:
     if magnitude >= 10:
         return f"{value:.0f}"
     return f"{value:.1f}" if magnitude >= 1 else f"{value:.2g}"
+
+
+def without_noise(method: str) -> str:
+    """A method with its settings but the noise that it saw."""
+    return " ".join(word for word in method.split() if not word.startswith("noise="))
