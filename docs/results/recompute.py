@@ -36,7 +36,7 @@ CENTRE = 6
 CONTROL = "epsilon"
 CONTROL_SETTINGS = "points=50"
 DIFFERENCES = "slsqp"
-KINDS = ("absolute", "copper", "stages", "motor-map")
+KINDS = ("absolute", "copper", "stages", "motor-map", "integer")
 PAPER = ("nsga2-paper", "vepso")
 TARGETS = (50, 20, 10, 5, 2, 1)
 """Missing hypervolumes [%] that a run may attain."""

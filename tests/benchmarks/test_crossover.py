@@ -19,7 +19,10 @@ import crossover  # noqa: E402
 from parts.crossover import moves, packed, page, plan, run  # noqa: E402
 from parts.crossover.plan import Planned  # noqa: E402
 from parts.crossover.problems import Case, read_moves  # noqa: E402
+from parts.crossover.shared_terms import SharedTerms  # noqa: E402
 from parts.crossover.subset import best_subset  # noqa: E402
+
+import quietarm as qa  # noqa: E402
 
 recompute = page.recompute_module(RESULTS)
 DRAWN = read_moves(RESULTS / "moves.csv")
@@ -165,6 +168,20 @@ def test_a_name_says_plant_move_coefficients_and_energy():
     problem = recompute.Problem("arm-on-flexible-link-m3-16-motor-map")
     assert (problem.plant, problem.move) == ("arm-on-flexible-link", "arm-on-flexible-link-m3")
     assert (problem.terms, problem.kind) == (16, "motor-map")
+
+
+@pytest.mark.parametrize("number", [1, 2, 5])
+def test_an_integer_is_the_number_of_terms_that_share_a_box(number):
+    coefficients = np.array([0.02, -0.05, 0.1, 0.04, -0.03])
+    shared = SharedTerms(5)
+    lower, upper = shared.box(0.2)
+    assert lower[0] < 0.6 < upper[0]
+    alone = qa.CycloidPolynomial(number)
+    for fraction in (0.1, 0.4, 0.9):
+        motion = alone.angle(list(3 * coefficients[:number] / number), fraction)
+        for rounded in (number - 0.4, number, number + 0.4):
+            share = shared.angle([rounded, *coefficients], fraction)
+            assert float(share) == pytest.approx(float(motion), abs=1e-12)
 
 
 def test_choose_repeats_what_the_page_says():

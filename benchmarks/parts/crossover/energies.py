@@ -56,7 +56,7 @@ def energy_of(kind: str, plant: Plant, target: float, duration: float) -> qa.Ene
 
     A stage is half the plain cycloid's mean power; the map's edges are shares of its peaks.
     """
-    if kind == "absolute":
+    if kind in ("absolute", "integer"):
         return qa.AbsolutePower()
     if kind == "copper":
         return qa.CopperLoss(0.12)
@@ -69,7 +69,9 @@ def energy_of(kind: str, plant: Plant, target: float, duration: float) -> qa.Ene
         return Stages(_three_digits(energy / duration / 2))
     if kind == "motor-map":
         return MotorMap(_three_digits(torque), _three_digits(2 * abs(target) / duration))
-    raise ValueError(f"no energy is called {kind!r}; give absolute, copper, stages or motor-map")
+    raise ValueError(
+        f"no energy is called {kind!r}; give absolute, copper, stages, motor-map or integer"
+    )
 
 
 def _three_digits(value: float) -> float:

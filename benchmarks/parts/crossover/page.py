@@ -72,7 +72,11 @@ def page_of(figures: Mapping[str, Any], results: Path) -> str:
         keep_trailing_newline=True,
     )
     environment.filters.update(
-        short=short_label, budget=spelled_budget, two=two_digits, p=p_value, times=times_of,
+        short=short_label,
+        budget=spelled_budget,
+        two=two_digits,
+        p=p_value,
+        times=times_of,
         without_noise=without_noise,
     )
     moves = pd.read_csv(results / "moves.csv")

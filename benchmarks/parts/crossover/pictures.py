@@ -91,9 +91,7 @@ def map_figure(
     return figure
 
 
-def draw_cell(
-    ax: Axes, corner: tuple[int, int], row: Mapping[str, Any] | None, rival: str
-) -> None:
+def draw_cell(ax: Axes, corner: tuple[int, int], row: Mapping[str, Any] | None, rival: str) -> None:
     """What the nearest search lacks and its rival; hatched or dotted without a verdict."""
     if row is None:
         ax.add_patch(Rectangle(corner, 1, 1, facecolor="#eeeeee", edgecolor="white"))
@@ -236,7 +234,7 @@ def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
     """What methods lack by the kind of energy."""
     words = {
         "copper": "copper, smooth", "absolute": "|power|", "stages": "in stages",
-        "motor-map": "motor's map, jumps",
+        "motor-map": "motor's map, jumps", "integer": "|power|, an integer",
     }  # fmt: skip
     groups = {kind: kinds[kind] for kind in words if kinds[kind]}
     return _over_groups(groups, words, 8.5) if groups else None

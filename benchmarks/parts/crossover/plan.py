@@ -20,7 +20,7 @@ AXES = ("centre", "crossing", "energy", "paper", "noise", "objectives", "large",
 TERMS = (2, 4, 6, 10, 16, 24)
 BUDGETS = (1_000, 10_000)
 LARGE, MILLION = 100_000, 1_000_000
-KINDS = ("copper", "stages", "motor-map")
+KINDS = ("copper", "stages", "motor-map", "integer")
 SEEDS = {1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7, 1_000_000: 3}
 """Rounds of the full plan, by budget."""
 LADDER = (3, 5, 10, 50, 200)
@@ -86,6 +86,11 @@ class Planned:
         """Its settings and noise, as a table states them."""
         noise = (("noise", self.noise),) if self.noise else ()
         return " ".join(f"{name}={value}" for name, value in (*self.settings, *noise))
+
+    @property
+    def takes_every_number(self) -> bool:
+        """Whether it is the gradient where an integer has to be chosen."""
+        return self.case.has_integer and self.method == "epsilon"
 
     def job(self, folder: Path) -> Job:
         """The job of the bench."""

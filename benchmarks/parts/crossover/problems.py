@@ -11,9 +11,11 @@ import pandas as pd
 import quietarm as qa
 from quietarm.metaheuristics import NamedProblem
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.profiles.joint_profile import JointProfile
 
 from .energies import energy_of
 from .moves import Move, draw, plants
+from .shared_terms import SharedTerms, scale_of_every_number
 from .tables import write_table
 
 CENTRE_TERMS = 6
@@ -54,6 +56,16 @@ class Case:
         energy = energy_of(self.kind, move.plant, move.target, move.duration)
         return qa.PointToPoint(move.plant, move.target, move.duration, energy=energy)
 
+    @property
+    def profile(self) -> JointProfile:
+        """The paper's polynomial; of an integer the first of them is the number of its terms."""
+        return SharedTerms(self.terms - 1) if self.has_integer else qa.CycloidPolynomial(self.terms)
+
+    @property
+    def has_integer(self) -> bool:
+        """Whether an integer stands beside the coefficients."""
+        return self.kind == "integer"
+
     def problem(self, folder: Path) -> NamedProblem:
         """With the front that fixes its scale, which a folder keeps."""
         return _problem(self, folder)
@@ -74,7 +86,9 @@ def scale_front(case: Case) -> qa.Front:
     Where the energy jumps, the front of the absolute power is taken, with its energies by the map:
     solvers take long there, and a scale needs no optimum.
     """
-    profile = qa.CycloidPolynomial(case.terms)
+    if case.has_integer:
+        return scale_of_every_number(case.task, case.terms - 1, case.move.bound)
+    profile = case.profile
     if case.peaks:
         return qa.epsilon_front(
             case.task,

@@ -16,6 +16,7 @@ from .landscape import add_features
 from .packed import Row, key_of, read_rows, row_of, write_rows
 from .plan import AXES, Planned, rounds
 from .problems import CENTRE_TERMS, read_moves
+from .shared_terms import front_of_every_number
 from .tables import best_settings, write_table
 
 TUNED_WITH = 5_000
@@ -116,13 +117,18 @@ def run_jobs_of(
     for batch in batches(missing):
         by_job = dict[Job, Planned]()
         for planned in batch:
+            if planned.takes_every_number:
+                front = front_by_every_number(planned, folder)
+                pack(results, {planned: (planned.job(folder), front)})
+                finished += 1
+                continue
             try:
                 by_job[planned.job(folder)] = planned
             except qa.QuietarmError as error:
                 print(f"{planned.case.name}: {error}", flush=True)
                 failed += 1
         try:
-            fronts = run_jobs(list(by_job), folder, workers=workers)
+            fronts = run_jobs(list(by_job), folder, workers=workers) if by_job else {}
         except LostJobsError as error:
             print(error, flush=True)
             fronts = error.fronts
@@ -133,6 +139,23 @@ def run_jobs_of(
         place = f"round {last.round} {last.axis} {last.case.name}"
         print(f"{finished}/{len(missing)} {place}", flush=True)
     return failed
+
+
+def front_by_every_number(planned: Planned, folder: Path) -> qa.Front:
+    """The gradient where an integer has to be chosen: a front for each of its values."""
+    case = planned.case
+    path = folder / "every-number" / f"{case.name}-{planned.words}.json"
+    if path.exists():
+        return qa.Front.load(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    task = case.task
+    terms = case.terms - 1
+    points = dict(planned.settings)["points"]
+    rehearsal = 3  # points: what is compiled first is no part of the effort
+    front_of_every_number(task, terms, case.move.bound, rehearsal)
+    front = front_of_every_number(task, terms, case.move.bound, points)
+    front.save(path)
+    return front
 
 
 def pack(results: Path, fronts: dict[Planned, tuple[Job, qa.Front]]) -> None:
