@@ -211,8 +211,8 @@ def _over_groups(
     """What methods lack in each group: lines of the gradient and of seven others at most."""
     figure = new_figure(width, 3.6)
     ax = figure.subplots()
-    methods = {row["method"] for rows in groups.values() for row in rows}
-    names = sorted(name for name in methods if RANDOM_STARTS not in name)[:7]
+    missing = {row["method"]: row["missing"] for rows in groups.values() for row in rows}
+    names = sorted((name for name in missing if RANDOM_STARTS not in name), key=missing.get)[:7]
     series: dict[str, tuple[list[int], list[float]]] = {}
     for place, rows in enumerate(groups.values()):
         values = {row["method"]: row["missing"] for row in rows}

@@ -42,6 +42,8 @@ NOISES = (0.01, 0.05)
 NOISY = ("nsga2", "gde3", "moead-de", "mo-cma-es", "slsqp")
 PAPER = {"nsga2-paper": 100_000, "vepso": 40_000}
 """The paper's methods with the paper's candidates."""
+AGAIN = 5
+"""Evaluations whose mean a search may take where there is noise; each counts."""
 WIDE_STEPS = (0.01, 0.1)
 """Steps of differences as shares of the box, where a noise hides what small ones tell."""
 
@@ -66,6 +68,8 @@ class Planned:
         As of `Job`.
     noise : float
         Share of residual and energy by which a search sees them wrong, as of `Job`.
+    reevaluate : int
+        Evaluations of a candidate whose mean counts, as of `Job`.
     """
 
     axis: str
@@ -75,6 +79,7 @@ class Planned:
     budget: int | None = None
     settings: tuple[tuple[str, Any], ...] = ()
     noise: float = 0.0
+    reevaluate: int = 1
 
     @property
     def key(self) -> tuple[str, str, str, str, int]:
@@ -83,9 +88,13 @@ class Planned:
 
     @property
     def words(self) -> str:
-        """Its settings and noise, as a table states them."""
-        noise = (("noise", self.noise),) if self.noise else ()
-        return " ".join(f"{name}={value}" for name, value in (*self.settings, *noise))
+        """Its settings, evaluations and noise, as a table states them."""
+        stated = [*self.settings]
+        if self.reevaluate > 1:
+            stated.append(("reevaluate", self.reevaluate))
+        if self.noise:
+            stated.append(("noise", self.noise))
+        return " ".join(f"{name}={value}" for name, value in stated)
 
     @property
     def takes_every_number(self) -> bool:
@@ -101,6 +110,7 @@ class Planned:
             budget=self.budget,
             settings=dict(self.settings),
             noise=self.noise,
+            reevaluate=self.reevaluate,
         )
 
 
@@ -200,6 +210,9 @@ def noise(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
         for move in moves:
             for method in NOISY:
                 yield Planned("noise", seed, Case(move), method, 10_000, noise=share)
+            yield Planned(
+                "noise", seed, Case(move), "moead-de", 10_000, noise=share, reevaluate=AGAIN
+            )
             for step in WIDE_STEPS:
                 settings = (("step", step),)
                 yield Planned("noise", seed, Case(move), "slsqp", 10_000, settings, noise=share)

@@ -14,6 +14,7 @@ LABELS = {
     "multistart starts=100": "multistart",
     "nsga2+polish": "NSGA-II, polished",
     "gde3+polish": "GDE3, polished",
+    "moead-de reevaluate=5": "MOEA/D-DE, five evaluations",
     "slsqp": "differences",
     "slsqp continuation=False": "differences, random starts",
     "slsqp step=0.01": "differences of 1 % of the box",
