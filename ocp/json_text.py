@@ -88,8 +88,10 @@ def _numbers(entries: list[Any]) -> str:
 
 def _with_whole_numbers(numbers: str) -> str:
     """Floats as text with 1 in the place of 1.0, as some programs write it."""
-    text = _LARGE.sub(lambda match: str(int(float(match[0]))), numbers)
-    return _WHOLE.sub("", text.replace("-0.0,", "0,").replace("-0.0]", "0]"))
+    text = numbers.replace("-0.0,", "0,").replace("-0.0]", "0]")
+    if "e+" in text:  # found ten times as fast as the pattern
+        text = _LARGE.sub(lambda match: str(int(float(match[0]))), text)
+    return _WHOLE.sub("", text)
 
 
 def _as_whole(entry: Any) -> Any:
