@@ -5,6 +5,7 @@ import json
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from saved_files import with_whole_numbers
 
 from quietarm.ocp.json_text import texts_of
 
@@ -21,14 +22,6 @@ DOCUMENTS = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=4), inner),
     max_leaves=20,
 )
-
-
-def with_whole_numbers(entry):
-    if isinstance(entry, dict):
-        return {name: with_whole_numbers(value) for name, value in entry.items()}
-    if isinstance(entry, list):
-        return [with_whole_numbers(value) for value in entry]
-    return int(entry) if isinstance(entry, float) and entry.is_integer() else entry
 
 
 @given(DOCUMENTS)

@@ -7,6 +7,7 @@ import shutil
 import numpy as np
 import pytest
 from bench_problems import NAME
+from saved_files import with_whole_numbers
 
 import quietarm as qa
 from quietarm.metaheuristics import Job, NamedProblem, finished_jobs, problem_of, run_jobs
@@ -196,15 +197,6 @@ def test_a_run_is_believed_whatever_is_newer_than_its_file(runs):
 
     change(runs, edit)
     assert finished_jobs(JOBS, runs)[JOB].points == before[JOB].points
-
-
-def with_whole_numbers(entry):
-    """With 1 in the place of 1.0, as checksums are of."""
-    if isinstance(entry, dict):
-        return {name: with_whole_numbers(value) for name, value in entry.items()}
-    if isinstance(entry, list):
-        return [with_whole_numbers(value) for value in entry]
-    return int(entry) if isinstance(entry, float) and entry.is_integer() else entry
 
 
 @pytest.mark.parametrize("edit", [lambda document: document.pop("checksum"), other_seed])
