@@ -57,9 +57,11 @@ class Archive:
         self.marks = list[Mark]()
         self.corner = reference_corner(task, objectives)
         self._next_mark = 1.0
-        self._coefficients = np.empty((0, variables))
+        self._variables = variables
+        self._front: Places = np.empty(0, dtype=np.int64)  # which of those that entered
         self._objectives = np.empty((0, len(self.names)))
         self._entered = list[tuple[Places, Array, Array, Array]]()
+        self._entered_rows = 0
         self._waiting = list[tuple[Places, Array, Array, Array]]()
         self._waiting_rows = 0
         self._began = time.thread_time()
@@ -127,11 +129,15 @@ class Archive:
     def non_dominated(self) -> tuple[Array, Array]:
         """Coefficients and objectives of what was found, by increasing residual."""
         self._let_enter()
-        return self._coefficients, self._objectives
+        if not self._entered:
+            return np.empty((0, self._variables)), self._objectives
+        coefficients = np.concatenate([block[1] for block in self._entered])
+        return coefficients[self._front], self._objectives
 
     def share_of_box(self) -> float:
         """Share of the reference box that is dominated."""
-        points = self.non_dominated()[1]
+        self._let_enter()
+        points = self._objectives
         if len(self.names) > len(RESIDUAL_AND_ENERGY):  # of all, it would take longer than a search
             points = points[thinned(points)]
         return share_of_box(points, self.corner)
@@ -142,17 +148,16 @@ class Archive:
         self._let_enter()
         if not self._entered:
             return Entries()
-        numbers, coefficients, believed, true = (
-            np.concatenate(column).tolist() for column in zip(*self._entered)
-        )
-        residuals, energies, *peaks = zip(*true)
+        columns = [np.concatenate(column) for column in zip(*self._entered)]
+        numbers, coefficients, believed, true = columns
+        residuals, energies, *peaks = (tuple(column.tolist()) for column in true.T)
         return Entries(
-            tuple(numbers),
-            tuple(map(tuple, coefficients)),
+            tuple(numbers.tolist()),
+            _rows(coefficients),
             residuals,
             energies,
             dict(zip(peak_quantities(self.names), peaks)),
-            tuple(map(tuple, believed)) if self.noisy else (),
+            _rows(believed) if self.noisy else (),
         )
 
     def _let_enter(self) -> None:
@@ -162,17 +167,18 @@ class Archive:
         columns = [np.concatenate(column) for column in zip(*self._waiting)]
         self._waiting = []
         self._waiting_rows = 0
-        for begin in range(0, len(columns[0]), _BLOCK):
-            numbers, X, F, true = (column[begin : begin + _BLOCK] for column in columns)
+        for begin in range(0, len(columns[0]), 2 * _BLOCK):
+            numbers, X, F, true = (column[begin : begin + 2 * _BLOCK] for column in columns)
             rows = entering(self._objectives, F)
             if not len(rows):
                 continue
             self._entered.append((numbers[rows], X[rows], F[rows], true[rows]))
-            X = np.vstack([self._coefficients, X[rows]])
+            new = np.arange(self._entered_rows, self._entered_rows + len(rows))
+            self._entered_rows += len(rows)
             F = np.vstack([self._objectives, F[rows]])
             alive = np.flatnonzero(moocore.is_nondominated(F))
             alive = alive[np.argsort(F[alive, 0])]
-            self._coefficients = X[alive]
+            self._front = np.concatenate([self._front, new])[alive]
             self._objectives = F[alive]
 
     def front(
@@ -212,6 +218,11 @@ class Archive:
             entries=self.entries,
             objectives=self.names,
         )
+
+
+def _rows(table: Array) -> tuple[tuple[float, ...], ...]:
+    """The rows of a table as tuples, without a list for each of ten thousands."""
+    return tuple(zip(*table.T.tolist()))
 
 
 def entering(front: Array, candidates: Array) -> Places:

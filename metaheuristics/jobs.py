@@ -20,7 +20,7 @@ from quietarm.metaheuristics.gradient import (
 from quietarm.metaheuristics.objective.noise import noise_share, times_evaluated
 from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
-from quietarm.metaheuristics.run_files import check_run, sealed
+from quietarm.metaheuristics.run_files import JOB, check_run, digest_of_job
 from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
 from quietarm.metaheuristics.user_method import (
     Method,
@@ -135,7 +135,7 @@ class Job:
     def run(self) -> Front:
         """Find the front, with its effort during the run; points by CVODES.
 
-        Its ``settings`` name the problem. A ``checksum`` says that the file is as it was written.
+        Its ``settings`` name the problem, and have a digest of the job, by which its file is known.
         """
         digest = digest_of(self.method)
         if (self.problem, self.label) not in _rehearsed:
@@ -147,7 +147,7 @@ class Job:
             stated["budget"] = self.budget
         if digest:
             stated["digest"] = digest
-        return sealed(front.restated(settings=stated), self)
+        return front.restated(settings={**stated, JOB: digest_of_job(self)})
 
     def _find(self, rehearse: bool = False) -> Front:
         # generations, or points, that are found and forgotten before the first job of its kind in

@@ -12,36 +12,40 @@ from quietarm.metaheuristics.algorithms.presets import PRESETS
 from quietarm.metaheuristics.objective.stated_figures import check_figures
 from quietarm.metaheuristics.score import HYPERVOLUME, filled, objectives
 from quietarm.ocp import Front, Mark
-from quietarm.ocp.saved import as_loaded, plain, read_document, stated_part
+from quietarm.ocp.saved import as_loaded, keeps_checksum, plain, read_document, stated_part
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.jobs import Job
 
-CHECKSUM = "checksum"
-"""The setting of a run's record that has it."""
+JOB = "job"
+"""The setting of a run's record that has the digest of its job."""
+CHECKSUM_BEFORE = "checksum"
+"""The same of a run of before: a digest of its job and of all entries."""
+SEALS = frozenset({JOB, CHECKSUM_BEFORE})
 
 
-def sealed(front: Front, job: Job) -> Front:
-    """The front of a job with its checksum, as it is written."""
-    settings = {**front.record.settings, CHECKSUM: _checksum(front, job, plain(front))}
-    return front.restated(settings=settings)
+def digest_of_job(job: Job) -> str:
+    """A digest of what was asked for, and of the reference front as the scale of its figures.
+
+    That the entries are those that were written, the checksum of any answer's file says.
+    """
+    return _digest([job.name, _scale_of(job)])
 
 
 def is_sealed(front: Front) -> bool:
-    """Whether a run has a checksum; runs of before have none."""
-    return CHECKSUM in front.record.settings
+    """Whether a run states for which job a bench wrote it; runs of before need not."""
+    return not SEALS.isdisjoint(front.record.settings)
 
 
 def check_run(front: Front, job: Job, path: Path) -> None:
     """ValueError where a file does not hold what a bench wrote for a job.
 
-    A file without a checksum, of before, is evaluated again: its motions, and what it states of
+    A file that names no job, of before, is evaluated again: its motions, and what it states of
     its quality at the end. Its effort and what it says of the way there can only be consistent.
     """
     remedy = "delete that file, and its run is done again"
     if is_sealed(front):
-        document = read_document(path, Front.kind)
-        if front.record.settings[CHECKSUM] != _checksum(front, job, document):
+        if not _is_as_written(front, job, path):
             raise ValueError(
                 f"{path} is not what a bench wrote for {job.label}, seed {job.seed}: it was "
                 "changed, is another run's, or was measured against another reference front; "
@@ -54,17 +58,32 @@ def check_run(front: Front, job: Job, path: Path) -> None:
         raise ValueError(f"{path} {difference}; {remedy}")
 
 
-def _checksum(front: Front, job: Job, document: Any) -> str:
-    """A digest of all that a file says but the checksum itself, of its job and its reference.
+def _is_as_written(front: Front, job: Job, path: Path) -> bool:
+    """Whether a file holds all that a bench wrote for a job, and nothing else."""
+    settings = front.record.settings
+    if JOB in settings:
+        return settings[JOB] == digest_of_job(job) and bool(keeps_checksum(path, Front.kind))
+    return settings[CHECKSUM_BEFORE] == _checksum_before(front, job, path)
+
+
+def _checksum_before(front: Front, job: Job, path: Path) -> str:
+    """The digest of a run of before: of all that its file says but the checksum itself.
 
     What is newer than the file, and which it does not state, is no part of it.
     """
     settings = front.record.settings.items()
-    stated_settings = {name: value for name, value in settings if name != CHECKSUM}
+    stated_settings = {name: value for name, value in settings if name != CHECKSUM_BEFORE}
     loaded = as_loaded(front.restated(settings=stated_settings))
-    stated = stated_part(plain(loaded, whole=True), document)
-    scale = objectives(job.problem.reference().front).tolist()
-    text = json.dumps([job.name, scale, stated], sort_keys=True)
+    stated = stated_part(plain(loaded, whole=True), read_document(path, Front.kind))
+    return _digest([job.name, _scale_of(job), stated])
+
+
+def _scale_of(job: Job) -> list[list[float]]:
+    return objectives(job.problem.reference().front).tolist()
+
+
+def _digest(content: list[Any]) -> str:
+    text = json.dumps(content, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 

@@ -31,7 +31,7 @@ def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: s
 
 def _no_truth_value(value: Any) -> Any:
     """The value; TypeError for True and False, which count as 1 and 0 in Python."""
-    if isinstance(value, bool) or str(getattr(value, "dtype", "")) == "bool":
+    if isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b":
         raise TypeError(f"{value!r} is no number")
     return value
 

@@ -16,6 +16,10 @@ from quietarm.models.interrupts import Watch
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
+RECENT = 16
+"""So many functions of a kind, the latest, a process keeps compiled: each is of one plant, profile
+and number of steps, and takes 1 to 50 MB, with derivatives by 24 coefficients more. A plan takes up
+to five, so tasks that come in turn by three are not compiled again."""
 _TURN = RLock()
 """Two threads that build with CasADi, or run a solver of it, at once may end the process."""
 

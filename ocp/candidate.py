@@ -17,7 +17,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from quietarm.models import JointMotion
+from quietarm.models import JointMotion, Plant
 from quietarm.ocp.checks import takes
 from quietarm.ocp.limits import JERK, QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion, check_profile
@@ -181,8 +181,7 @@ class Candidate(Ranged):
         They are computed by CVODES without the tables and modes of the plant. Errors of the damping
         alone have no such equations.
         """
-        plant = perturb_plant(self.task.plant, self.errors)
-        equations = plant.in_full
+        equations = self._plant.in_full
         if equations is None:
             return None
         vibration = self._vibration
@@ -253,10 +252,14 @@ class Candidate(Ranged):
             task.plant, self.errors, self.path, task.initial_state, self._mesh.steps, task.energy
         )
 
-    @property
+    @cached_property
+    def _plant(self) -> Plant:
+        """The plant with the errors."""
+        return perturb_plant(self.task.plant, self.errors)
+
+    @cached_property
     def _vibration(self) -> FreeVibration:
-        plant = perturb_plant(self.task.plant, self.errors)
-        return vibration_of(plant, self.task.target, self.task.residual_window)
+        return vibration_of(self._plant, self.task.target, self.task.residual_window)
 
     @cached_property
     def _mesh(self) -> Mesh:
@@ -292,6 +295,5 @@ class Candidate(Ranged):
     def _after(self, later: NDArray[np.float64]) -> NDArray[np.float64]:
         """`outputs_of` the joint at rest, at times since arrival [s]."""
         states = self._vibration.states(self._run.arrival, later)
-        plant = perturb_plant(self.task.plant, self.errors)
         joint = JointMotion(self.task.target, 0.0, 0.0, 0.0)
-        return outputs_of(plant, joint, ca.DM(states.T)).full()
+        return outputs_of(self._plant, joint, ca.DM(states.T)).full()

@@ -21,6 +21,7 @@ from quietarm.ocp.checks import known
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.errors import FileFormatError
 from quietarm.ocp.files import read_bytes, write_whole
+from quietarm.ocp.json_text import LEAVES, texts_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.term_profile import import_profiles
 from quietarm.ocp.record import Record
@@ -41,10 +42,6 @@ PLANT_FILE = "plant_file"
 """Entry of a plant: the file it was loaded from."""
 CHECKSUM = "checksum"
 """Entry of an answer's file: a digest of all the others."""
-_ENCODER = json.JSONEncoder(allow_nan=False)
-"""Made once: a file has a thousand lists of its own line."""
-_LEAVES = frozenset({float, int, str, bool, type(None)})
-"""Of JSON, and as they are."""
 
 
 def plain(value: Any, whole: bool = False) -> Any:
@@ -53,11 +50,11 @@ def plain(value: Any, whole: bool = False) -> Any:
     Fields that are `IF_STATED` are left out where they have nothing, unless it is to be `whole`.
     """
     kind = type(value)
-    if kind in _LEAVES:
+    if kind in LEAVES:
         return value
     if kind is tuple or kind is list:
         # most entries are numbers, of which a file may have ten thousands
-        return [entry if type(entry) in _LEAVES else plain(entry, whole) for entry in value]
+        return [entry if type(entry) in LEAVES else plain(entry, whole) for entry in value]
     match value:
         case Plant() | JointProfile() | Energy():
             return _named(value) | _entries(value, whole)
@@ -147,7 +144,7 @@ def _unknown(document: Any, known: Any) -> set[str]:
         case dict(), dict():
             inner = (_unknown(document[name], known[name]) for name in document.keys() & known)
             return (document.keys() - known.keys()).union(*inner)
-        case list(), list() if document and type(document[0]) not in _LEAVES:
+        case list(), list() if document and type(document[0]) not in LEAVES:
             return set().union(*map(_unknown, document, known))
     return set()
 
@@ -238,7 +235,7 @@ def stated_part(value: Any, document: Any) -> Any:
                 for name, entry in value.items()
                 if name in document
             }
-        case list(), list() if value and type(value[0]) not in _LEAVES:
+        case list(), list() if value and type(value[0]) not in LEAVES:
             return [stated_part(*pair) for pair in zip(value, document)]
     return value
 
@@ -292,35 +289,11 @@ def keeps_checksum(path: str | Path, name: str) -> bool | None:
 def _checksum_of(document: Mapping[str, Any]) -> str:
     """A digest of all entries but the checksum, however numbers and spaces are written."""
     entries = {name: entry for name, entry in document.items() if name != CHECKSUM}
-    text = json.dumps(_with_whole_numbers(entries), sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()[:32]
+    return _digest(texts_of(entries).canonical)
 
 
-def _with_whole_numbers(entry: Any) -> Any:
-    """An entry with 1 in the place of 1.0, as some programs write it that save a file again."""
-    kind = type(entry)
-    if kind is float:
-        return int(entry) if entry.is_integer() else entry
-    if kind is dict:
-        return {name: _with_whole_numbers(value) for name, value in entry.items()}
-    if kind is list:
-        return [_with_whole_numbers(value) for value in entry]
-    return entry
-
-
-def _indented(document: Any, margin: str = "\n") -> str:
-    """A document as JSON of one entry a line; a list of numbers or texts stands on one."""
-    inner = f"{margin}  "
-    match document:
-        case dict() if document:
-            entries = (
-                f"{json.dumps(name)}: {_indented(entry, inner)}" for name, entry in document.items()
-            )
-            return f"{{{inner}{f',{inner}'.join(entries)}{margin}}}"
-        case list() if not _LEAVES.issuperset(map(type, document)):
-            entries = (_indented(entry, inner) for entry in document)
-            return f"[{inner}{f',{inner}'.join(entries)}{margin}]"
-    return _ENCODER.encode(document)
+def _digest(canonical: str) -> str:
+    return hashlib.sha256(canonical.encode()).hexdigest()[:32]
 
 
 @contextmanager
@@ -348,7 +321,11 @@ class Saved:
 
     def save(self, path: str | Path) -> None:
         """Write the answer as JSON, whole or not at all; ValueError where that cannot be."""
-        write_whole(path, _indented(self._document()) + "\n")
+        write_whole(path, self._text() + "\n")
+
+    def _text(self) -> str:
+        """What its file says."""
+        return texts_of(self._document()).indented
 
     def _document(self) -> dict[str, Any]:
         return {"format": f"quietarm-{self.kind}", "version": self.version, **self._content()}
@@ -382,9 +359,10 @@ class Answer(Saved):
 
     record: Record
 
-    def _document(self) -> dict[str, Any]:
-        document = super()._document()
-        return {**document, CHECKSUM: _checksum_of(document)}
+    def _text(self) -> str:
+        texts = texts_of(self._document())
+        entries = texts.indented.removesuffix("\n}")
+        return f'{entries},\n  "{CHECKSUM}": "{_digest(texts.canonical)}"\n}}'
 
     def restated(self, **changes: Any) -> Self:
         """The same answer with other entries of its record."""

@@ -121,6 +121,8 @@ def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
         When there is no such parameter, or a number makes the frequency 0 or the damping negative.
     """
     _by_name(errors)
+    if not errors:
+        return plant
     refuse_unknown(plant, errors)
     parameters = (name for name in errors if name not in _OF_MODES)
     values = {name: getattr(plant, name) * (1 + errors[name]) for name in parameters}

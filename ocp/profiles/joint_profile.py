@@ -219,7 +219,9 @@ class JointProfile(ABC):
             raise ValueError(
                 f"got {values.size} coefficients for a profile of {self.size}; give {counted}"
             )
-        return tuple(finite(f"coefficient {i}", value) for i, value in enumerate(values, 1))
+        for i in np.flatnonzero(~np.isfinite(values)):
+            finite(f"coefficient {i + 1}", values[i])
+        return tuple(values.tolist())
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
-from quietarm.models.compiled import Compiled
+from quietarm.models.compiled import RECENT, Compiled
 from quietarm.ocp.cost import COST
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolverFailedError
@@ -94,7 +94,7 @@ def _refusing(motion: str) -> Iterator[None]:
         raise SolverFailedError(f"CVODES could not follow this motion{motion}") from error
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=RECENT)
 def _figures(
     plant: Plant,
     law: Law,

@@ -14,6 +14,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.models.compiled import RECENT
 from quietarm.ocp.checks import instance, table_of, takes, whole
 from quietarm.ocp.cost import COST
 from quietarm.ocp.limits import RESIDUAL, Limit, Quantity
@@ -332,7 +333,7 @@ def simulate(
     return Values(energy[:, 0], arrival, limited)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=RECENT)
 def _compiled_values(simulation: Simulation) -> RowFunction:
     return RowFunction(partial(_build_values, simulation), sizes=(1, 8, 100))
 

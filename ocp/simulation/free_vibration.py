@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -17,6 +18,21 @@ from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.window import MOST_RADIANS
 
 Array = NDArray[np.float64]
+
+
+class _Sampling(NamedTuple):
+    """How a window is sampled: `samples` in a stride, strides in `columns`, these in `rounds`.
+
+    The `rows` give displacements and scaled rates at the samples of a stride from the state at its
+    beginning; `stride` and `following` move that on by a stride, and by all columns.
+    """
+
+    samples: int
+    rows: Array
+    columns: int
+    stride: Array
+    rounds: int
+    following: Array
 
 
 class FreeVibration:
@@ -108,6 +124,18 @@ class FreeVibration:
         """
         rows_of_states = np.asarray(states, dtype=float)
         state = rows_of_states.reshape(-1, 1, rows_of_states.shape[-1])
+        sampling = self._sampling
+        starts = powers(state, sampling.stride, sampling.columns)
+        most = np.zeros(len(state))
+        for _ in range(sampling.rounds):
+            moved = sampling.rows @ starts.swapaxes(1, 2)
+            moved = moved.reshape(len(state), sampling.samples + 1, 2, -1)
+            most = np.maximum(most, _largest(moved[:, :, 0], moved[:, :, 1]))
+            starts = starts @ sampling.following
+        return most.reshape(rows_of_states.shape[:-1])
+
+    @cached_property
+    def _sampling(self) -> _Sampling:
         matrix, tips = (
             matrices.reshape(-1, *matrices.shape[-2:]) for matrices in (self.matrix, self.tips)
         )
@@ -122,17 +150,15 @@ class FreeVibration:
         between = self.window / (rounds * columns * samples)
         step = exponential(matrix, between, self._most)
         outputs = np.concatenate([tips, between[..., None, None] * tips @ matrix], axis=1)
-        rows = powers(outputs, step, samples + 1)
         stride = np.linalg.matrix_power(step, samples).swapaxes(1, 2)
-        starts = powers(state, stride, columns)
-        following = np.linalg.matrix_power(stride, columns)
-        most = np.zeros(len(state))
-        for _ in range(rounds):
-            moved = rows @ starts.swapaxes(1, 2)
-            moved = moved.reshape(len(state), samples + 1, 2, -1)
-            most = np.maximum(most, _largest(moved[:, :, 0], moved[:, :, 1]))
-            starts = starts @ following
-        return most.reshape(rows_of_states.shape[:-1])
+        return _Sampling(
+            samples,
+            powers(outputs, step, samples + 1),
+            columns,
+            stride,
+            rounds,
+            np.linalg.matrix_power(stride, columns),
+        )
 
     def states(self, state: ArrayLike, times: ArrayLike) -> Array:
         """The states at times since arrival [s], shape (times, 2 * modes), of one vibration."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from itertools import repeat
 from typing import Any
 
@@ -59,7 +60,8 @@ class RowFunction:
         if size == 1 and larger and self._padded_calls < 200:
             self._padded_calls += 1
             return min(larger)
-        compiled = Compiled(lambda: self._build(size), side_by_side=True)
+        # it does not refer to this object, which then goes, with its memory, when it is forgotten
+        compiled = Compiled(partial(self._build, size), side_by_side=True)
         with COST.timed("builds"):
             _ = compiled.function
         self._compiled[size] = compiled

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.models.compiled import Compiled
+from quietarm.models.compiled import RECENT, Compiled
 from quietarm.ocp.cost import COST
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.evaluator import Values
@@ -193,5 +193,5 @@ class Batch:
         return by_axis.transpose(3, 1, 0, 2).reshape(rows, size, -1)
 
 
-batch_of = lru_cache(maxsize=32)(Batch)
+batch_of = lru_cache(maxsize=RECENT)(Batch)
 """A batch that is kept for the next who asks for it."""

@@ -1,14 +1,19 @@
 """The one evaluation: candidates in scenarios by fixed steps, against CVODES one by one."""
 
 import copy
+import gc
 import pickle
+import weakref
 from dataclasses import replace
 
+import casadi as ca
 import numpy as np
 import pytest
 
 import quietarm as qa
+from quietarm.ocp.cost import COST
 from quietarm.ocp.simulation.evaluator import Evaluator
+from quietarm.ocp.simulation.rows import RowFunction, copy_rows
 
 PROFILE = qa.CycloidPolynomial(3)
 MOTIONS = np.random.default_rng(2).uniform(-0.2, 0.2, (4, 3))
@@ -112,3 +117,32 @@ def test_a_free_motion_has_no_fixed_steps(tasks):
     floor = qa.energy_floor(tasks["single link"], starts=1)
     with pytest.raises(ValueError, match="has no profile"):
         qa.evaluate_robustness(floor.candidate, {"frequency": 0.1})
+
+
+def test_functions_of_rows_go_as_soon_as_they_are_forgotten():
+    def build(rows):
+        x = ca.MX.sym("x", rows, 2)
+        return ca.Function("twice", [x], [2 * x])
+
+    function = RowFunction(build, sizes=(4,))
+    (values,) = function([np.ones((3, 2))], copy_rows)
+    assert np.array_equal(values, 2 * np.ones((3, 2)))
+    reference = weakref.ref(function)
+    gc.disable()  # Python looks for cycles of references when it likes
+    try:
+        del function
+        assert reference() is None
+    finally:
+        gc.enable()
+
+
+def test_a_few_tasks_that_come_in_turn_are_compiled_once(tasks):
+    evaluators = [Evaluator(task, PROFILE) for task in tasks.values()]
+
+    def evaluate_all():
+        return [evaluator(MOTIONS).energy for evaluator in evaluators]
+
+    first = evaluate_all()
+    built = COST.builds
+    assert np.array_equal(first, evaluate_all())
+    assert COST.builds == built

@@ -7,10 +7,11 @@ import shutil
 import numpy as np
 import pytest
 from bench_problems import NAME
+from saved_files import with_whole_numbers
 
 import quietarm as qa
 from quietarm.metaheuristics import Job, NamedProblem, finished_jobs, problem_of, run_jobs
-from quietarm.metaheuristics.run_files import CHECKSUM, is_sealed
+from quietarm.metaheuristics.run_files import CHECKSUM_BEFORE, SEALS, is_sealed
 
 JOBS = [Job(NAME, "random", seed, 200) for seed in (0, 1)]
 JOB = JOBS[0]
@@ -34,14 +35,36 @@ def path_of(job, folder):
     return folder / f"{job.name}.json"
 
 
-def change(folder, edit, checksum=True):
-    """Edit a run's document, and leave its checksum or take it away."""
+def change(folder, edit, sealed=True):
+    """Edit a run's document, and let it name its job or not."""
     path = path_of(JOB, folder)
     document = json.loads(path.read_text())
-    if not checksum:
-        del document["record"]["settings"][CHECKSUM]
+    if not sealed:
+        remove_seal(document)
     edit(document)
     path.write_text(json.dumps(document))
+
+
+def remove_seal(document):
+    settings = document["record"]["settings"]
+    (name,) = SEALS & settings.keys()
+    del settings[name]
+
+
+def seal_as_before(document):
+    """Give a run the digest that files had until 2.0.0: of its job, the reference, all entries."""
+    remove_seal(document)
+    del document["checksum"]
+    says = {name: entry for name, entry in document.items() if name not in ("format", "version")}
+    reference = JOB.problem.fronts()[0]
+    scale = np.column_stack([reference.residuals, reference.energies]).tolist()
+    text = json.dumps([JOB.name, scale, says], sort_keys=True)
+    digest = hashlib.sha256(text.encode()).hexdigest()[:32]
+    document["record"]["settings"][CHECKSUM_BEFORE] = digest
+
+
+def without_newest_entry(document):
+    del document["task"]["torque_speed"]
 
 
 def lower_energies(document):
@@ -120,9 +143,9 @@ def test_what_the_bench_wrote_is_believed_and_what_is_deleted_is_done_again(runs
     assert run_jobs(JOBS, runs)[JOB].points == before[JOB].points
 
 
-def test_a_run_of_before_without_a_checksum_is_loaded(runs):
+def test_a_run_of_before_that_names_no_job_is_loaded(runs):
     before = finished_jobs(JOBS, runs)
-    change(runs, lambda document: None, checksum=False)
+    change(runs, lambda document: None, sealed=False)
     after = finished_jobs(JOBS, runs)
     assert after[JOBS[1]] == before[JOBS[1]]
     assert not is_sealed(after[JOB])
@@ -142,27 +165,45 @@ def test_a_run_of_before_without_a_checksum_is_loaded(runs):
     ],
 )
 def test_a_run_of_before_is_evaluated_again(runs, edit, words):
-    change(runs, edit, checksum=False)
+    change(runs, edit, sealed=False)
     with pytest.raises(ValueError, match=f"{words}.*; delete that file, and its run is done again"):
         finished_jobs(JOBS, runs)
 
 
-def test_a_run_is_believed_whatever_is_newer_than_its_file(runs):
-    """Of a file without the task's newest entry, with the digest that such a file had."""
+@pytest.mark.parametrize("edit", [lambda document: None, without_newest_entry])
+def test_a_run_with_the_digest_of_before_is_believed(runs, edit):
     before = finished_jobs(JOBS, runs)
-    path = path_of(JOB, runs)
-    document = json.loads(path.read_text())
-    del document["task"]["torque_speed"]
-    outside = ("format", "version", CHECKSUM)  # of any file
-    says = {name: entry for name, entry in document.items() if name not in outside}
-    del says["record"]["settings"][CHECKSUM]
-    reference = JOB.problem.fronts()[0]
-    scale = np.column_stack([reference.residuals, reference.energies]).tolist()
-    text = json.dumps([JOB.name, scale, says], sort_keys=True)
-    digest = hashlib.sha256(text.encode()).hexdigest()[:32]
-    says["record"]["settings"][CHECKSUM] = digest
-    path.write_text(json.dumps(document))
+    change(runs, lambda document: (edit(document), seal_as_before(document)))
+    after = finished_jobs(JOBS, runs)[JOB]
+    assert is_sealed(after)
+    assert (after.points, after.entries) == (before[JOB].points, before[JOB].entries)
+
+
+@pytest.mark.parametrize("edit", CHANGES)
+def test_a_run_with_the_digest_of_before_that_was_changed_is_refused(runs, edit):
+    change(runs, lambda document: (seal_as_before(document), edit(document)))
+    with pytest.raises(ValueError, match=r"is not what a bench wrote for random, seed 0.*delete"):
+        finished_jobs(JOBS, runs)
+
+
+def test_a_run_is_believed_whatever_is_newer_than_its_file(runs):
+    before = finished_jobs(JOBS, runs)
+
+    def edit(document):
+        without_newest_entry(document)
+        del document["checksum"]
+        text = json.dumps(with_whole_numbers(document), sort_keys=True)
+        document["checksum"] = hashlib.sha256(text.encode()).hexdigest()[:32]
+
+    change(runs, edit)
     assert finished_jobs(JOBS, runs)[JOB].points == before[JOB].points
+
+
+@pytest.mark.parametrize("edit", [lambda document: document.pop("checksum"), other_seed])
+def test_a_run_that_names_its_job_needs_the_checksum_of_its_file(runs, edit):
+    change(runs, edit)
+    with pytest.raises(ValueError, match="is not what a bench wrote for random, seed 0"):
+        finished_jobs(JOBS, runs)
 
 
 def test_the_command_refuses_a_changed_run_in_one_line(call, runs):
