@@ -806,6 +806,18 @@ def objective_figures(results: Results) -> dict[str, Any]:
     return {"objectives": rows, "grid_seconds": seconds}
 
 
+def million(results: Results) -> dict[str, list[dict[str, Any]]]:
+    """What a million candidates leave, by coefficients, with motions between."""
+    runs = [run for run in results.runs if run.axis == "million"]
+    figures = {}
+    for terms in sorted({Problem(run.problem).terms for run in runs}):
+        of_terms = [run for run in runs if Problem(run.problem).terms == terms]
+        problems = sorted({run.problem for run in of_terms})
+        searches = sorted({(run.label, run.budget) for run in of_terms})
+        figures[str(terms)] = compare(results, problems, searches, "between")
+    return figures
+
+
 def compute(folder: Path) -> dict[str, Any]:
     """All figures."""
     results = Results(folder)
@@ -831,6 +843,7 @@ def compute(folder: Path) -> dict[str, Any]:
         "centre": both(results, centre, methods),
         "paper": both(results, centre, paper),
         "large": both(results, centre, searches_in(results, ("large",), 100_000, centre, 3)),
+        "million": million(results),
         "tuned": tuned(results),
         "kinds": kind_figures(results),
         "noise": noise_figures(results),
