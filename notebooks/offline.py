@@ -35,7 +35,10 @@ _FRAME = re.compile(r'(?P<before><iframe[^>]*?)src="(?P<name>[\w.-]+\.html)"')
 _STYLE = """<style>
 .equation { display: flex; align-items: center; margin: 1em 0; }
 .equation div { flex: 1; }
-math { font-family: "STIX Two Math", "STIX Math", "Cambria Math", "Latin Modern Math", math; }
+math {
+  font-family: "STIX Two Math", "STIX Math", "Cambria Math", "Latin Modern Math",
+    "DejaVu Math TeX Gyre", math;
+}
 mover > mo:last-child { font-size: 1.5em; font-weight: bold; line-height: 1; }
 details .highlight { margin-bottom: 0.7em; }
 .celltag_hide-input .jp-Cell-inputWrapper { margin: 0.5em 0; }
@@ -70,7 +73,8 @@ _ON_THE_WALL = """<style>
 .reveal details pre { font-size: 15px; line-height: 18px; }
 .reveal img { display: block; margin: 0 auto; max-width: 100%; }
 .reveal .jp-Cell { padding: 0; }
-.reveal .jp-RenderedText pre { padding: 0; word-break: normal; overflow-wrap: anywhere; }
+.reveal .jp-RenderedText pre { padding: 0; width: 100%; }
+.reveal .jp-RenderedText pre { word-break: normal; overflow-wrap: anywhere; }
 .reveal :is(.jp-InputPrompt, .jp-OutputPrompt, .jp-Collapser) { display: none; }
 .reveal .celltag_hide-input .jp-Cell-inputWrapper { display: none; }
 .reveal .controls { font-size: 4px; }
