@@ -241,7 +241,7 @@ def _height_of_text(text):
         if block.startswith("#"):
             height += HEADING
         elif block.startswith("$$"):
-            height += EQUATION * block.count("\\tag")
+            height += EQUATION * max(1, block.count("\\tag"))
         elif block.startswith("|"):
             height += TEXT_LINE * (block.count("\n") + 1)
         else:
