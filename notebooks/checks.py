@@ -93,7 +93,7 @@ class Numbers:
         verdicts = [_how_far(value, right) if off else "right" for value, right, off in pairs]
         if len(set(verdicts)) == 1:
             return f"each number is {verdicts[0]}"
-        return "; ".join(f"number {place} is {said}" for place, said in enumerate(verdicts, 1))
+        return "; ".join(f"number {place} is {words}" for place, words in enumerate(verdicts, 1))
 
 
 @dataclass(frozen=True)

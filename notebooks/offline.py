@@ -73,7 +73,7 @@ _ON_THE_WALL = """<style>
 .reveal details pre { font-size: 15px; line-height: 18px; }
 .reveal img { display: block; margin: 0 auto; max-width: 100%; }
 .reveal .jp-Cell { padding: 0; }
-.reveal .jp-RenderedText pre { padding: 0; width: 100%; }
+.reveal div.jp-OutputArea-output > pre { padding: 0; width: 100%; }
 .reveal .jp-RenderedText pre { word-break: normal; overflow-wrap: anywhere; }
 .reveal :is(.jp-InputPrompt, .jp-OutputPrompt, .jp-Collapser) { display: none; }
 .reveal .celltag_hide-input .jp-Cell-inputWrapper { display: none; }

@@ -38,7 +38,7 @@ LETTERS = 95
 """Letters on a line of text."""
 
 HIDDEN = re.compile(r"%matplotlib|# Your attempt|(?:.*\n)*from checks import ")
-"""How the code cells begin that are not on slides."""
+"""Code cells that are not on slides: settings, attempts, and what finds the checks."""
 _SHOWN = re.compile(r"#|\||- |\d\. |```|<|\s*\$\$")
 """How the blocks of text begin that are on slides as they stand."""
 _LIST = re.compile(r"- |1\. ")
