@@ -39,7 +39,9 @@ math {
   font-family: "STIX Two Math", "STIX Math", "Cambria Math", "Latin Modern Math",
     "DejaVu Math TeX Gyre", math;
 }
-mover > mo:last-child { font-size: 1.5em; font-weight: bold; line-height: 1; }
+mover:not([accent]) > mo:last-child:not([accent]) {
+  font-size: 1.5em; font-weight: bold; line-height: 1;
+}
 details .highlight { margin-bottom: 0.7em; }
 .celltag_hide-input .jp-Cell-inputWrapper { margin: 0.5em 0; }
 </style>"""
