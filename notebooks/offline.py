@@ -3,8 +3,8 @@
     python notebooks/offline.py [--slides] [--output FOLDER] NOTEBOOK...
 
 Slides show headings, equations, lists with the sentence before them, questions and programs; all
-other sentences are speaker notes (key S), unless a slide has room for them. What a cell shows appears when you go on; of cells
-that draw there is the picture.
+other sentences are speaker notes (key S), unless a slide has room for them. What a cell shows
+appears when you go on; of cells that draw there is the picture.
 """
 
 import argparse
