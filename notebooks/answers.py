@@ -610,7 +610,7 @@ EXERCISES = {
     ),
     "11": (
         Numbers(
-            "half the width of the frequency's interval, of one long and of three recordings",
+            "half the frequency's interval, of one long and of three recordings",
             "%",
             widths_of_frequency,
             count=2,

@@ -29,6 +29,7 @@ SLIPS = {
     "J": {"mJ": 1e3},
     "mJ": {"J": 1e-3},
     "mJ/(N m)": {"J/(N m)": 1e-3},
+    "N m": {"mN m": 1e3},
     "%": {"parts of 1": 0.01},
     "-": {"%": 100.0},
 }
@@ -89,10 +90,10 @@ class Numbers:
         if self.count == 1:
             return _how_far(values[0], self.solution[0])
         pairs = zip(values, self.solution, wrong, strict=True)
-        return "; ".join(
-            f"number {place} is {_how_far(value, right) if off else 'right'}"
-            for place, (value, right, off) in enumerate(pairs, 1)
-        )
+        verdicts = [_how_far(value, right) if off else "right" for value, right, off in pairs]
+        if len(set(verdicts)) == 1:
+            return f"each number is {verdicts[0]}"
+        return "; ".join(f"number {place} is {words}" for place, words in enumerate(verdicts, 1))
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,8 @@ class Choice:
 
     def verdict(self, answer):
         plain = answer.strip().lower() if isinstance(answer, str) else answer
+        if isinstance(plain, float) and plain.is_integer():
+            plain = int(plain)
         word_or_number = isinstance(plain, str | int | np.integer) and not isinstance(plain, bool)
         if not word_or_number or plain not in self.among:
             raise NonsenseError(_described(answer))

@@ -2,9 +2,9 @@
 
     python notebooks/offline.py [--slides] [--output FOLDER] NOTEBOOK...
 
-Slides show headings, equations, lists, questions and programs; all other sentences are speaker
-notes (key S), unless a slide has room for them. What a cell shows appears when you go on; of cells
-that draw there is the picture.
+Slides show headings, equations, lists with the sentence before them, questions and programs; all
+other sentences are speaker notes (key S), unless a slide has room for them. What a cell shows
+appears when you go on; of cells that draw there is the picture.
 """
 
 import argparse
@@ -35,8 +35,13 @@ _FRAME = re.compile(r'(?P<before><iframe[^>]*?)src="(?P<name>[\w.-]+\.html)"')
 _STYLE = """<style>
 .equation { display: flex; align-items: center; margin: 1em 0; }
 .equation div { flex: 1; }
-math { font-family: "STIX Two Math", "STIX Math", "Cambria Math", "Latin Modern Math", math; }
-mover > mo:last-child { font-size: 1.5em; font-weight: bold; line-height: 1; }
+math {
+  font-family: "STIX Two Math", "STIX Math", "Cambria Math", "Latin Modern Math",
+    "DejaVu Math TeX Gyre", math;
+}
+mover:not([accent]) > mo:last-child:not([accent]) {
+  font-size: 1.5em; font-weight: bold; line-height: 1;
+}
 details .highlight { margin-bottom: 0.7em; }
 .celltag_hide-input .jp-Cell-inputWrapper { margin: 0.5em 0; }
 </style>"""
@@ -70,7 +75,8 @@ _ON_THE_WALL = """<style>
 .reveal details pre { font-size: 15px; line-height: 18px; }
 .reveal img { display: block; margin: 0 auto; max-width: 100%; }
 .reveal .jp-Cell { padding: 0; }
-.reveal .jp-RenderedText pre { padding: 0; word-break: normal; overflow-wrap: anywhere; }
+.reveal div.jp-OutputArea-output > pre { padding: 0; width: 100%; }
+.reveal .jp-RenderedText pre { word-break: normal; overflow-wrap: anywhere; }
 .reveal :is(.jp-InputPrompt, .jp-OutputPrompt, .jp-Collapser) { display: none; }
 .reveal .celltag_hide-input .jp-Cell-inputWrapper { display: none; }
 .reveal .controls { font-size: 4px; }

@@ -14,10 +14,14 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
 FULL = 900
 """Height up to which a slide is filled [pixels]: it is made smaller, but not too small to read."""
+FULL_WITH_PICTURE = 720
+"""The same with a picture, whose letters have to be read from the last row."""
 ROOM = 330
 """A slide that is less high than this has room for sentences, and follows on the one before."""
 TOGETHER = 720
 """Height up to which it does [pixels]."""
+NEARLY_BLANK = 216
+"""A text that is less high does not fill a slide without a program or a picture [pixels]."""
 PROGRAM_LINES = 34
 """Most lines of a program on one slide; a longer one is cut before a definition."""
 OUTPUT_LINES = 26
@@ -33,10 +37,13 @@ FILM = 430
 LETTERS = 95
 """Letters on a line of text."""
 
-HIDDEN = ("%matplotlib", "# Your attempt")
-"""How the code cells begin that are not on slides."""
+HIDDEN = re.compile(r"%matplotlib|# Your attempt|(?:.*\n)*from checks import ")
+"""Code cells that are not on slides: settings, attempts, and what finds the checks."""
 _SHOWN = re.compile(r"#|\||- |\d\. |```|<|\s*\$\$")
 """How the blocks of text begin that are on slides as they stand."""
+_LIST = re.compile(r"- |1\. ")
+"""How a list begins: the sentence before it, which ends with a colon, is on its slide."""
+_SENTENCE_ENDS = re.compile(r"(?<=[.?!)])\s+(?=[A-Z])")
 _QUESTION = re.compile(r"\*\*[^*]+\?\*\*")
 _BEGINS = re.compile(rf"^(?:#|\||- |\$\$)|{_QUESTION.pattern}", re.MULTILINE)
 """What a text has that is worth a slide without a program."""
@@ -63,13 +70,16 @@ def split_text(source):
         return source, ""
     shown = []
     said = []
-    for block in source.split("\n\n"):
+    blocks = source.split("\n\n")
+    for block, following in zip(blocks, [*blocks[1:], ""], strict=True):
         questions = _QUESTION.findall(block)
         if _SHOWN.match(block) or ("**" in block and not questions):
             shown.append(block)
-        else:
-            shown += questions
-            said.append(block)
+            continue
+        shown += questions
+        if block.endswith(":") and _LIST.match(following):
+            shown.append(_SENTENCE_ENDS.split(block)[-1])
+        said.append(block)
     return "\n\n".join(shown), "\n\n".join(said)
 
 
@@ -111,7 +121,7 @@ def _units(cells):
     units = []
     for cell in cells:
         if cell.cell_type == "code":
-            if not cell.source.startswith(HIDDEN):
+            if not HIDDEN.match(cell.source):
                 units[-1].pieces += _pieces(cell)
             continue
         shown, said = split_text(cell.source)
@@ -164,10 +174,9 @@ def _parts(lines, most):
 def _slides_of(unit):
     """The slides of a unit, one or more, each a list of cells."""
     slides = [[new_markdown_cell(unit.shown)]]
-    for piece in unit.pieces:
-        first_exercise = piece.cell_type == "markdown" and slides[-1][-1].cell_type == "code"
-        if first_exercise or sum(map(_height, [*slides[-1], piece])) > FULL:
-            slides.append([new_markdown_cell(_title(unit.shown))])
+    for number, piece in enumerate(unit.pieces):
+        if _begins_a_slide(slides[-1], unit, number):
+            slides.append([_title(unit.shown)])
         slides[-1].append(piece)
     sentences = unit.said
     if sum(map(_height, slides[0])) < ROOM:
@@ -187,11 +196,32 @@ def _place(cell, place):
     return cell
 
 
+def _begins_a_slide(slide, unit, number):
+    """Whether a piece has to stand on the next slide, or better does, to stay with its output."""
+    if len(slide) == 1 and _height_of_text(unit.text) < NEARLY_BLANK:
+        return False
+    piece = unit.pieces[number]
+    outputs = [cell for cell in unit.pieces[number + 1 : number + 2] if not cell.source]
+    together = [piece, *outputs] if piece.source else [piece]
+    parts_them = _fits([_title(unit.shown), *together]) and not _fits([*slide, *together])
+    return parts_them or not _fits([*slide, piece])
+
+
+def _fits(cells):
+    pictures = [
+        output
+        for cell in cells
+        for output in cell.get("outputs", [])
+        if "image/png" in output.get("data", {})
+    ]
+    return sum(map(_height, cells)) <= (FULL_WITH_PICTURE if pictures else FULL)
+
+
 def _title(text):
     """The last question of a text, or its heading: it stands again where a slide goes on."""
     questions = _QUESTION.findall(text)
     headings = _HEADING.findall(text)
-    return (questions or headings or [""])[-1]
+    return new_markdown_cell((questions or headings or [""])[-1])
 
 
 def _height(cell):
@@ -211,7 +241,7 @@ def _height_of_text(text):
         if block.startswith("#"):
             height += HEADING
         elif block.startswith("$$"):
-            height += EQUATION * block.count("\\tag")
+            height += EQUATION * max(1, block.count("\\tag"))
         elif block.startswith("|"):
             height += TEXT_LINE * (block.count("\n") + 1)
         else:

@@ -25,6 +25,7 @@ PAIR = Numbers("both energies", "mJ", lambda: [20.0, 40.0], count=2)
 UNEQUAL = Numbers("both residuals", "mm", lambda: [0.25, 50.0], count=2)
 PRICES = Numbers("both prices", "mJ/(N m)", lambda: [240.0, 0.0], count=2, tolerance=0.1)
 METHOD = Choice("the better method", ("gradient", "search"), lambda: "gradient")
+POPULATION = Choice("the population", (60, 24, 8), lambda: 8)
 PLATE_AT_REST = AtRest("a1 and a2", MOVE, count=2, limit=1e-4)
 
 
@@ -56,9 +57,12 @@ def said(exercise, answer, capsys):
         (UNEQUAL, [0.25, 0.0], "number 1 is right; number 2 is too small: it is not 0"),
         (PRICES, [230.0, 1.0], "right"),  # 0 within a share of the largest
         (PRICES, [230.0, 60.0], "number 1 is right; number 2 is too large"),
+        (PAIR, [30.0, 60.0], "each number is too large by 50 %"),
         (PAIR, [0.02, 0.04], "right in J, but mJ is asked for"),
         (METHOD, "Gradient", "right"),
         (METHOD, "search", "it is not 'search'"),
+        (POPULATION, 8.0, "right"),
+        (POPULATION, 60.0, "it is not 60"),
         (PLATE_AT_REST, [0.0036, -0.17009], "right"),  # notebook 03, exercise 1
         (PLATE_AT_REST, [0.0, -0.1], "not at rest: 33.79 mm remain"),  # its first step
     ],
@@ -75,6 +79,7 @@ def test_an_answer_is_right_or_off_by_so_much(exercise, answer, line, capsys):
         (LENGTH, [1.0, 2.0], "asks for the length [m]; this is 2 numbers in place of one"),
         (LENGTH, np.inf, "asks for the length [m]; this is not finite"),
         (PAIR, 20.0, "asks for both energies [mJ]; this is one number in place of 2"),
+        (POPULATION, 8.5, "asks for the population: 60, 24 or 8; this is 8.5"),
         (METHOD, 3, "asks for the better method: 'gradient' or 'search'; this is 3"),
         (
             PLATE_AT_REST,

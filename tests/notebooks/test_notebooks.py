@@ -22,6 +22,9 @@ from notebook_files import (
     solutions,
 )
 
+PAGE_WIDTH = 90
+"""Letters of an output that a page of the site shows on a line, at 1400 pixels."""
+
 each_notebook = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
 
 
@@ -124,6 +127,16 @@ def test_it_begins_with_its_question_and_ends_with_what_was_seen(path):
         after = PATHS[PATHS.index(path) + 1].name
         number, title, question = TABLE[after]
         assert following == f"**Next:** notebook {number}, [{title}]({after}). {question}"
+
+
+@each_notebook
+def test_its_outputs_fit_a_page_and_its_pictures_say_what_is_seen(path):
+    for cell in code_cells(read(path)):
+        wide = [line for line in printed(cell).splitlines() if len(line.rstrip()) > PAGE_WIDTH]
+        assert wide == [] or "text/html" in cell.outputs[-1].get("data", {})
+        for output in cell.outputs:
+            picture = output.get("metadata", {}).get("image/png", {})
+            assert not picture or re.match(r"[A-Z0-9]", picture["alt"]), "a sentence above it"
 
 
 @each_notebook

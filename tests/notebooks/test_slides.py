@@ -7,7 +7,7 @@ import offline
 import pytest
 import wall
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
-from notebook_files import PATHS
+from notebook_files import PATHS, read
 from slides import OUTPUT_LINES, PROGRAM_LINES, as_slides, split_text
 
 LEAST_USED = 1 / 3
@@ -68,6 +68,39 @@ def test_what_does_not_fit_goes_on_below_its_question():
     first, second = contents([question, pictures])
     assert text_of(first) == "## Two pictures\n\n**Which is higher?**\na picture"
     assert text_of(second) == "**Which is higher?**\na picture"
+
+
+def test_the_sentence_before_a_list_is_on_its_slide():
+    lead = "It moves thrice:"
+    shown, said = split_text(f"An arm bends. {lead}\n\n1. along a path;\n2. planned.")
+    assert shown == f"{lead}\n\n1. along a path;\n2. planned."
+    assert said == f"An arm bends. {lead}"
+
+
+def test_a_program_stays_with_what_it_prints():
+    equation = new_markdown_cell("## A sum\n\nAdd.\n\n$$x = 1 \\tag{a}$$\n\n**How large is it?**")
+    lines = [f"x += {number}" for number in range(24)]
+    program = new_code_cell("\n".join(lines), outputs=[printed(*map(str, range(8)))])
+    first, second = contents([equation, program])
+    assert text_of(first) == equation.source
+    assert text_of(second).startswith("**How large is it?**\nx += 0\n")
+    assert text_of(second).endswith("\n7")
+
+
+def test_a_picture_is_not_made_small_by_its_program():
+    question = new_markdown_cell("## A curve\n\n**How high is it?**")
+    program = new_code_cell("\n".join(["x = 1"] * 20), outputs=[printed("1"), drawn(340)])
+    first, second = contents([question, program])
+    assert text_of(first).endswith("\n1")
+    assert text_of(second) == "**How high is it?**\na picture"
+
+
+@pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
+def test_slides_have_the_exercises_and_not_what_finds_their_checks(path):
+    slides = [text_of(slide) for slide in contents(read(path).cells)]
+    assert not any("import checks_of" in slide for slide in slides)
+    (exercises,) = [slide for slide in slides if slide.startswith("## Exercises")]
+    assert exercises.count("<details>") == 3
 
 
 def test_no_line_of_a_long_program_or_of_a_long_output_is_lost():
