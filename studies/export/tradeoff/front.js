@@ -48,9 +48,10 @@ const drawFront = () => {
   draw(plot, "text", { x: (box.left + box.right) / 2, y: box.bottom + 34, "text-anchor": "middle" }, `${residual} [${across.unit(unit)}]`);
   const places = points.map(placeOf);
   front.obstacles = [];
-  if (joined) draw(plot, "path", { ...ROUND, d: pathOf(places), stroke: "var(--this)", "stroke-width": 2.6 });
+  const isLine = joined && points.length > 1;
+  if (isLine) draw(plot, "path", { ...ROUND, d: pathOf(places), stroke: "var(--this)", "stroke-width": 2.6 });
   else for (const place of places) mark(plot, { mark: sign, colour: own, filled: points[0].name !== "" }, place);
-  front.obstacles.push(...alongLine(places, joined).map((place) => boxAround(place, joined ? 3 : 5)));
+  front.obstacles.push(...alongLine(places, isLine).map((place) => boxAround(place, isLine ? 3 : 5)));
   for (const others of beside) drawBeside(plot, others, box);
   front.guides = draw(plot, "path", { fill: "none", stroke: "var(--this)", "stroke-opacity": 0.45 });
   drawCycloid(plot, box);
@@ -58,8 +59,8 @@ const drawFront = () => {
   placeHandle();
 };
 // Places on a line, so close that words cannot pass between them.
-const alongLine = (places, joined) => {
-  if (!joined) return places;
+const alongLine = (places, isLine) => {
+  if (!isLine) return places;
   const close = 6;
   return places.flatMap(([x, y], k) => {
     const [toX, toY] = places[Math.min(k + 1, places.length - 1)];
@@ -115,7 +116,7 @@ const drawKey = () => {
     element(span, "span", unbroken(label), label.length > 24 ? "long" : "");
   };
   const markOf = (look, size) => (picture) => mark(picture, look, [11, 7], size);
-  entry(method, joined ? (picture) => draw(picture, "path", { d: "M0 7H22", stroke: "var(--this)", "stroke-width": 2.6 }) : markOf({ mark: sign, colour: own, filled: points[0].name !== "" }));
+  entry(method, joined && points.length > 1 ? (picture) => draw(picture, "path", { d: "M0 7H22", stroke: "var(--this)", "stroke-width": 2.6 }) : markOf({ mark: sign, colour: own, filled: points[0].name !== "" }));
   for (const others of beside) entry(others.label, markOf({ ...others, filled: isFilled(others) }));
   entry("plain cycloid", markOf(CYCLOID, 1.5));
 };

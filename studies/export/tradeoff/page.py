@@ -54,6 +54,9 @@ _LIGHTER = 0.6
 """By which share colours without a meaning become white on a dark page."""
 _READABLE = 0.18
 """The largest luminance of letters on white: a contrast of 4.5."""
+_SWING = 9
+"""How many times the duration is shown after it: of a move of milliseconds little would be seen
+beside a residual window of a second."""
 _OF_THIS = ("plan", "robust plan", "search")
 """Meanings that the chosen motion can have."""
 _SCRIPTS = (
@@ -234,11 +237,13 @@ def _sampled_times(
     move: Move, curves_of_all: Mapping[str, Array], tolerance: float
 ) -> tuple[Array, NDArray[np.intp]]:
     """Times at which all motions are sampled [s], and which of the fine samples these are."""
+    task = move.task
     times = move.cycloid.trajectory.time
-    rows = [_angles(plan)[None, :] for plan in move.motions]
+    times = times[times <= task.duration + min(task.residual_window, _SWING * task.duration)]
+    rows = [_angles(plan)[None, : len(times)] for plan in move.motions]
     for values in curves_of_all.values():
         peak = np.abs(values).max() or 1.0
-        rows += list(values / peak)
+        rows += list((values / peak)[:, :, : len(times)])
     arrival = np.flatnonzero(times == move.task.duration)
     places = needed_samples(times, np.vstack(rows), arrival, tolerance)
     return times[places], places
@@ -336,7 +341,7 @@ def _content(
         "joined": move.joined,
         "duration": task.duration,
         "arrival": int(np.searchsorted(times, task.duration)),
-        "end": task.duration + task.residual_window,
+        "end": float(times[-1]),
         "residual": f"residual vibration F1 {window_words(task.residual_window)}",
         "rest": REST,
         "unit": unit,

@@ -15,7 +15,6 @@ from quietarm.studies.figures.meaning import is_plain_cycloid
 from quietarm.studies.report.report import percents
 from quietarm.studies.tips import tip_scale
 
-
 _PREFIXES = {"nJ": 1e-9, "\u00b5J": 1e-6, "mJ": 1e-3, "J": 1.0}
 """Units of an energy, by which it has few zeros."""
 
