@@ -18,7 +18,16 @@ from quietarm.models import Plant
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.axes import residual_label
-from quietarm.studies.figures.grammar import AFTER_ARRIVAL, ARRIVAL, FAINT, INK, LIMIT, MEANINGS, Look, looks
+from quietarm.studies.figures.grammar import (
+    AFTER_ARRIVAL,
+    ARRIVAL,
+    FAINT,
+    INK,
+    LIMIT,
+    MEANINGS,
+    Look,
+    looks,
+)
 from quietarm.studies.figures.meaning import meaning_of
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
 from quietarm.studies.figures.structure import Structure, structures_of

@@ -371,7 +371,7 @@ def _colour_name(look: Look) -> str:
     """What the page's styles call the colour of a look."""
     if look.colour in OTHERS:
         return f"other-{OTHERS.index(look.colour)}"
-    return next(_css_name(name) for name, meant in MEANINGS.items() if meant.colour == look.colour)
+    return next(_css_name(name) for name, meant in MEANINGS.items() if meant == look)
 
 
 def _point(move: Move, choice: Choice) -> dict[str, Any]:

@@ -99,14 +99,12 @@ def sentence(move: Move, choice: Choice) -> str:
         return _against_cycloid(move, choice) + _next_step(move, choice)
     worst = " in the worst case" if move.task.ranges else ""
     energy, of_stillest = _apart(choice.energy, stillest.energy)
-    saves = "nothing"
-    if choice.energy < stillest.energy:
-        saves = f"{percents([1 - choice.energy / stillest.energy])} of the energy"
+    saved = percents([1 - choice.energy / stillest.energy])  # a front's energies fall
     at_rest = "arriving at rest" if move.task.final is None else "arriving as asked"
     if stillest.residual >= REST:
         at_rest = f"the stillest motion, {_residual(stillest)},"
     return (
-        f"{_residual(choice)} of residual vibration{worst} saves {saves}: {energy}, "
+        f"{_residual(choice)} of residual vibration{worst} saves {saved} of the energy: {energy}, "
         f"where {at_rest} takes {of_stillest}.{_next_step(move, choice)}"
     )
 
