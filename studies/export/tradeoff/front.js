@@ -14,7 +14,7 @@ const MARK_PATHS = {
 const CYCLOID = { mark: "s", colour: "cycloid", filled: true };
 const APART = 13; // pixels between two points of a search that are drawn
 const KNOB = 14; // pixels from the handle's middle to its edge
-const front = { touched: false, box: null, obstacles: [] };
+const front = { touched: false, box: null, obstacles: [], cycloid: null, cycloidIsOutside: false };
 
 const limitsOfFront = (about) => {
   const { points, beside, cycloid, factor, rest } = state.move;
@@ -73,14 +73,18 @@ const drawCycloid = (plot, box) => {
   const there = [box.x(factor * cycloid.residual), box.y(cycloid.energy)];
   const [x, y] = [Math.min(there[0], box.right), Math.max(Math.min(there[1], box.bottom), box.top)];
   const outside = Math.hypot(there[0] - x, there[1] - y) > 1;
+  front.cycloidIsOutside = outside;
   const words = outside ? `plain cycloid, further out: ${cycloid.spot}` : "plain cycloid";
   mark(plot, { ...CYCLOID, filled: !outside }, [x, y], 1.5);
   front.obstacles.push(boxAround([x, y], 8));
-  const text = draw(plot, "text", { "text-anchor": "middle", class: "halo" }, unbroken(words));
-  const knobs = state.move.points.length === 1 ? [boxAround(placeOf(state.move.points[0]), KNOB)] : [];
-  const { middle, base, box: around } = placeWords(text, [x, y], 9, [...front.obstacles, ...knobs], { ...box, top: 14 });
-  setAll(text, { x: middle, y: base });
-  front.obstacles.push(around);
+  front.cycloid = { at: [x, y], words: draw(plot, "text", { "text-anchor": "middle", class: "halo" }, unbroken(words)) };
+};
+const WORDS_FROM = 14; // pixels below the top of the picture, where the unit of the energy stands
+const placeCycloidsWords = (knob) => {
+  const { at, words } = front.cycloid;
+  const { middle, base, box } = placeWords(words, at, 9, [...front.obstacles, knob], { ...front.box, top: WORDS_FROM });
+  setAll(words, { x: middle, y: base });
+  return box;
 };
 const mark = (plot, { mark: sign, colour, filled }, [x, y], size = 1) => {
   const look = filled ? { fill: `var(--${colour})`, stroke: "var(--card)", "stroke-width": 1 / size } : { fill: "var(--card)", stroke: `var(--${colour})`, "stroke-width": 1.5 / size };
@@ -118,7 +122,7 @@ const drawKey = () => {
   const markOf = (look, size) => (picture) => mark(picture, look, [11, 7], size);
   entry(method, joined && points.length > 1 ? (picture) => draw(picture, "path", { d: "M0 7H22", stroke: "var(--this)", "stroke-width": 2.6 }) : markOf({ mark: sign, colour: own, filled: points[0].name !== "" }));
   for (const others of beside) entry(others.label, markOf({ ...others, filled: isFilled(others) }));
-  entry("plain cycloid", markOf(CYCLOID, 1.5));
+  entry("plain cycloid", markOf({ ...CYCLOID, filled: !front.cycloidIsOutside }, 1.5));
 };
 
 const coarse = matchMedia("(pointer: coarse)");
@@ -132,7 +136,8 @@ const placeHandle = () => {
   const invitation = coarse.matches ? "drag me" : "drag, or use the arrow keys";
   const spot = byId("spot");
   spot.textContent = front.touched || !several ? unbroken(point.spot) : invitation;
-  const { middle, base } = placeWords(spot, [x, y], KNOB + 1, front.obstacles, { ...front.box, top: 14 });
+  const ofCycloid = placeCycloidsWords(boxAround([x, y], KNOB));
+  const { middle, base } = placeWords(spot, [x, y], KNOB + 1, [...front.obstacles, ofCycloid], { ...front.box, top: WORDS_FROM });
   setAll(spot, { x: middle - x, y: base - y });
 };
 const choose = (number) => {
