@@ -226,7 +226,7 @@ def page_of_sliders(quick: bool) -> tuple[bytes, Shown]:
     assert process.stdout is not None
     try:
         address = process.stdout.readline().strip()
-        with a_page(1400, 900) as page:
+        with a_page(1400, 900, reduced_motion="reduce") as page:
             page.goto(address)
             figures = page.locator(".figures .bk-clearfix")
             expect(figures).to_contain_text("0 to 30 deg")
