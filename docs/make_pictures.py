@@ -226,7 +226,7 @@ def page_of_sliders(quick: bool) -> tuple[bytes, Shown]:
     assert process.stdout is not None
     try:
         address = process.stdout.readline().strip()
-        with a_page(1400, 900) as page:
+        with a_page(1400, 900, reduced_motion="reduce") as page:
             page.goto(address)
             figures = page.locator(".figures .bk-clearfix")
             expect(figures).to_contain_text("0 to 30 deg")
@@ -234,7 +234,8 @@ def page_of_sliders(quick: bool) -> tuple[bytes, Shown]:
             box.fill("0.2")
             box.press("Enter")
             page.get_by_role("button", name="Front", exact=True).click()
-            page.get_by_text(re.compile("click near the front")).wait_for()
+            front = "Bokeh.documents[0].get_model_by_name('front').title.text"
+            page.wait_for_function(f"{front}.startsWith('front:')")
             page.get_by_role("button", name="Plan", exact=True).click()
             expect(figures).to_contain_text("found a local optimum")
             page.wait_for_timeout(1300)  # the curves are drawn

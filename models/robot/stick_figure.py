@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 _ELEVATION = np.radians(25.0)
 """From which the robot is seen."""
-_FLOOR = 0.5
-"""Half the side of the floor, as a share of the robot's size."""
+_BEYOND = 0.08
+"""How far the floor goes on beyond the robot and its shadow, as a share of the robot's size."""
 _PLACES = 11
 """Of the path, by which the view is chosen."""
 
@@ -127,8 +127,10 @@ class StickFigure:
             away = -away
         up = np.array([*(np.sin(_ELEVATION) * away), np.cos(_ELEVATION)])
         view = np.column_stack([[*right, 0.0], up])
-        half = _FLOOR * size
-        corners = [(-half, -half), (half, -half), (half, half), (-half, half), (-half, -half)]
+        below = figures[:, :, :2].reshape(-1, 2) @ np.column_stack([right, away])
+        near = below.min(axis=0) - _BEYOND * size
+        far = below.max(axis=0) + _BEYOND * size
         low = min(0.0, float(figures[:, :, 2].min()))
+        corners = [near, (far[0], near[1]), far, (near[0], far[1]), near]
         floor = np.array([[*(a * right + b * away), low] for a, b in corners])
         return view, floor

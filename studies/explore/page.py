@@ -31,8 +31,8 @@ from jinja2 import Environment, PackageLoader
 from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
 from quietarm.studies.explore.move import FILES, Dial, Explored
-from quietarm.studies.explore.plots import GREY, PANELS, Plots
-from quietarm.studies.figures.grammar import RED
+from quietarm.studies.explore.plots import PANELS, Plots
+from quietarm.studies.figures.grammar import INK, RED
 from quietarm.studies.reading.profiles import families
 from quietarm.studies.report.moves import HARD_REMEDIES, plan_rows
 
@@ -154,15 +154,14 @@ class Page:
             words = f"front: {done} of {total} points"
             self._document.add_next_tick_callback(partial(self._say, words))
 
-        then = "click near the front to see a motion of it"
-        self._begin(lambda explored: explored.find_front(report), "front ...", then)
+        self._begin(lambda explored: explored.find_front(report), "front ...")
 
-    def _begin(self, work: Change, words: str, then: str = "") -> None:
+    def _begin(self, work: Change, words: str) -> None:
         """Compute something beside the page, on which nothing can be set until it is there."""
 
         def ended(future: Future[Explored]) -> None:
             self._disable(False)
-            self._change(lambda _: future.result(), then)
+            self._change(lambda _: future.result())
 
         if self._change():
             self._say(words)
@@ -178,11 +177,11 @@ class Page:
         for button in self._buttons:
             button.disabled = at_work
 
-    def _change(self, change: Change = lambda same: same, then: str = "") -> bool:
+    def _change(self, change: Change = lambda same: same) -> bool:
         """Change the motion in hand, after what was typed; False where it is said why not."""
         typed = self._typed
-        words = then
-        colour = GREY
+        words = ""
+        colour = INK
         self._typed = {}
         dials = {name: value for name, value in typed.items() if name not in self._choices}
         try:
@@ -197,9 +196,9 @@ class Page:
             colour = RED
         self._show()
         self._say(words, colour)  # when all is shown
-        return colour == GREY
+        return colour == INK
 
-    def _say(self, words: str, colour: str = GREY) -> None:
+    def _say(self, words: str, colour: str = INK) -> None:
         self._said.text = f'<span style="color: {colour}">{escape(words)}</span>'
 
     def _show(self) -> None:

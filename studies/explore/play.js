@@ -1,7 +1,8 @@
+const stillness = matchMedia("(prefers-reduced-motion: reduce)");
 const play = () => {
     const {xs, ys, colour, width, frames, words} = film.data;
     const now = Math.floor(performance.now() / 1000 * rate) % (frames[0] + rate);
-    const at = Math.min(now, frames[0] - 1);
+    const at = stillness.matches ? frames[0] - 1 : Math.min(now, frames[0] - 1);
     const current = (all) => {
         const points = all.length / frames[0];
         return all.slice(at * points, (at + 1) * points);

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from bokeh.document import Document
 from bokeh.events import Tap
-from bokeh.models import ColumnDataSource, CustomJS, DataRange1d, ScaleBar
+from bokeh.models import ColumnDataSource, CustomJS, DataRange1d, Range1d, ScaleBar
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike, NDArray
 
@@ -18,15 +18,26 @@ from quietarm.models import Plant
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.figures.axes import residual_label
-from quietarm.studies.figures.grammar import BLUE, FAINT, INK, ORANGE, RED
+from quietarm.studies.figures.grammar import (
+    AFTER_ARRIVAL,
+    ARRIVAL,
+    FAINT,
+    INK,
+    LIMIT,
+    MEANINGS,
+    Look,
+    looks,
+)
+from quietarm.studies.figures.meaning import meaning_of
 from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
-from quietarm.studies.figures.structure import structures_of
+from quietarm.studies.figures.structure import Structure, structures_of
 from quietarm.studies.report.words import residual_words
 from quietarm.studies.tips import tip_scale
 
-GREY = "#9e9e9e"
-GHOST = "#d3d3d3"
-"""Of the plain cycloid behind the motion."""
+_DASHES = {"-": "solid", "--": "dashed", ":": "dotted"}
+"""The dashes of the grammar of pictures, as bokeh calls them."""
+_ROOM = 0.08
+"""Beyond the points of a front, as a share of their range."""
 PANELS = ("deflection", "angle", "torque", "speed", "acceleration", "jerk")
 FRAMES = 25
 """A second."""
@@ -34,13 +45,17 @@ FREQUENCY = 0.2
 """Largest error of the frequency that is looked at."""
 _PLAY = Path(__file__).with_name("play.js").read_text()
 """The frame of the moment, and the last one for a second."""
+_GHOST_TRAIL = (5.0, 0.35)
+_TRAIL_OF_THIS = (1.8, 0.9)
+"""Width and opacity: the ghost's is wide and pale, so that both are seen where they coincide."""
 Rows = list[tuple[Any, ...]]
 """Of a source, in the order of its columns."""
-_CURVE = ("xs", "ys", "colour", "dash")
+_CURVE = ("xs", "ys", "colour", "dash", "alpha", "wide")
+_TRAIL = ("xs", "ys", "colour", "wide", "alpha")
 _BODY = ("xs", "ys", "colour", "width")
 _POINT = ("x", "y")
 _COLUMNS: Mapping[str, tuple[str, ...]] = {
-    "film": (*_BODY, "frames", "words"), "paths": ("xs", "ys"), "corners": _POINT,
+    "film": (*_BODY, "frames", "words"), "paths": _TRAIL, "corners": _POINT,
     "points": _POINT, "here": _POINT, **dict.fromkeys(("robustness", *PANELS), _CURVE),
 }  # fmt: skip
 """Of the source of everything that is drawn."""
@@ -54,7 +69,7 @@ class Plots:
             name: ColumnDataSource({column: [] for column in of}) for name, of in _COLUMNS.items()
         }
         shown = tip_scale(plant.tip_unit)[0]
-        below = "time [s]  (dotted: arrival)"
+        below = "time [s]  (dashed: arrival)"
         titles = {
             "robustness": (f"residual over the frequency error [{shown}]", "frequency error [%]"),
             **{name: (heading(name, plant.joint, plant.tip_unit), below) for name in PANELS},
@@ -65,15 +80,28 @@ class Plots:
 
     def show(self, explored: Explored) -> None:
         """Show another motion in all plots."""
-        no_front = "Press Front to see what each millimetre saves"
-        self._front.title.text = "front (cross: this motion)" if explored.front else no_front
-        self._front.axis.visible = bool(explored.front)
+        words = "Press Front to see what each millimetre saves"
+        if explored.front:
+            words = "front: click near it for a motion of it"
+        self._front.title.text = words
+        colour = MEANINGS[_meaning(explored.plan)].colour
+        line, marks, _ = self._front.renderers
+        line.glyph.line_color = colour
+        marks.glyph.update(line_color=colour, fill_color=colour)
+        self._front.axis.visible = self._front.grid.visible = bool(explored.front)
+        self._front.outline_line_alpha = float(bool(explored.front))
         self._front.xaxis.axis_label = residual_label(
             explored.task.plant.tip_unit, explored.task.residual_window
         )
         for name, rows in _drawn(explored).items():
             table = pd.DataFrame(rows, columns=_COLUMNS[name])
             self._sources[name].data = table.to_dict("list")
+        for at, direction in zip(_POINT, (self._front.x_range, self._front.y_range)):
+            drawn = [*self._sources["points"].data[at], *self._sources["here"].data[at]]
+            low = min(drawn, default=0.0)
+            high = max(drawn, default=1.0)
+            room = _ROOM * (high - low) or 1.0
+            direction.update(start=low - room, end=high + room)
 
     def _stage(self, document: Document) -> Any:
         """The structure, which the browser plays by itself."""
@@ -86,7 +114,8 @@ class Plots:
             DataRange1d(renderers=[room], range_padding=0.2) for _ in _POINT
         )
         plot.add_layout(ScaleBar(range=plot.x_range, unit="m"), "below")  # where nothing crosses it
-        plot.multi_line("xs", "ys", source=self._sources["paths"], color=GREY)
+        plot.multi_line("xs", "ys", source=self._sources["paths"], color="colour",
+                        line_width="wide", line_alpha="alpha")  # fmt: skip
         plot.multi_line("xs", "ys", source=shown, color="colour", line_width="width",
                         line_cap="round", line_join="round")  # fmt: skip
         shown.syncable = plot.title.syncable = False  # frames are no news for the server
@@ -97,8 +126,9 @@ class Plots:
 
     def _tradeoff(self, pick: Callable[[int], None]) -> Any:
         """The front, and where the motion in hand lies."""
+        ranges = {"x_range": Range1d(0.0, 1.0), "y_range": Range1d(0.0, 1.0)}
         plot: Any = figure(name="front", tools="", x_axis_label=" ",
-                           y_axis_label="energy F2 [J]")  # fmt: skip
+                           y_axis_label="energy F2 [J]", **ranges)  # fmt: skip
         points = self._sources["points"]
         here = self._sources["here"]
 
@@ -109,9 +139,9 @@ class Plots:
                 pick(nearest)
 
         plot.on_event(Tap, tapped)
-        plot.line(*_POINT, source=points, color=BLUE)
-        plot.scatter(*_POINT, source=points, color=BLUE, size=9)
-        plot.scatter(*_POINT, source=here, color=RED, marker="x", size=20, line_width=2.5,
+        plot.line(*_POINT, source=points)
+        plot.scatter(*_POINT, source=points, size=7)
+        plot.scatter(*_POINT, source=here, fill_alpha=0, line_color=INK, size=17, line_width=2.5,
                      level="overlay")  # fmt: skip
         return plot
 
@@ -119,7 +149,7 @@ class Plots:
         """Curves over one axis."""
         plot: Any = figure(name=name, title=title, tools="", x_axis_label=below)
         plot.multi_line("xs", "ys", source=self._sources[name], line_color="colour",
-                        line_dash="dash", line_width=1.6)  # fmt: skip
+                        line_dash="dash", line_width="wide", line_alpha="alpha")  # fmt: skip
         return plot
 
 
@@ -137,37 +167,72 @@ def _drawn(explored: Explored) -> dict[str, Rows]:
     plan = explored.plan
     front = explored.front.points if explored.front else ()
     cycloid = evaluate_coefficients(plan.task, [])
-    lines = [Line(cycloid, "", GREY, "solid"), Line(plan, "", BLUE, "solid")]
-    if explored.kept:
-        lines.insert(1, Line(explored.kept, "", ORANGE, "dashed"))
+    motions = [cycloid, plan, *([explored.kept] if explored.kept else [])]
+    meanings = ["plain cycloid", _meaning(plan), _meaning(plan)]
+    lines = [
+        Line(motion, "", look.colour, _DASHES[str(look.dash)])
+        for motion, look in zip(motions, looks(meanings))
+    ]
+    ghost = lines[0]
+    drawn = lines[1]
     scale = tip_scale(plan.task.plant.tip_unit)[1]
-    points, here = (
-        [(scale * point.residual, point.energy) for point in of] for of in (front, [plan])
-    )
-    rows = {"points": points, "here": here * bool(front), "robustness": _robustness(plan)}
-    return rows | _film(lines[-1], lines[0]) | {name: _quantity(lines, name) for name in PANELS}
+    points = [(scale * point.residual, point.energy) for point in front]
+    here = [(scale * plan.residual, plan.energy)] * bool(front)
+    rows = {"points": points, "here": here, "robustness": _robustness(plan, drawn.colour)}
+    in_order = [ghost, *lines[2:], drawn]  # this motion above the others
+    return rows | _film(drawn, ghost) | {name: _quantity(in_order, name) for name in PANELS}
+
+
+def _meaning(plan: Plan) -> str:
+    """The look of the motion in hand: that of a plan, also where it is not one yet."""
+    meaning = meaning_of(plan)
+    return meaning if meaning == "robust plan" else "plan"
 
 
 def _quantity(lines: list[Line], name: str) -> Rows:
-    """A quantity of motions; the limits that these come near, and the arrival of the last one."""
+    """A quantity of motions; the limits that these come near, and the arrival of the last one.
+
+    First all motions until they arrive, then, lighter, all after that.
+    """
     # of a curve: on a panel a third of a screen wide their corners cannot be seen
     points = 200
-    rows = Rows()
+    moving = Rows()
+    after = Rows()
     reach = [np.zeros(1)]
     end = lines[-1].plan.task.duration
     for line in lines:
         time = line.plan.trajectory.time
+        arrival = int(np.searchsorted(time, line.plan.task.duration))
         some = slice(None, None, max(1, len(time) // points))
         for values in curves(line.plan, name):
-            rows.append((_plain(time[some]), _plain(values[some]), line.colour, line.style))
+            for rows, part, alpha in (
+                (moving, slice(arrival + 1), 1.0),
+                (after, slice(arrival, None), AFTER_ARRIVAL),
+            ):
+                along = _thinned(time[part], values[part], some)
+                rows.append((*along, line.colour, line.style, alpha, 1.6))
             reach.append(values)
     limits = limits_in_sight(lines[-1:], name, np.concatenate(reach))
-    rows += [([0.0, end], [level, level], RED, "dashed") for level in limits]
-    all_residuals = np.concatenate([*reach, limits])
-    return [*rows, ([end, end], _plain([all_residuals.min(), all_residuals.max()]), INK, "dotted")]
+    level = [_ruled(LIMIT, [0.0, end], [limit, limit]) for limit in limits]
+    all_values = np.concatenate([*reach, limits])
+    arrived = _ruled(ARRIVAL, [end, end], [all_values.min(), all_values.max()])
+    return [*moving, *after, *level, arrived]
 
 
-def _robustness(plan: Plan) -> Rows:
+def _thinned(
+    time: NDArray[np.float64], values: NDArray[np.float64], some: slice
+) -> tuple[list[float], list[float]]:
+    """Some samples of a curve, its last one among them."""
+    places = np.union1d(np.arange(len(time))[some], [len(time) - 1])
+    return _plain(time[places]), _plain(values[places])
+
+
+def _ruled(look: Look, xs: list[float], ys: list[float]) -> tuple[Any, ...]:
+    """A straight line of a look, as a row of a panel."""
+    return _plain(xs), _plain(ys), look.colour, _DASHES[str(look.dash)], 1.0, look.width
+
+
+def _robustness(plan: Plan, colour: str) -> Rows:
     """The residual over the error of the frequency [%], and what is tolerated."""
     ranges = {"frequency": FREQUENCY}
     robustness = evaluate_robustness(plan.candidate, ranges, samples=1)
@@ -176,8 +241,8 @@ def _robustness(plan: Plan) -> Rows:
     tolerated = scale * robustness.tolerated
     errors = _plain(100 * sweep.errors)
     residuals = _plain(scale * sweep.figures.residual)
-    level = [errors[0], errors[-1]], [tolerated, tolerated], GREY, "dashed"
-    return [(errors, residuals, BLUE, "solid"), level]
+    level = _ruled(LIMIT, [errors[0], errors[-1]], [tolerated, tolerated])
+    return [(errors, residuals, colour, "solid", 1.0, 1.6), level]
 
 
 def _film(line: Line, ghost: Line) -> dict[str, Rows]:
@@ -190,16 +255,22 @@ def _film(line: Line, ghost: Line) -> dict[str, Rows]:
     times = np.arange(0.0, end, 1 / FRAMES)
     structure, behind = structures_of([line, ghost], times, end)
     residual = residual_words(plan.residual, plan.task.plant.tip_unit)
-    words = f"{plan.energy:.4g} J, {residual}; {structure.scale_words}"
-    pale = [part._replace(colour=GHOST) for part in behind.bent if part.colour != FAINT]
+    residual = "at rest" if residual == "rest" else residual
+    words = f"{plan.energy:.4g} J, residual: {residual}; {structure.scale_words}"
+    pale = [part._replace(colour=FAINT) for part in behind.bent if part.colour != FAINT]
     parts = [(*_along(part.points), part.colour, part.width, len(times), words)
              for part in (*pale, *structure.bent)]  # fmt: skip
     corners = np.vstack([structure.corners, behind.corners])
     return {
         "film": parts,
         "corners": _plain([corners.min(axis=0), corners.max(axis=0)]),
-        "paths": [*map(_along, structure.paths)],
+        "paths": [*_trails(behind, _GHOST_TRAIL), *_trails(structure, _TRAIL_OF_THIS)],
     }
+
+
+def _trails(structure: Structure, look: tuple[float, float]) -> Rows:
+    """Where the tips go, in the colour of the motion, so wide and so opaque."""
+    return [(*_along(path), structure.line.colour, *look) for path in structure.paths]
 
 
 def _along(points: NDArray[np.float64]) -> tuple[Any, ...]:

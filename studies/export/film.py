@@ -34,8 +34,8 @@ from quietarm.studies.report.words import (
     window_words,
 )
 
-_COLUMNS = {1: 1, 2: 2, 4: 2}
-"""Panels in a row, by how many there are; else 3."""
+_COLUMNS = 2
+"""Panels in a row: beside a third the letters would be too small for a phone."""
 _PANEL = 2.7
 _HIGH = 2.1
 _CURVES_HIGH = 1.6
@@ -43,7 +43,7 @@ _LINE = 0.2
 _LETTERS = 11.5
 """Width and height of a panel, heights of curves and of a line [inch]; letters an inch.
 
-A film of two panels is 5.4 inch wide: on a phone of 390 pixels a letter of 10 points is 10 high.
+A film is 5.4 inch wide: on a phone of 390 pixels a letter of 9 points is 9 pixels high.
 """
 _SMALL = 9
 """Points of the letters at axes."""
@@ -208,9 +208,9 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     curves = ("deflection", "power")
     structures = film.structures
     times = film.structures[0].times
-    columns = _COLUMNS.get(len(structures), 3)
+    columns = min(len(structures), _COLUMNS)
     rows = -(-len(structures) // columns)
-    inches = _PANEL * max(columns, 2)
+    inches = _PANEL * _COLUMNS
     same = len({structure.line.plan.task for structure in structures}) == 1
     titles = [_title(structure, same, int(_LETTERS * inches / columns)) for structure in structures]
     heading = wrap(_heading(structures[0], same), int(_LETTERS * inches) - 16)  # beside the clock

@@ -177,6 +177,13 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
     return [scale * np.asarray(column) for column in columns]
 
 
+def names_of_curves(plant: Plant, quantity: str) -> list[str]:
+    """The joint, or the tip, that each of several curves of a quantity is of."""
+    if quantity in QUANTITIES and QUANTITIES[quantity].of_joints:
+        return list(plant.joint_names)
+    return [_which_tip(plant, curve).removeprefix(", ") for curve in range(len(plant.tip_names))]
+
+
 def _which(plant: Plant, quantity: str, curve: int) -> str:
     """Which joint or tip a curve is of, where there are several."""
     joints = plant.joint_names

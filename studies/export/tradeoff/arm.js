@@ -6,27 +6,36 @@ const drawScene = () => {
   const { structure } = state.move;
   const { width, height } = begin(svg);
   const [[left, bottom], [right, top]] = structure.corners;
-  const margin = { x: 30, top: 20, bottom: 20 };
+  const margin = { x: 30, top: 20, bottom: structure.in_space ? 16 : 36 }; // above the bar of a length
   const scale = Math.min((width - 2 * margin.x) / (right - left || 1), (height - margin.top - margin.bottom) / (top - bottom || 1));
   const x0 = (width - scale * (right - left)) / 2;
   const y0 = margin.top + (height - margin.top - margin.bottom + scale * (top - bottom)) / 2;
   scene.at = (x, y) => [x0 + scale * (x - left), y0 - scale * (y - bottom)];
   const thick = Math.max(0.7, Math.min(1.3, Math.min(width, height) / 320));
-  const solid = structure.parts.filter(({ look }) => look !== "ground");
+  const solid = structure.parts.filter(({ look }) => !(look in GROUND));
   solid.forEach((part, k) => draw(svg, "path", { ...ROUND, d: pathOf(structure.target[k].map(([x, y]) => scene.at(x, y))), stroke: "var(--soft)", "stroke-width": part.points === 1 ? 0 : 1.2, "stroke-dasharray": "5 5", "stroke-opacity": 0.75 }));
-  const trails = (colour) => Array.from({ length: structure.trails }, () => [[1.5, 0.75], [4.5, 0.45]].map(([wide, seen]) => draw(svg, "path", { ...ROUND, stroke: colour, "stroke-width": wide, "stroke-opacity": seen })));
-  const bodies = (colours, seen) => structure.parts.map(({ look, width: wide }) => draw(svg, "path", { ...ROUND, stroke: colours[look], "stroke-width": thick * wide * (look === "ground" ? 0.7 : 1.15), "stroke-opacity": look === "ground" ? 1 : seen }));
   const grey = "var(--cycloid)";
-  scene.ghostTrails = trails(grey);
-  scene.ghost = bodies({ ground: "var(--edge)", rigid: grey, link: grey }, 0.55);
-  scene.trails = trails("var(--plan)");
-  scene.bodies = bodies({ ground: "var(--edge)", rigid: "var(--metal)", link: "var(--plan)" }, 1);
+  // the ghost's trail is wide and pale, so that both are seen where one lies on the other
+  scene.ghostTrails = trailsIn(svg, grey, [[5, 0.35], [10, 0.35]]);
+  scene.ghost = bodiesIn(svg, { rigid: grey, link: grey }, thick, 0.55);
+  scene.trails = trailsIn(svg, "var(--this)", [[1.8, 1], [4.5, AFTER]]);
+  scene.bodies = bodiesIn(svg, { ...GROUND, rigid: "var(--metal)", link: "var(--this)" }, thick, 1);
   if (!structure.in_space) drawLength(svg, scale, width, height);
   const view = byId("view");
   view.textContent = "The motion ";
   element(view, "span", structure.scale, "unit");
   svg.setAttribute("aria-label", "The structure in motion: the chosen motion, the plain cycloid in grey, dashed where it shall stand");
 };
+const trailsIn = (svg, colour, looks) => Array.from({ length: state.move.structure.trails }, () => looks.map(([wide, seen]) => draw(svg, "path", { ...ROUND, "stroke-linecap": "butt", stroke: colour, "stroke-width": wide, "stroke-opacity": seen })));
+const GROUND = { floor: "var(--edge)", shadow: "var(--shadow)", ground: "var(--edge)" };
+const GROUND_WIDE = { floor: 0.7, shadow: 4, ground: 0.7 };
+const bodiesIn = (svg, colours, thick, seen) => state.move.structure.parts.map(({ look, width: wide }) => draw(svg, "path", {
+  ...ROUND,
+  fill: look === "floor" && look in colours ? "var(--after)" : "none",
+  stroke: colours[look] ?? "none",
+  "stroke-width": thick * wide * (GROUND_WIDE[look] ?? 1.15),
+  "stroke-opacity": look in GROUND ? 1 : seen,
+}));
 const drawLength = (svg, scale, width, height) => {
   const metres = niceStep((0.12 * width) / scale);
   const bar = metres * scale;
@@ -61,23 +70,24 @@ const drawSwing = () => {
   const { panels, cycloid, factor, swings_about_rest: band, unit } = state.move;
   const all = panels.deflection.rows.flat();
   const low = Math.min(0, ...all.map((row) => Math.min(...row)));
-  const high = Math.max(...all.map((row) => Math.max(...row)), 1e-9);
-  const room = 0.03 * (high - low);
+  const high = Math.max(...all.map((row) => Math.max(...row)), low + 1e-12);
+  const axis = axisOf(low, high, width < 420 ? 5 : 8);
   const [left, right, y] = [14, width - 14, 27];
-  swing.x = (value) => left + ((value - low + room) / (high - low + 2 * room)) * (right - left);
-  const words = band && width > 400 ? `tip displacement [${unit}]; bands: its range after arrival` : `tip displacement [${unit}]${band ? "; bands: after arrival" : ""}`;
+  swing.x = (value) => left + ((value - axis.low) / (axis.high - axis.low)) * (right - left);
+  const shown = axis.unit(unit);
+  const words = band && width > 400 ? `tip displacement [${shown}]; bands: its range after arrival` : `tip displacement [${shown}]${band ? "; bands: after arrival" : ""}`;
   draw(svg, "text", { x: 0, y: 11 }, words);
   draw(svg, "line", { x1: left, x2: right, y1: y, y2: y, stroke: "var(--grid)", "stroke-width": 2 });
-  for (const [value, word] of ticks(low, high, width < 420 ? 5 : 8)) {
+  for (const [value, word] of axis.ticks) {
     draw(svg, "line", { x1: swing.x(value), x2: swing.x(value), y1: y + 7, y2: y + 11, stroke: "var(--soft)", "stroke-opacity": 0.6 });
     draw(svg, "text", { x: swing.x(value), y: y + 23, "text-anchor": "middle" }, word);
   }
   swing.ends = (residual) => [Math.max(low, -factor * residual), factor * residual];
   const bandOf = (fill, high) => draw(svg, "rect", { y: y - high / 2, height: high, rx: high / 2, fill, visibility: band ? "visible" : "hidden" });
   placeBand(bandOf("var(--band)", 15), cycloid.residual);
-  swing.band = setAll(bandOf("var(--plan)", 9), { "fill-opacity": 0.3 });
+  swing.band = setAll(bandOf("var(--this)", 9), { "fill-opacity": 0.3 });
   swing.ghost = ofCycloid(panels.deflection.rows).map(() => draw(svg, "circle", { cy: y, r: 5, fill: "var(--cycloid)" }));
-  swing.dots = ofChosen(panels.deflection.rows).map(() => draw(svg, "circle", { cy: y, r: 5.5, fill: "var(--plan)", stroke: "var(--card)", "stroke-width": 1.5 }));
+  swing.dots = ofChosen(panels.deflection.rows).map(() => draw(svg, "circle", { cy: y, r: 5.5, fill: "var(--this)", stroke: "var(--card)", "stroke-width": 1.5 }));
   svg.setAttribute("aria-label", "Tip displacement at this time, and its range after arrival");
 };
 const placeBand = (rect, residual) => {

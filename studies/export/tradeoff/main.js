@@ -6,7 +6,7 @@ let trails = [];
 
 const showMotion = () => {
   const { move } = state;
-  for (const panel of panels) ofChosen(move.panels[panel.name].rows).forEach((row, k) => panel.curves[k].setAttribute("d", panel.pathOf(row)));
+  panels.forEach(placeCurve);
   trails = trailsOf(ofChosen(move.scores));
   placeBand(swing.band, chosen().residual);
   showWords();
@@ -15,21 +15,24 @@ const showMotion = () => {
 const showWords = () => {
   const { figure_names: names, cycloid, beside, factor, unit, rest } = state.move;
   const point = chosen();
-  byId("sentence").textContent = point.sentence;
+  byId("names").value = state.point;
+  byId("sentence").textContent = unbroken(point.sentence);
   const rows = byId("figures");
   rows.replaceChildren();
   names.forEach((name, k) => {
     const row = element(rows, "tr");
     element(row, "th", name).scope = "row";
-    element(row, "td", point.cells[k], "plan");
-    element(row, "td", cycloid.cells[k]);
+    for (const [motion, look] of [[point, "plan"], [cycloid, ""]]) {
+      const cell = element(row, "td", motion.cells[k], look);
+      if (motion.notes[k]) element(cell, "small", motion.notes[k]);
+    }
   });
   const others = beside.filter(({ kind, points }) => kind !== "plan" && points.length && points[0][0] !== null);
-  byId("nearest").textContent = others.map(({ label, points }) => {
+  byId("nearest").textContent = unbroken(others.map(({ label, points }) => {
     const [residual, energy] = points.reduce((best, other) => (Math.abs(other[0] - point.residual) < Math.abs(best[0] - point.residual) ? other : best));
     const words = residual < rest ? "at rest" : `${(factor * residual).toPrecision(3)} ${unit}`;
     return `${label}${points.length > 1 ? ", nearest" : ""}: ${words}, ${energy.toPrecision(3)} J`;
-  }).join("; ");
+  }).join("; "));
 };
 const showTime = () => {
   const { move, time } = state;
@@ -44,8 +47,9 @@ const showTime = () => {
   ofCycloid(rows).forEach((row, k) => swing.ghost[k].setAttribute("cx", swing.x(valueAt(move.times, row, time))));
   panels.forEach(placePanel);
   byId("time").value = time;
-  byId("clock").textContent = `${time.toFixed(2)} s`;
-  setAll(byId("time"), { "aria-valuetext": `${time.toFixed(2)} seconds` });
+  const words = time.toFixed(Math.max(2, placesFor(move.end)));
+  byId("clock").textContent = `${words} s`;
+  setAll(byId("time"), { "aria-valuetext": `${words} seconds` });
   byId("phase").textContent = time < move.duration ? "moving" : chosen().swing;
 };
 const drawAll = () => {
@@ -58,20 +62,33 @@ const drawAll = () => {
   showMotion();
 };
 const invitation = (move, several) => {
-  if (!several) return "A motion of an arm that bends, beside the plain cycloid.";
-  if (move.joined) return "Every point is a motion of an arm that bends, and the blue curve the best of them. Drag along it.";
-  return "Every point is a motion of an arm that bends. Drag from one to the next.";
+  if (!several) return "A motion of something that bends, over the plain cycloid of the same move.";
+  if (move.joined) return "Every point is a way to make this move, and the curve has the best of them. Drag along it.";
+  return "Every point is a way to make this move. Drag from one to the next.";
+};
+// Motions with names, of which some may lie on each other.
+const beginNames = (points) => {
+  const names = byId("names");
+  names.hidden = points.length < 2 || !points[0].name;
+  names.replaceChildren();
+  points.forEach(({ name }, k) => Object.assign(element(names, "option", name), { value: k }));
 };
 const take = (move) => {
   state.move = move;
   state.point = Math.min(state.point, lastPoint());
   state.time = Math.min(state.time, move.end);
   byId("time").max = move.end;
+  document.documentElement.style.setProperty("--this", `var(--${move.this})`);
+  document.documentElement.style.setProperty("--this-ink", `var(--${move.this}-ink)`);
+  beginPanels();
+  beginSpeeds();
   const several = lastPoint() > 0;
   byId("heading").textContent = several ? "How still, for how much energy?" : "A motion, and the plain cycloid";
   byId("choosing").hidden = !several;
+  byId("sentence").classList.toggle("changes", several);
+  beginNames(move.points);
   byId("invitation").textContent = invitation(move, several);
-  byId("title").textContent = `${move.title}.`;
+  byId("title").textContent = unbroken(`${move.title}.`);
   byId("note").textContent = move.note;
   drawAll();
 };
@@ -115,24 +132,35 @@ const choices = (field, words, first, onChange) => words.forEach((word, k) => {
   input.addEventListener("change", () => onChange(k));
   label.append(word);
 });
-const SPEEDS = [["1\u00d7", 1], ["\u00bd", 0.5], ["\u00bc", 0.25], ["\u215b", 0.125]];
+// So many seconds of the motion in a second on the screen, from fast to slow.
+const SPEEDS = [200, 100, 50, 20, 10, 5, 2, 1, 1 / 2, 1 / 4, 1 / 8, 1 / 20, 1 / 50, 1 / 100, 1 / 200, 1 / 500, 1 / 1000];
+const FRACTIONS = { 0.5: "\u00bd", 0.25: "\u00bc", 0.125: "\u215b" };
+const speedWords = (speed) => (speed >= 1 ? `${speed}\u00d7` : FRACTIONS[speed] ?? `1/${Math.round(1 / speed)}`);
+const USUAL = 4; // seconds on the screen that a motion takes at the speed with which it begins
+const beginSpeeds = () => {
+  const away = SPEEDS.map((speed) => Math.abs(Math.log(state.move.end / speed / USUAL)));
+  const usual = Math.min(Math.max(away.indexOf(Math.min(...away)), 1), SPEEDS.length - 3);
+  const offered = SPEEDS.slice(usual - 1, usual + 3);
+  state.speed = SPEEDS[usual];
+  byId("speeds").replaceChildren();
+  choices(byId("speeds"), offered.map(speedWords), 1, (k) => { state.speed = offered[k]; });
+};
 choices(byId("moves"), moves.map(({ label }) => label), 0, (k) => take(moves[k]));
 byId("moves").hidden = moves.length === 1;
-choices(byId("speeds"), SPEEDS.map(([word]) => word), 1, (k) => { state.speed = SPEEDS[k][1]; });
+byId("names").addEventListener("change", () => choose(Number(byId("names").value)));
 byId("play").addEventListener("click", () => play(!state.playing));
 byId("time").addEventListener("input", () => {
   play(false);
   seek(Number(byId("time").value));
 });
 addEventListener("keydown", (event) => {
-  if (event.key !== " " || event.target.closest("button, input")) return;
+  if (event.key !== " " || event.target.closest("button, input, select")) return;
   event.preventDefault();
   play(!state.playing);
 });
 stillness.addEventListener("change", () => play(!stillness.matches));
 
-// In a frame of another page: it says the colours by {quietarm: {theme: "dark"}}, and is told how high this page is.
-const framed = window.parent !== window;
+// In a frame of another page: it says the colours by {quietarm: {theme: "dark"}} and keys by {quietarm: {key: "ArrowLeft"}}, and is told how high this page is.
 document.documentElement.classList.toggle("framed", framed);
 const tellHeight = () => {
   if (framed) window.parent.postMessage({ quietarm: { height: Math.ceil(document.querySelector("main").getBoundingClientRect().height) } }, "*");
@@ -141,6 +169,7 @@ const tellHeight = () => {
 // The first drawing waits for a size: in a frame that is hidden there is none.
 let drawnSize = "";
 addEventListener("message", ({ data }) => {
+  if (Object.hasOwn(SIDEWAYS, data?.quietarm?.key ?? "")) chooseBy(data.quietarm.key);
   const theme = data?.quietarm?.theme;
   if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;
   if (theme === "auto") delete document.documentElement.dataset.theme;

@@ -67,6 +67,8 @@ class Beside:
     label: str
     kind: str
     points: tuple[tuple[float | None, float], ...]
+    meaning: str
+    """Its look in the grammar of pictures."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +91,13 @@ class Move:
     def title(self) -> str:
         """The plant, the move and its limits."""
         return title_of_picture(self.task)
+
+    @property
+    def meaning(self) -> str:
+        """What the choices are in the grammar of pictures: their colour says it."""
+        if self.is_front and not is_gradient(self.choices[0].plan.record.method):
+            return "search"
+        return _plan_of(self.task)
 
     @property
     def motions(self) -> list[Plan]:
@@ -144,9 +153,12 @@ def _move_of(group: Answers) -> Move:
     points = _along(front.points)
     method = front.record.method
     beside = [_beside_front(further) for further in fronts.values()]
-    beside += [Beside(name, "plan", (_place(plan),)) for name, plan in plans.items()]
+    meaning = _plan_of(front.task)
+    beside += [Beside(name, "plan", (_place(plan),), meaning) for name, plan in plans.items()]
     known = paper_points(front.task, [front.profile.size])
-    beside += [Beside(point.label, "known", ((point.residual, point.energy),)) for point in known]
+    beside += [
+        Beside(point.label, "known", ((point.residual, point.energy),), "paper") for point in known
+    ]
     return Move(
         label=label,
         task=front.task,
@@ -198,7 +210,14 @@ def _choice(front: Front, point: FrontPoint) -> Choice:
 def _beside_front(front: Front) -> Beside:
     method = front.record.method
     places = tuple((point.residual, point.energy) for point in _along(front.points))
-    return Beside(label_of(method), "gradient" if is_gradient(method) else "search", places)
+    if is_gradient(method):
+        return Beside(label_of(method), "gradient", places, _plan_of(front.task))
+    return Beside(label_of(method), "search", places, "search")
+
+
+def _plan_of(task: PointToPoint) -> str:
+    """What a plan of a task is in the grammar of pictures."""
+    return "robust plan" if task.ranges else "plan"
 
 
 def _along(points: Sequence[FrontPoint]) -> list[FrontPoint]:

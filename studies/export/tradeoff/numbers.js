@@ -43,10 +43,31 @@ const niceStep = (least) => {
   const power = 10 ** Math.floor(Math.log10(least));
   return [1, 2, 5, 10].map((digit) => digit * power).find((step) => step >= least * 0.999);
 };
-const ticks = (low, high, about) => {
-  const step = niceStep((high - low) / about);
-  const places = Math.min(9, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
-  const places_of_all = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) places_of_all.push([k * step, fixed(k * step, places)]);
-  return places_of_all;
+// The axis of a quantity: it ends on ticks, beyond all that is drawn; a power of ten stands beside its unit where numbers would be long.
+const RAISED = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074", 5: "\u2075", 6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079" };
+const axisOf = (least, most, about) => {
+  const step = niceStep((most - least || 1) / about);
+  const low = Math.floor(least / step + 1e-6) * step;
+  const high = Math.ceil(most / step - 1e-6) * step;
+  const largest = Math.max(Math.abs(low), Math.abs(high));
+  const tens = largest >= 1e5 || largest < 0.005 ? 3 * Math.floor(Math.log10(largest) / 3) : 0;
+  const factor = 10 ** tens;
+  const places = Math.min(9, Math.max(0, tens - Math.floor(Math.log10(step) + 1e-9)));
+  const write = (value) => fixed(value / factor, places);
+  const power = [...String(tens)].map((sign) => RAISED[sign]).join("");
+  const count = Math.round((high - low) / step);
+  return {
+    low,
+    high,
+    factor,
+    ticks: Array.from({ length: count + 1 }, (_, k) => [low + k * step, write(low + k * step)]),
+    unit: (unit) => (tens ? `10${power} ${unit}` : unit),
+  };
 };
+// The same of time, which ends where the motion does.
+const timeAxis = (end, about) => {
+  const axis = axisOf(0, end, about);
+  return { ...axis, high: end, ticks: axis.ticks.filter(([value]) => value <= end * (1 + 1e-9)) };
+};
+// Words in which no line ends between a number and its unit.
+const unbroken = (text) => text.replace(/ = /g, "\u00a0=\u00a0").replace(/(\d) (?=(?:%|[nm\u00b5]?J|mm|[ms]|rad|deg|Hz|kg|k?N|W)(?![a-z]))/g, "$1\u00a0");

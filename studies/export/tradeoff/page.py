@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import to_hex
+from matplotlib.colors import to_hex, to_rgb
 from numpy.typing import NDArray
 
 from quietarm.ocp import Front, Plan
@@ -31,12 +31,18 @@ from quietarm.studies.export.tradeoff.words import (
     spot_words,
     swing_words,
 )
-from quietarm.studies.figures.grammar import BLUE, FAINT, GREY, INK, ORANGE, SKY
-from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
-from quietarm.studies.figures.structure import Structure, structures_of
+from quietarm.studies.figures.grammar import BLUE, FAINT, INK, MEANINGS, OTHERS, Look, looks
+from quietarm.studies.figures.motion import (
+    Line,
+    curves,
+    heading,
+    limits_in_sight,
+    names_of_curves,
+)
+from quietarm.studies.figures.structure import Part, Structure, structures_of
 from quietarm.studies.report.methods import label_of
 from quietarm.studies.report.templates import templates
-from quietarm.studies.report.words import counted, window_words
+from quietarm.studies.report.words import counted, raised, window_words
 from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
@@ -44,8 +50,15 @@ MOST_BYTES = 1_500_000
 """Of a page: what is sent by mail, and opens at once."""
 _OF_CODE = 100_000
 """Bytes that scripts and styles may take of them."""
-_COLOURS = {"plan": BLUE, "plan_in_dark": SKY, "search": ORANGE, "cycloid": GREY, "ink": INK}
-"""Those of pictures; in dark the plan is the lighter blue."""
+_LIGHTER = 0.6
+"""By which share colours without a meaning become white on a dark page."""
+_READABLE = 0.18
+"""The largest luminance of letters on white: a contrast of 4.5."""
+_SWING = 9
+"""How many times the duration is shown after it: of a move of milliseconds little would be seen
+beside a residual window of a second."""
+_OF_THIS = ("plan", "robust plan", "search")
+"""Meanings that the chosen motion can have."""
 _SCRIPTS = (
     "numbers.js", "drawing.js", "state.js", "front.js", "arm.js", "panels.js", "main.js",
 )  # fmt: skip
@@ -65,11 +78,11 @@ class TradeOffPage:
         """The page."""
         environment = templates(autoescape=True)
         environment.filters["in_script"] = _in_script
-        colours = {name: to_hex(colour) for name, colour in _COLOURS.items()}
         template = environment.get_template("export/tradeoff/page.html")
         page = template.render(
-            title=self.title, data={"moves": self.moves}, colours=colours, scripts=_SCRIPTS
-        )
+            title=self.title, data={"moves": self.moves}, light=_colours(dark=False),
+            dark=_colours(dark=True), scripts=_SCRIPTS,
+        )  # fmt: skip
         return page.lstrip()
 
     def save(self, path: str | Path) -> None:
@@ -147,6 +160,44 @@ def _by_name(answers: Front | Plan | Sequence[Front | Plan] | Answers) -> Answer
     return named
 
 
+def _colours(dark: bool) -> dict[str, str]:
+    """The colours of the grammar of pictures, by the names of the page's styles."""
+    colours = {
+        _css_name(name): to_hex(look.on_dark if dark else look.colour)
+        for name, look in MEANINGS.items()
+    }
+    colours |= {
+        f"other-{number}": _mixed(colour, 1.0, _LIGHTER * dark)
+        for number, colour in enumerate(OTHERS)
+    }
+    for name in map(_css_name, _OF_THIS):
+        colours[f"{name}-ink"] = colours[name] if dark else _readable(colours[name])
+    return colours
+
+
+def _css_name(meaning: str) -> str:
+    return meaning.replace(" ", "-")
+
+
+def _readable(colour: str) -> str:
+    """A colour, or a darker one, in which letters are read on white."""
+    weights = np.array([0.2126, 0.7152, 0.0722])  # WCAG 2: relative luminance
+    for share in np.linspace(0.0, 0.9, 10):
+        darker = _mixed(colour, 0.0, float(share))
+        channels = np.array(to_rgb(darker))
+        linear = np.where(
+            channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4
+        )
+        if weights @ linear <= _READABLE:
+            return darker
+    return darker
+
+
+def _mixed(colour: str, towards: float, share: float) -> str:
+    """A colour on its way to black, 0, or white, 1."""
+    return to_hex([(1 - share) * channel + share * towards for channel in to_rgb(colour)])
+
+
 def _in_script(value: Any) -> str:
     """JSON that ends no script, whatever the names in it are."""
     text = json.dumps(value, separators=(",", ":"), allow_nan=False)
@@ -186,11 +237,13 @@ def _sampled_times(
     move: Move, curves_of_all: Mapping[str, Array], tolerance: float
 ) -> tuple[Array, NDArray[np.intp]]:
     """Times at which all motions are sampled [s], and which of the fine samples these are."""
+    task = move.task
     times = move.cycloid.trajectory.time
-    rows = [_angles(plan)[None, :] for plan in move.motions]
+    times = times[times <= task.duration + min(task.residual_window, _SWING * task.duration)]
+    rows = [_angles(plan)[None, : len(times)] for plan in move.motions]
     for values in curves_of_all.values():
         peak = np.abs(values).max() or 1.0
-        rows += list(values / peak)
+        rows += list((values / peak)[:, :, : len(times)])
     arrival = np.flatnonzero(times == move.task.duration)
     places = needed_samples(times, np.vstack(rows), arrival, tolerance)
     return times[places], places
@@ -217,9 +270,9 @@ def _structure(move: Move, times: Array, scale: float | None, tolerance: float) 
     at_the_end = replace(first, times=times[-1:]).unbent
     still = [part for part in at_the_end if part.colour != FAINT]
     return {
-        "scale": first.scale_words,
+        "scale": first.scale_words.replace(" x ", " \u00d7 "),
         "in_space": move.task.plant.in_space,
-        "parts": [_part(part.points.shape[1], part.colour, part.width) for part in first.bent],
+        "parts": [_part(part) for part in first.bent],
         "trails": len(first.paths),
         "mean": shapes.mean.round(6).tolist(),
         "shapes": shapes.shapes.round(6).tolist(),
@@ -236,24 +289,38 @@ def _coordinates(structure: Structure) -> Array:
     return np.hstack([*parts, *structure.paths])
 
 
-def _part(points: int, colour: str, width: float) -> dict[str, Any]:
-    looks = {FAINT: "ground", INK: "rigid"}
-    return {"points": points, "look": looks.get(colour, "link"), "width": width}
+def _part(part: Part) -> dict[str, Any]:
+    points = part.points.shape[1]
+    look = "rigid" if part.colour == INK else "link"
+    if part.colour == FAINT:
+        is_closed = np.array_equal(part.points[:, 0], part.points[:, -1])
+        line = 2  # points of a straight one, as a post
+        look = "floor" if is_closed else "shadow" if points > line else "ground"
+    return {"points": points, "look": look, "width": part.width}
 
 
 def _panel(move: Move, quantity: str, values: Array) -> dict[str, Any]:
+    """Curves over time: of several joints or tips one is shown, by its name."""
     plant = move.task.plant
     title, _, unit = heading(quantity, plant.joint, plant.tip_unit).partition(" [")
-    lines = [Line(plan, "") for plan in move.motions]
-    limits = []
-    if quantity != "power":
-        limits = limits_in_sight(lines, quantity, values.ravel())
+    count = values.shape[1]
+    peaks = np.abs(values).max(axis=(0, 2))
     return {
         "title": title[0].upper() + title[1:],
         "unit": unit.removesuffix("]"),
-        "limits": limits,
+        "limits": [_limits(move, quantity, values, curve) for curve in range(count)],
+        "names": names_of_curves(plant, quantity) if count > 1 else [""],
+        "first": int(peaks.argmax()),
         "values": packed(values),
     }
+
+
+def _limits(move: Move, quantity: str, values: Array, curve: int) -> list[float]:
+    """The limits of a joint or a tip that its curves come near."""
+    if quantity == "power":
+        return []
+    lines = [Line(plan, "") for plan in move.motions]
+    return limits_in_sight(lines, quantity, values[:, curve].ravel(), curve)
 
 
 def _content(
@@ -263,15 +330,18 @@ def _content(
     cycloid = Choice(move.cycloid, move.cycloid.residual, move.cycloid.energy)
     unit, factor = tip_scale(task.plant.tip_unit)
     count = len(move.choices)
+    looks_of_all = looks([move.meaning, *(beside.meaning for beside in move.beside)])
     left_out = f"{count} of the front's {count + move.left_out} points. " if move.left_out else ""
     return {
         "label": move.label,
-        "title": move.title,
+        "title": raised(move.title).replace("+-", "\u00b1"),
+        "this": _css_name(move.meaning),
+        "mark": looks_of_all[0].mark,
         "method": move.method,
         "joined": move.joined,
         "duration": task.duration,
         "arrival": int(np.searchsorted(times, task.duration)),
-        "end": task.duration + task.residual_window,
+        "end": float(times[-1]),
         "residual": f"residual vibration F1 {window_words(task.residual_window)}",
         "rest": REST,
         "unit": unit,
@@ -284,11 +354,24 @@ def _content(
         "points": [_point(move, choice) for choice in move.choices],
         "cycloid": _place(move, cycloid),
         "beside": [
-            {"label": beside.label, "kind": beside.kind, "points": beside.points}
-            for beside in move.beside
+            {
+                "label": beside.label,
+                "kind": beside.kind,
+                "colour": _colour_name(look),
+                "mark": look.mark,
+                "points": beside.points,
+            }
+            for beside, look in zip(move.beside, looks_of_all[1:], strict=True)
         ],
         "note": left_out + robust_note(task),
     }
+
+
+def _colour_name(look: Look) -> str:
+    """What the page's styles call the colour of a look."""
+    if look.colour in OTHERS:
+        return f"other-{OTHERS.index(look.colour)}"
+    return next(_css_name(name) for name, meant in MEANINGS.items() if meant == look)
 
 
 def _point(move: Move, choice: Choice) -> dict[str, Any]:
@@ -304,6 +387,7 @@ def _place(move: Move, choice: Choice) -> dict[str, Any]:
         "residual": choice.residual,
         "energy": choice.energy,
         "cells": figures.cells(move.task),
+        "notes": figures.notes(),
         "spot": spot_words(choice),
-        "swing": swing_words(choice.residual, move.task.plant.tip_unit),
+        "swing": swing_words(choice),
     }

@@ -1,8 +1,8 @@
-// Torque, power and tip displacement over time, on the clock of the motion.
+// Torque, power and tip displacement over time, on the clock of the motion; of several joints or tips one, which is chosen by its name.
 const panels = ["torque", "power", "deflection"].map((name) => {
   const box = element(byId("panels"), "div");
   const above = element(box, "div", "", "above");
-  const panel = { name, heading: element(above, "h2"), values: element(above, "output"), svg: draw(box, "svg", { role: "img" }) };
+  const panel = { name, line: 0, heading: element(above, "h2"), values: element(above, "output"), svg: draw(box, "svg", { role: "img" }) };
   let wasPlaying = false;
   draggable(panel.svg, {
     onBegin: () => {
@@ -20,48 +20,74 @@ const panels = ["torque", "power", "deflection"].map((name) => {
   });
   return panel;
 });
+const beginPanels = () => {
+  for (const panel of panels) panel.line = state.move.panels[panel.name].first;
+};
 const drawPanels = () => {
   for (const panel of panels) drawPanel(panel, state.move.panels[panel.name]);
 };
-const drawPanel = (panel, { title, unit, limits, rows }) => {
+const drawHeading = (panel, { title, names }, unit) => {
+  panel.heading.replaceChildren(`${title} `);
+  element(panel.heading, "span", `[${unit}]`, "unit");
+  if (names.length < 2) return;
+  const select = element(panel.heading, "select");
+  select.setAttribute("aria-label", `${title} of`);
+  names.forEach((name, k) => Object.assign(element(select, "option", name), { value: k, selected: k === panel.line }));
+  select.addEventListener("change", () => {
+    panel.line = Number(select.value);
+    drawPanel(panel, state.move.panels[panel.name]);
+    placeCurve(panel);
+    placePanel(panel);
+    panel.heading.querySelector("select").focus();
+  });
+};
+const drawPanel = (panel, quantity) => {
   const { duration, end, times } = state.move;
   const { svg } = panel;
-  panel.heading.textContent = `${title} `;
-  element(panel.heading, "span", `[${unit}]`, "unit");
-  svg.setAttribute("aria-label", `${title} over time`);
-  const lines = rows.flat();
+  const { title, rows } = quantity;
+  const limits = quantity.limits[panel.line];
+  const lines = rows.map((motion) => motion[panel.line]);
   const low = Math.min(0, ...limits, ...lines.map((row) => Math.min(...row)));
-  const high = Math.max(0, ...limits, ...lines.map((row) => Math.max(...row)), low + 1e-12);
-  const room = 0.06 * (high - low);
-  panel.places = placesFor(Math.max(high, -low));
-  const box = axes(svg, svg, [0, end, low - room, high + room], { left: 44, right: 8, top: 18, bottom: 34 }, [svg.clientWidth < 260 ? 3 : 5, 4]);
+  const high = Math.max(0, ...limits, ...lines.map((row) => Math.max(...row)));
+  const [across, along] = [timeAxis(end, svg.clientWidth < 260 ? 3 : 5), axisOf(low, high > low ? high : 1, 4)];
+  drawHeading(panel, quantity, along.unit(quantity.unit));
+  svg.setAttribute("aria-label", `${title} over time`);
+  panel.write = (value) => fixed(value / along.factor, placesFor(Math.max(high, -low) / along.factor));
+  const widest = Math.max(...along.ticks.map(([, word]) => word.length));
+  const box = axes(svg, svg, across, along, { left: Math.max(30, 10 + 7.2 * widest), right: 8, top: 18, bottom: 34 });
   panel.box = box;
-  draw(svg, "text", { x: (box.left + box.right) / 2, y: box.bottom + 31, "text-anchor": "middle" }, "time [s]");
+  draw(svg, "text", { x: (box.left + box.right) / 2, y: box.bottom + 31, "text-anchor": "middle" }, `time [${across.unit("s")}]`);
   draw(svg, "rect", { x: box.x(duration), y: box.top, width: box.right - box.x(duration), height: box.bottom - box.top, fill: "var(--after)" });
-  draw(svg, "line", { x1: box.x(duration), x2: box.x(duration), y1: box.top, y2: box.bottom, stroke: "var(--soft)", "stroke-dasharray": "4 3" });
+  draw(svg, "line", { x1: box.x(duration), x2: box.x(duration), y1: box.top, y2: box.bottom, stroke: "var(--arrival)", "stroke-dasharray": "4 3" });
   draw(svg, "text", { x: Math.min(box.x(duration), box.right - 42), y: box.top - 5, "font-size": 11 }, "arrival");
   draw(svg, "line", { x1: box.left, x2: box.right, y1: box.y(0), y2: box.y(0), stroke: "var(--soft)", "stroke-opacity": 0.5 });
-  for (const level of limits) draw(svg, "line", { x1: box.left, x2: box.right, y1: box.y(level), y2: box.y(level), stroke: "var(--ink)", "stroke-width": 1.5, "stroke-dasharray": "1.6 4", "stroke-linecap": "round" });
-  panel.pathOf = (row) => pathOf(Array.from(row, (value, k) => [box.x(times[k]), box.y(value)]));
-  const thin = ofCycloid(rows).length > 2 ? 0.6 : 1;
-  for (const row of ofCycloid(rows)) draw(svg, "path", { ...ROUND, d: panel.pathOf(row), stroke: "var(--cycloid)", "stroke-width": 1.7 * thin });
-  panel.curves = ofChosen(rows).map(() => draw(svg, "path", { ...ROUND, stroke: "var(--plan)", "stroke-width": 2.2 * thin }));
-  if (limits.length) draw(svg, "text", { x: box.right - 2, y: box.y(Math.max(...limits)) + 14, "text-anchor": "end", "font-size": 11, class: "halo" }, "limit");
+  for (const level of limits) draw(svg, "line", { x1: box.left, x2: box.right, y1: box.y(level), y2: box.y(level), stroke: "var(--limit)", "stroke-width": 1.5, "stroke-dasharray": "1.6 4", "stroke-linecap": "round" });
+  panel.placeOf = (value, k) => [box.x(times[k]), box.y(value)];
+  const curve = (colour, wide) => [1, AFTER].map((seen) => draw(svg, "path", { ...ROUND, stroke: colour, "stroke-width": wide, "stroke-opacity": seen }));
+  setCurve(panel, curve("var(--cycloid)", 1.7), ofCycloid(rows)[panel.line]);
+  panel.curve = curve("var(--this)", 2.2);
+  if (limits.length) draw(svg, "text", { x: box.left + 4, y: box.y(Math.max(...limits)) + (Math.max(...limits) > 0 ? -4 : 13), "font-size": 11, class: "halo" }, "limit");
   panel.cursor = draw(svg, "line", { y1: box.top, y2: box.bottom, stroke: "var(--ink)", "stroke-width": 1.2 });
-  panel.ghostDots = ofCycloid(rows).map(() => draw(svg, "circle", { r: 3.5 * thin, fill: "var(--cycloid)" }));
-  panel.dots = panel.curves.map(() => draw(svg, "circle", { r: 4.5 * thin, fill: "var(--plan)", stroke: "var(--card)", "stroke-width": 1.2 }));
+  panel.ghostDot = draw(svg, "circle", { r: 3.5, fill: "var(--cycloid)" });
+  panel.dot = draw(svg, "circle", { r: 4.5, fill: "var(--this)", stroke: "var(--card)", "stroke-width": 1.2 });
 };
+// A curve until the arrival, and lighter from there on.
+const setCurve = (panel, [moving, after], row) => {
+  const { arrival } = state.move;
+  const places = Array.from(row, panel.placeOf);
+  moving.setAttribute("d", pathOf(places.slice(0, arrival + 1)));
+  after.setAttribute("d", pathOf(places.slice(arrival)));
+};
+const placeCurve = (panel) => setCurve(panel, panel.curve, ofChosen(state.move.panels[panel.name].rows)[panel.line]);
 const placePanel = (panel) => {
   const { rows } = state.move.panels[panel.name];
   const { time, move } = state;
   const x = panel.box.x(time);
   setAll(panel.cursor, { x1: x, x2: x });
-  const now = (values) => values.map((row) => valueAt(move.times, row, time));
-  const [values, ghosts] = [now(ofChosen(rows)), now(ofCycloid(rows))];
-  values.forEach((value, k) => setAll(panel.dots[k], { cx: x, cy: panel.box.y(value) }));
-  ghosts.forEach((value, k) => setAll(panel.ghostDots[k], { cx: x, cy: panel.box.y(value) }));
+  const [value, ghost] = [ofChosen(rows), ofCycloid(rows)].map((lines) => valueAt(move.times, lines[panel.line], time));
+  setAll(panel.dot, { cx: x, cy: panel.box.y(value) });
+  setAll(panel.ghostDot, { cx: x, cy: panel.box.y(ghost) });
   panel.values.replaceChildren();
-  if (values.length > 1) return;
-  element(panel.values, "b", fixed(values[0], panel.places));
-  element(panel.values, "i", fixed(ghosts[0], panel.places));
+  element(panel.values, "b", panel.write(value)).title = "this motion";
+  element(panel.values, "i", panel.write(ghost)).title = "plain cycloid";
 };

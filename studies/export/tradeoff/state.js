@@ -1,5 +1,7 @@
 // What is chosen: a move, one of its motions, a time; and what is read of it.
 const state = { move: moves[0], point: 0, time: 0, playing: false, speed: 0.5 };
+const framed = window.parent !== window; // in another page
+const AFTER = 0.45; // opacity of what is drawn after arrival
 const chosen = () => state.move.points[state.point];
 const lastPoint = () => state.move.points.length - 1;
 const ofChosen = (rows) => rows[state.point];

@@ -11,33 +11,56 @@ from quietarm.models.joint_motion import joint_label, joint_unit
 from quietarm.ocp import Plan, PointToPoint
 from quietarm.ocp.record import REST
 from quietarm.studies.export.tradeoff.moves import Choice, Move
+from quietarm.studies.figures.meaning import is_plain_cycloid
 from quietarm.studies.report.report import percents
 from quietarm.studies.tips import tip_scale
+
+_PREFIXES = {"nJ": 1e-9, "\u00b5J": 1e-6, "mJ": 1e-3, "J": 1.0}
+"""Units of an energy, by which it has few zeros."""
 
 
 @dataclass(frozen=True)
 class Figures:
-    """The figures of a motion in SI units, in the order of `figure_names`."""
+    """The figures of a motion in SI units, in the order of `figure_names`.
+
+    Of several joints `peak_joint` is the one with the largest torque; else it is empty.
+    """
 
     residual: float
     energy: float
     peak_torque: float
     peak_power: float
     peak_tip: float
+    peak_joint: str = ""
 
     @classmethod
     def of(cls, plan: Plan, residual: float, energy: float) -> Self:
         """Those of a motion, F1 and F2 as its front states them."""
         motion = plan.motion
-        peak_power = float(np.abs(plan.trajectory.power).max())
-        return cls(residual, energy, motion.peak_torque, peak_power, motion.peak_deflection)
+        trajectory = plan.trajectory
+        peak_power = float(np.abs(trajectory.power).max())
+        joints = plan.task.plant.joint_names
+        peak_joint = ""
+        if len(joints) > 1:
+            moving = trajectory.time <= plan.task.duration
+            torques = np.abs(np.array(trajectory.sample.torques, dtype=float)[:, moving])
+            peak_joint = joints[int(torques.max(axis=1).argmax())]
+        return cls(
+            residual, energy, motion.peak_torque, peak_power, motion.peak_deflection, peak_joint
+        )
 
     def cells(self, task: PointToPoint) -> list[str]:
         """The figures as a table shows them."""
         factor = tip_scale(task.plant.tip_unit)[1]
-        residual = "at rest" if self.residual < REST else f"{factor * self.residual:.4g}"
+        residual = f"{factor * self.residual:.4g}"
+        if self.residual < REST:
+            residual = "at rest" if task.final is None else "as asked"
         others = self.energy, self.peak_torque, self.peak_power, factor * self.peak_tip
         return [residual, *(f"{value:.4g}" for value in others)]
+
+    def notes(self) -> list[str]:
+        """What stands below each of the figures: the joint of the largest torque."""
+        return ["", "", self.peak_joint, "", ""]
 
 
 def figure_names(task: PointToPoint) -> list[str]:
@@ -56,14 +79,17 @@ def figure_names(task: PointToPoint) -> list[str]:
 
 def spot_words(choice: Choice) -> str:
     """Where a motion lies: "14.7 mm, 0.0334 J"."""
-    return f"{_residual(choice)}, {_joules(choice)}"
+    return f"{_residual(choice)}, {_joules(choice.energy)}"
 
 
-def swing_words(residual: float, tip_unit: str) -> str:
+def swing_words(choice: Choice) -> str:
     """What the tip does after arrival."""
-    if residual < REST:
-        return "at rest"
-    return f"swings \u00b1{_tip(residual, tip_unit)}"
+    if choice.residual < REST:
+        return _residual(choice)
+    task = choice.plan.task
+    off = "" if task.final is None else "off what is asked by "
+    worst = " in the worst case" if task.ranges else ""
+    return f"swings {off}\u00b1{_residual(choice)}{worst}"
 
 
 def sentence(move: Move, choice: Choice) -> str:
@@ -71,80 +97,123 @@ def sentence(move: Move, choice: Choice) -> str:
     stillest = move.choices[0]
     if not move.is_front or choice is stillest:
         return _against_cycloid(move, choice) + _next_step(move, choice)
-    saved = 1 - choice.energy / stillest.energy
-    at_rest = "arriving at rest"
+    worst = " in the worst case" if move.task.ranges else ""
+    energy, of_stillest = _apart(choice.energy, stillest.energy)
+    saved = percents([1 - choice.energy / stillest.energy])  # a front's energies fall
+    at_rest = "arriving at rest" if move.task.final is None else "arriving as asked"
     if stillest.residual >= REST:
         at_rest = f"the stillest motion, {_residual(stillest)},"
     return (
-        f"{_residual(choice)} of residual vibration saves {percents([saved])} of the energy: "
-        f"{_joules(choice)}, where {at_rest} takes {_joules(stillest)}."
-        f"{_next_step(move, choice)}"
+        f"{_residual(choice)} of residual vibration{worst} saves {saved} of the energy: {energy}, "
+        f"where {at_rest} takes {of_stillest}.{_next_step(move, choice)}"
     )
 
 
 def _residual(choice: Choice) -> str:
+    task = choice.plan.task
     if choice.residual < REST:
-        return "at rest"
-    return _tip(choice.residual, choice.plan.task.plant.tip_unit)
+        return "at rest" if task.final is None else "as asked"
+    unit, factor = tip_scale(task.plant.tip_unit)
+    return f"{_digits(factor * choice.residual)} {unit}"
 
 
-def _tip(displacement: float, tip_unit: str) -> str:
-    unit, factor = tip_scale(tip_unit)
-    return f"{_three_digits(factor * displacement)} {unit}"
+def _joules(energy: float, digits: int = 3) -> str:
+    return f"{_digits(energy, digits)} J"
 
 
-def _joules(choice: Choice) -> str:
-    return f"{_three_digits(choice.energy)} J"
+def _apart(first: float, second: float) -> tuple[str, str]:
+    """Two energies with as many digits as tell them apart, three at least."""
+    least = 3
+    most = 6
+    for digits in range(least, most):
+        if _joules(first, digits) != _joules(second, digits):
+            return _joules(first, digits), _joules(second, digits)
+    return _joules(first, least), _joules(second, least)
 
 
-def _three_digits(value: float) -> str:
-    """A number with three significant digits, zeros at the end among them."""
+def _digits(value: float, digits: int = 3) -> str:
+    """A number with three significant digits or more, zeros at the end among them."""
     written_out = 1e-4 <= value < 1e3  # beyond it with a power of ten
-    return f"{value:#.3g}".rstrip(".") if written_out else f"{value:.3g}"
+    return f"{value:#.{digits}g}".rstrip(".") if written_out else f"{value:.{digits}g}"
 
 
 def _against_cycloid(move: Move, choice: Choice) -> str:
     """A motion beside the plain cycloid."""
-    tip_unit = move.task.plant.tip_unit
     name = f"{choice.name}: the" if choice.name and len(move.choices) > 1 else "The"
-    arrives = f"tip swings by up to {_residual(choice)} after arrival"
+    takes = f"{name} tip {_arrival(choice)} for {_joules(choice.energy)}"
+    if is_plain_cycloid(choice.plan):
+        return f"{takes}; this is the plain cycloid itself."
+    cycloid = Choice(move.cycloid, move.cycloid.residual, move.cycloid.energy)
+    than = _compared(choice.energy, cycloid.energy)
+    does = f"leaves it swinging by up to {_residual(cycloid)}"
+    if move.task.final is not None:
+        does = f"is off that by up to {_residual(cycloid)}"
+    if cycloid.residual < REST:
+        does = f"arrives {_residual(cycloid)}, too"
+    return f"{takes}, {than} the plain cycloid, which {does}."
+
+
+def _arrival(choice: Choice) -> str:
+    """What the tip does from the arrival on, as the second half of a sentence."""
+    task = choice.plan.task
     if choice.residual < REST:
-        arrives = "tip arrives at rest"
-    share = choice.energy / move.cycloid.energy - 1
-    than = f"{percents([abs(share)])} {'less' if share < 0 else 'more'} than"
-    if abs(share) < 0.005:
-        than = "as much as"
-    cycloid = "arrives at rest, too"
-    if move.cycloid.residual >= REST:
-        left = _tip(move.cycloid.residual, tip_unit)
-        cycloid = f"leaves it swinging by up to {left}"
-    return f"{name} {arrives} for {_joules(choice)}, {than} the plain cycloid, which {cycloid}."
+        return f"arrives {_residual(choice)}"
+    worst = " in the worst case" if task.ranges else ""
+    if task.final is not None:
+        return f"swings after arrival, by up to {_residual(choice)} off what is asked{worst},"
+    return f"swings by up to {_residual(choice)} after arrival{worst}"
+
+
+def _compared(energy: float, of_cycloid: float) -> str:
+    """An energy beside the plain cycloid's: "51 % less than"."""
+    alike = 0.005  # share of which two energies are the same to a reader
+    if abs(energy - of_cycloid) <= alike * abs(of_cycloid):
+        return "as much as"
+    if of_cycloid <= 0:
+        return f"which is {_joules(energy - of_cycloid)} more than"
+    share = energy / of_cycloid - 1
+    return f"{percents([abs(share)])} {'less' if share < 0 else 'more'} than"
 
 
 def _next_step(move: Move, choice: Choice) -> str:
-    """What a little more residual vibration would save, by the shadow price."""
+    """What a little more residual vibration would save, by the shadow price.
+
+    Nothing where the front ends before, and no more than the front's cheapest motion saves.
+    """
     last = move.choices[-1]
-    if not choice.price or choice.price < 0 or choice is last:
+    if not choice.price or choice.price < 0:
         return ""
-    step, step_words = _step_of(move)
+    step = _step_of(move)
+    if choice.residual + step > last.residual:
+        return ""
     more = " more" if choice.residual >= REST else " of residual vibration"
-    return f" {step_words}{more} would save about {_about(step * choice.price)}."
+    saved = min(step * choice.price, choice.energy - last.energy)
+    if saved <= 0:
+        return ""
+    return f" {_step_words(step, move.task)}{more} would save about {_about(saved)}."
 
 
-def _step_of(move: Move) -> tuple[float, str]:
-    """A step of the residual that is small beside the front's, and its words."""
-    if move.task.plant.tip_unit != "m":
-        return 0.01, "0.01 rad"
-    some_millimetres = 5e-3
-    if move.choices[-1].residual < some_millimetres:
-        return 1e-4, "A tenth of a millimetre"
-    return 1e-3, "One millimetre"
+def _step_of(move: Move) -> float:
+    """A step of the residual [m]: the power of ten of a millimetre that is small in its front."""
+    small = 0.2
+    span = small * (move.choices[-1].residual - move.choices[0].residual)
+    if span <= 0:
+        return float("inf")
+    return float(10.0 ** np.floor(np.log10(span) + 1e-9))
+
+
+def _step_words(step: float, task: PointToPoint) -> str:
+    unit, factor = tip_scale(task.plant.tip_unit)
+    words = {1.0: "One millimetre", 10.0: "Ten millimetres", 0.1: "A tenth of a millimetre"}
+    shown = float(f"{factor * step:.3g}")
+    return words[shown] if unit == "mm" and shown in words else f"{shown:g} {unit}"
 
 
 def _about(energy: float) -> str:
-    """An energy [J] with two digits."""
-    millijoules = 1e3 * energy
-    return f"{millijoules:.2g} mJ" if millijoules < 100 else f"{energy:.2g} J"
+    """An energy [J] with two digits, in the largest unit in which it is 0.1 at least."""
+    fitting = [unit for unit, size in _PREFIXES.items() if energy >= 0.0999 * size]
+    unit = fitting[-1] if fitting else "nJ"
+    return f"{float(f'{energy / _PREFIXES[unit]:.2g}'):g} {unit}"
 
 
 def robust_note(task: PointToPoint) -> str:

@@ -19,6 +19,7 @@ pytestmark = [
 GUARD = 240
 """Seconds after which what does not come has hung, on any machine."""
 api.expect.set_options(1e3 * GUARD)
+LOUD = ("warning", "error")
 # Where a point of the front is on the page.
 PLACE = """number => {
     const {id, renderers} = Bokeh.documents[0].get_model_by_name("front");
@@ -57,10 +58,11 @@ def chromium():
 
 @pytest.fixture
 def page(address, chromium):
-    """The page as it begins; nothing is asked of another machine, and no script fails."""
+    """The page as it begins; nothing is asked of another machine, and no script fails or warns."""
     page, wrong = chromium.new_page(viewport={"width": 1280, "height": 800}), []
     page.set_default_timeout(1e3 * GUARD)
     page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.on("console", lambda said: said.type in LOUD and wrong.append(said.text))
     page.on("request", lambda request: wrong.append(request.url))
     page.goto(address)
     api.expect(figures(page)).to_contain_text("single-link, 0 to 30 deg in 0.8 s")
@@ -141,6 +143,17 @@ def test_with_the_shift_key_a_slider_goes_a_tenth_as_far(page):
     api.expect(figures(page)).not_to_contain_text("coefficients 0, 0, 0")
 
 
+def test_where_stillness_is_asked_for_the_structure_stands_as_it_arrived(address, chromium):
+    page = chromium.new_page(reduced_motion="reduce")
+    page.set_default_timeout(1e3 * GUARD)
+    page.goto(address)
+    title = "Bokeh.documents[0]?.get_model_by_name('stage')?.title.text ?? ''"
+    page.wait_for_function(f"({title}).endsWith('t = 2.00 s')")
+    page.wait_for_timeout(300)
+    assert page.evaluate(title).endswith("residual: 77.1 mm; to scale, t = 2.00 s")
+    page.close()
+
+
 def test_a_hundred_moves_of_a_slider_end_where_the_last_one_is(page):
     slider = page.locator(".shape .noUi-handle").nth(1)
     for _ in range(100):
@@ -159,14 +172,25 @@ def test_profile_and_terms_are_chosen_and_a_curve_is_kept(page):
     button(page, "Plan").click()
     api.expect(figures(page)).to_contain_text("found a local optimum")
     drawn = "Bokeh.documents[0].get_model_by_name('deflection').renderers[0].data_source.data"
-    # the plain cycloid, that it is kept as, and the plan: below the limits and arrival
-    assert page.evaluate(f"{drawn}.dash.slice(0, 3)") == ["solid", "dashed", "solid"]
+    # the plain cycloid, that it is kept as, and the plan; then these after arrival; the arrival
+    looks = page.evaluate(f"{drawn}.colour.map((colour, k) => [colour, {drawn}.dash[k]])")
+    # docs/pictures.md; the curve that is kept has a colour without a meaning
+    moving = [["#8B939C", "solid"], ["#B3203F", "dashed"], ["#0072B2", "solid"]]
+    assert looks == [*moving, *moving, ["#8B939C", "dashed"]]
+    assert page.evaluate(f"{drawn}.alpha") == [1, 1, 1, 0.45, 0.45, 0.45, 1]
+    # and a limit that the torque comes near is dark and dotted
+    page.get_by_label("torque [N m]").fill("0.2")
+    page.get_by_label("torque [N m]").press("Enter")
+    api.expect(figures(page)).to_contain_text("torque 0.2 N m")
+    torque = drawn.replace("deflection", "torque")
+    page.wait_for_function(f"{torque}.dash.at(-2) === 'dotted'")
+    assert page.evaluate(f"{torque}.colour.at(-2)") == "#333333"
 
 
 def test_a_click_on_the_front_shows_its_motion_and_it_is_downloaded(page):
     button(page, "Front").click()
-    said = page.locator(".said .bk-clearfix")
-    api.expect(said).to_have_text("click near the front to see a motion of it")
+    title = "Bokeh.documents[0].get_model_by_name('front').title.text"
+    page.wait_for_function(f"{title}.startsWith('front: click near it')")
     x, y = page.evaluate(PLACE, 10)
     page.mouse.click(x + 2, y - 25)  # near it
     api.expect(figures(page)).to_contain_text(re.compile(r"residual \(F1\) 1\d\.\d mm"))

@@ -1,9 +1,12 @@
 """A film is a file that opens, with frames that differ as the structures do."""
 
 import math
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
 from quietarm.models import ArmOnFlexibleLink, LinearAxis
@@ -98,6 +101,38 @@ def test_plans_of_different_plants_and_durations_become_a_gif(done, folder, plan
         assert (image.n_frames, image.width) == (9, 240)
     kilobytes = (folder / "move.gif").stat().st_size / 1e3
     assert out == f"9 frames, 2.2 s, {kilobytes:.0f} kB\nwrote move.gif\n"
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 6])
+def test_letters_are_read_on_a_phone_and_panels_say_what_they_show(plan, cycloid, count, tmp_path):
+    lines = [Line(plan, "plan"), *[Line(cycloid, "plain cycloid")] * (count - 1)]
+    with saved_figures() as figures:
+        animate(lines, rate=1.0, width=390).save(tmp_path / "film.gif")
+    figure = figures[-1]
+    with Image.open(tmp_path / "film.gif") as film:
+        assert film.width == 390
+    texts = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]
+    assert min(text.get_fontsize() * figure.dpi / 72 for text in texts) >= 9
+    titles = [ax.get_title(loc="left") for ax in figure.axes]
+    assert titles[0].endswith("residual: at rest")
+    named = [ax for ax in figure.axes if ax.axison]
+    assert len(named) == count + 2  # and the tip displacement and the power over time
+    assert all(ax.get_xlabel().split("]")[0][-1] in "ms" for ax in named)
+    units = [ax.get_ylabel() or title for ax, title in zip(figure.axes, titles) if ax.axison]
+    assert [words.split("[")[1] for words in units] == [*["m]"] * count, "mm]", "W]"]
+
+
+@contextmanager
+def saved_figures():
+    """Figures of frames that are saved meanwhile."""
+    figures = []
+    with pytest.MonkeyPatch.context() as patch:
+        save = Figure.savefig
+        patch.setattr(
+            Figure, "savefig",
+            lambda figure, *place, **how: (figures.append(figure), save(figure, *place, **how)),
+        )  # fmt: skip
+        yield figures
 
 
 def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch, tmp_path):

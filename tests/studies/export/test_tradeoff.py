@@ -211,7 +211,7 @@ def test_plans_are_chosen_among_themselves_and_their_limits_are_drawn(plan, cycl
     (move,) = trade_off({"limited": limited, "plain": cycloid}).moves
     assert [point["name"] for point in move["points"]] == ["limited", "plain"]
     assert move["points"][0]["sentence"].startswith("limited: the tip arrives at rest for 0.0")
-    assert move["panels"]["torque"]["limits"] == [-0.3, 0.2]
+    assert move["panels"]["torque"]["limits"] == [[-0.3, 0.2]]
     with pytest.raises(ValueError, match="61 plans of one move are given, of which a page shows"):
         trade_off({str(number): plan for number in range(61)})
 

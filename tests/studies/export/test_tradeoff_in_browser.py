@@ -3,6 +3,7 @@
 import json
 import shutil
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -256,3 +257,120 @@ def test_in_a_frame_it_takes_the_colours_of_the_page_around_it(opened, file, tmp
         frame.wait_for_function(f"{colour} {same} 'rgb(255, 255, 255)'")
     # messages of others are no news
     page.evaluate("frames[0].postMessage('hello', '*'); frames[0].postMessage(null, '*')")
+
+
+def test_arrow_keys_reach_a_frame_in_sight_and_up_and_down_scroll_the_page_around(
+    opened, file, tmp_path
+):
+    around = tmp_path / "around.html"
+    script = (Path(__file__).parents[3] / "docs" / "_static" / "front.js").as_uri()
+    around.write_text(
+        '<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,">'
+        '<input value="words"><iframe width="100%" height="800"></iframe>'
+        f'<div style="height: 3000px"></div><script src="{script}"></script>'
+        f'<script>document.querySelector("iframe").src = "{file.as_uri()}";</script>'
+    )
+    page = opened(around.as_uri(), **DESK, reduced_motion="reduce")
+    frame = page.frame_locator("iframe")
+    handle = frame.locator("#handle")
+    api.expect(frame.locator("#clock")).not_to_be_empty()
+
+    def stands_at(point):
+        api.expect(handle).to_have_attribute("aria-valuenow", str(point))
+
+    api.expect(frame.locator("#spot")).to_have_text("drag, or use the arrow keys")
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowLeft")
+    stands_at(3)
+    ring = "getComputedStyle(document.querySelector('.ring')).strokeWidth"
+    assert page.frames[1].evaluate(ring) == "2px"  # one sees where the keys go
+    page.keyboard.press("ArrowDown")
+    page.wait_for_function("scrollY > 0")
+    stands_at(3)
+    # who writes keeps the keys
+    page.focus("input")
+    page.keyboard.press("ArrowRight")
+    # after a click into the frame it has the keys itself, but for those that scroll
+    box = frame.locator("#front").bounding_box()
+    page.mouse.click(box["x"] + 0.9 * box["width"], box["y"] + 0.5 * box["height"])
+    now = int(handle.get_attribute("aria-valuenow"))
+    assert now > 5
+    page.keyboard.press("ArrowLeft")
+    stands_at(now - 1)
+    before = page.evaluate("scrollY")
+    page.keyboard.press("PageDown")
+    page.wait_for_function("before => scrollY > before + 100", arg=before)
+    stands_at(now - 1)
+    # out of sight nothing moves
+    page.evaluate("document.activeElement.blur(); scrollTo(0, 2000)")
+    page.mouse.move(5, 5)
+    page.keyboard.press("ArrowRight")
+    page.evaluate("new Promise(requestAnimationFrame)")
+    stands_at(now - 1)
+
+
+def test_left_and_right_choose_without_a_click_and_leave_the_sliders_their_keys(opened):
+    page = opened(**DESK)
+    still(page)
+    page.keyboard.press("ArrowRight")
+    assert number(page) == 2
+    page.focus("#time")
+    before = page.evaluate("state.time")
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("state.time") > before
+    assert number(page) == 2
+
+
+BOXES = """() => {
+    const boxes = (where) => [...document.querySelectorAll(where)].map((element) => {
+        const {left, right, top, bottom} = element.getBoundingClientRect();
+        return [element.textContent, {left, right, top, bottom}];
+    });
+    return [boxes("#front text:not(:empty)"), boxes("#plot path[transform], #handle .knob")];
+}"""
+
+
+def common(a, b):
+    across = min(a["right"], b["right"]) - max(a["left"], b["left"])
+    along = min(a["bottom"], b["bottom"]) - max(a["top"], b["top"])
+    return max(0, across) * max(0, along)
+
+
+@pytest.mark.parametrize("options", [DESK, PHONE], ids=["desk", "phone"])
+def test_words_on_the_front_cross_no_mark_and_no_other_words(opened, fronts, options):
+    page = opened(**options)
+    still(page)
+    for place, front in enumerate(fronts.values()):
+        page.locator("#moves input").nth(place).check(force=True)
+        page.evaluate("chooseBy('Home')")
+        for _ in front.points:
+            words, marks = page.evaluate(BOXES)
+            for k, (text, box) in enumerate(words):
+                for other, around in [*words[k + 1 :], *marks]:
+                    assert common(box, around) < 8, (text, other)
+            page.evaluate("chooseBy('ArrowRight')")
+
+
+def test_the_axis_ends_beyond_all_marks_and_the_key_has_the_marks_of_the_front(opened, fronts):
+    page = opened(**DESK)
+    still(page)
+    for place in range(len(fronts)):
+        page.locator("#moves input").nth(place).check(force=True)
+        inside = page.evaluate(
+            "[...document.querySelectorAll('#plot path[transform]')].every((mark) => {"
+            "const {e, f} = mark.transform.baseVal.consolidate().matrix;"
+            "const {left, right, top, bottom} = front.box;"
+            "return left <= e && e <= right + 1 && top - 1 <= f && f <= bottom; })"
+        )
+        assert inside
+        drawn, named = (
+            page.evaluate(
+                "where => [...new Set([...document.querySelectorAll(where)].map((mark) => "
+                "mark.getAttribute('d') + mark.getAttribute('fill')))].sort()", where,
+            )
+            for where in ("#plot path[transform]", "#key path[transform]")
+        )  # fmt: skip
+        assert drawn == named
+    key = page.inner_text("#key")
+    assert "paper, N\u00a0=\u00a06" in key  # which no line breaks
