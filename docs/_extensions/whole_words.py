@@ -1,25 +1,90 @@
-"""Words of commands that no line breaks: a browser would break an option after its hyphens.
+"""Words that no line breaks, and lines that do.
 
-On a wide screen a long command goes on in the next line, between two words; on a narrow one it
-scrolls (`site.css`).
+A browser would break an option, a method's name or an angle after its hyphen, and a number from its
+unit. Cells of tables have a least width on a phone, so that a row is not many lines high. In what a
+cell of a notebook prints, a sentence goes on in the next line; a row of columns stays, and scrolls.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 from sphinx.application import Sphinx
 
-_BLOCK = re.compile(r'<div class="highlight-(?:console|sh)\b.*?</pre>', re.DOTALL)
+_COMMAND = re.compile(r'<div class="highlight-(?:console|sh)\b.*?</pre>', re.DOTALL)
+_PRINTED = re.compile(r'(<div class="cell_output\b.*?<pre>)(.*?)(</pre>)', re.DOTALL)
+_CELL = re.compile(r"<(?P<tag>t[dh])\b(?P<attributes>[^>]*)>(?P<content>.*?)</(?P=tag)>", re.DOTALL)
+_LEFT_ALONE = re.compile(
+    r"<(pre|script|style|svg|math|button|code)\b.*?</\1>|<[^>]*>", re.DOTALL | re.IGNORECASE
+)
 _HYPHENATED = re.compile(r"(?<![^\s>])[^\s<>]*-[^\s<>]*(?![^<]*>)")
+_UNITS = (
+    r"%|ms|us|s|h|um|mm|cm|m|kN|N(?: m)?|mJ|J|mW|W|kHz|Hz|deg|rad(?:/s(?:\^[23])?)?|"
+    r"m/s(?:\^[23])?|kg|g|t|kB|MB|GB|V|A|points?|seconds?|minutes?|hours?|px"
+)
+_NUMBER = r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?"
+_WITH_UNIT = rf"(?<![\w.^/-]){_NUMBER}[ \n](?:{_UNITS})(?![\w^/])"
+_NAME = r"(?<![^\s(,;\"])-?\w+(?:[-/]\w+)*[-/]\w*[A-Z0-9]\w*(?![\w-])|(?<![^\s(])-\w+(?:/\w+)?"
+_WHOLE = re.compile(rf"{_WITH_UNIT}|{_NAME}")
+_IN_CELLS = re.compile(rf"{_WITH_UNIT}|[^\s<>]+-[^\s<>]+|(?<!\S)-\w+(?:/\w+)?")
+_WIDTH_OF_A_LETTER = 0.8
+"""Of a usual one, by that of a zero."""
+MOST_LETTERS = 32
+"""Of a word that is kept whole: an address may break."""
 
 
 def keep_whole(body: str) -> str:
-    """A page with every word of a command that has a hyphen in an element of its own."""
-    return _BLOCK.sub(
-        lambda block: _HYPHENATED.sub(r'<span class="word">\g<0></span>', block[0]), body
+    """A page with every word that must not break in an element of its own."""
+    body = _COMMAND.sub(lambda block: _HYPHENATED.sub(_as_word, block[0]), body)
+    body = _PRINTED.sub(lambda block: block[1] + _flowing(block[2]) + block[3], body)
+    body = _CELL.sub(_with_room, body)
+    return _in_texts(body, lambda text: _WHOLE.sub(_as_word, text))
+
+
+def _as_word(found: re.Match[str]) -> str:
+    whole = len(found[0]) <= MOST_LETTERS
+    return f'<span class="word">{found[0]}</span>' if whole else found[0]
+
+
+def _in_texts(body: str, change: Callable[[str], str]) -> str:
+    """A page with a change in its texts, and none in code, formulas and tags."""
+    pieces = list[str]()
+    end = 0
+    for left_alone in _LEFT_ALONE.finditer(body):
+        pieces += [change(body[end : left_alone.start()]), left_alone[0]]
+        end = left_alone.end()
+    return "".join([*pieces, change(body[end:])])
+
+
+def _flowing(printed: str) -> str:
+    """What a cell prints, with every sentence in an element that goes on in the next line."""
+    return "\n".join(
+        f'<span class="sentence">{line}</span>' if _is_sentence(line) else line
+        for line in printed.split("\n")
     )
+
+
+def _is_sentence(line: str) -> bool:
+    """Whether a line is too long for a phone, and has no columns: two spaces would be between."""
+    letters_on_a_phone = 40
+    words = re.sub(r"<[^>]*>", "", line)
+    whole = line.count("<span") == line.count("</span>")
+    return whole and len(words) > letters_on_a_phone and "  " not in words.strip()
+
+
+def _with_room(cell: re.Match[str]) -> str:
+    """A cell of a table with its least width on a phone, and its words whole."""
+    letters = len(" ".join(re.sub(r"<[^>]*>", "", cell["content"]).split()))
+    short = 20  # letters, up to which a cell is one line
+    lines = 6  # of a long cell
+    room = letters if letters <= short else min(38, max(short, letters // lines))
+    content = _in_texts(cell["content"], lambda text: _IN_CELLS.sub(_as_word, text))
+    opening = f'<{cell["tag"]}{cell["attributes"]} data-room style="--room: {_WIDTH_OF_A_LETTER * room:.1f}ch">'
+    if "style=" in cell["attributes"]:  # of a notebook's own table
+        opening = f"<{cell['tag']}{cell['attributes']}>"
+    return f"{opening}{content}</{cell['tag']}>"
 
 
 def _on_page(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any) -> None:
