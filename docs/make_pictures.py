@@ -296,7 +296,15 @@ def _cards_of(file: str, width: int, dots: int = 1) -> tuple[bytes, list[str]]:
             page.keyboard.press("ArrowRight")
         page.evaluate("document.activeElement.blur()")
         words = page.evaluate("document.body.innerText").splitlines()
-        return page.locator(".cards").screenshot(), words
+        return _with_dots(page.locator(".cards").screenshot(), 96 * dots), words
+
+
+def _with_dots(picture: bytes, an_inch: int) -> bytes:
+    """A picture that says how large it is, as matplotlib's do."""
+    content = io.BytesIO()
+    with Image.open(io.BytesIO(picture)) as image:
+        image.save(content, format="PNG", dpi=(an_inch, an_inch))
+    return content.getvalue()
 
 
 MAKERS: Mapping[str, Callable[[bool], Picture]] = {

@@ -22,8 +22,8 @@ _PANEL_HIGH = 2.7
 _LINE_HIGH = 0.19
 _AROUND = 0.4
 """Heights of a panel, of a line of a head or a legend, and around all of them [inch]."""
-_BESIDE = 0.7
-"""Width of numbers and labels at the left of panels [inch]."""
+_BESIDE = 1.2
+"""Width that titles and legends leave free for numbers and labels at the left [inch]."""
 
 
 @takes(figure=Figure)
