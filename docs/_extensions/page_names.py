@@ -22,7 +22,8 @@ def name_pages(app: Sphinx, doctree: nodes.document, page: str) -> None:
         words = link.astext()
         if not _FILE.fullmatch(words):
             continue
-        path, _, anchor = words.partition("#")
+        path = words.partition("#")[0]
+        anchor = link.get("refuri", "").partition("#")[2]
         target = posixpath.normpath(path).removesuffix(".md")
         if target not in app.env.titles:  # beside this page
             target = posixpath.normpath(posixpath.join(posixpath.dirname(page), target))

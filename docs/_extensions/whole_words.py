@@ -19,6 +19,7 @@ _CELL = re.compile(r"<(?P<tag>t[dh])\b(?P<attributes>[^>]*)>(?P<content>.*?)</(?
 _LEFT_ALONE = re.compile(
     r"<(pre|script|style|svg|math|button|code)\b.*?</\1>|<[^>]*>", re.DOTALL | re.IGNORECASE
 )
+_LONG = re.compile(r'<span class="pre">([^<]{33,})</span>')
 _HYPHENATED = re.compile(r"(?<![^\s>])[^\s<>]*-[^\s<>]*(?![^<]*>)")
 _UNITS = (
     r"%|ms|us|s|h|um|mm|cm|m|kN|N(?: m)?|mJ|J|mW|W|kHz|Hz|deg|rad(?:/s(?:\^[23])?)?|"
@@ -38,6 +39,7 @@ MOST_LETTERS = 32
 def keep_whole(body: str) -> str:
     """A page with every word that must not break in an element of its own."""
     body = _COMMAND.sub(lambda block: _HYPHENATED.sub(_as_word, block[0]), body)
+    body = _LONG.sub(r'<span class="pre long">\1</span>', body)
     body = _PRINTED.sub(lambda block: block[1] + _flowing(block[2]) + block[3], body)
     body = _CELL.sub(_with_room, body)
     return _in_texts(body, lambda text: _WHOLE.sub(_as_word, text))

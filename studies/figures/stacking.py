@@ -118,8 +118,9 @@ def _narrowed(ax: Axes, width: float) -> float:
         if title := ax.get_title(loc=side):
             text = ax.set_title(title, loc=side)
             text.set_text(broken_into_lines(title, width - _BESIDE, text.get_fontsize()))
-    text = ax.xaxis.label
-    text.set_text(broken_into_lines(text.get_text(), width, text.get_fontsize()))
+    for axis, room in ((ax.xaxis, width), (ax.yaxis, _PANEL_HIGH - _AROUND)):
+        text = axis.label
+        text.set_text(broken_into_lines(text.get_text(), room, text.get_fontsize()))
     return _PANEL_HIGH
 
 

@@ -117,19 +117,20 @@ def titled(app):
 
 
 @pytest.mark.parametrize(
-    ("path", "words"),
+    ("words", "address", "title"),
     [
-        ("docs/moves.md", "Plan a move"),
-        ("docs/moves.md#how-long", "How long after arrival"),
-        ("docs/moves.md#other", "Plan a move"),
-        ("docs/none.md", "docs/none.md"),
-        ("the page docs/moves.md", "the page docs/moves.md"),
+        ("docs/moves.md", "docs/moves.html", "Plan a move"),
+        ("docs/moves.md", "docs/moves.html#how-long", "How long after arrival"),
+        ("docs/moves.md#how-long", "docs/moves.html#how-long", "How long after arrival"),
+        ("docs/moves.md", "docs/moves.html#other", "Plan a move"),
+        ("docs/none.md", "docs/none.html", "docs/none.md"),
+        ("the page docs/moves.md", "docs/moves.html", "the page docs/moves.md"),
     ],
 )
-def test_a_link_names_a_page_by_its_title(titled, path, words):
-    page = page_of(nodes.reference("", path, refuri="docs/moves.html"))
+def test_a_link_names_a_page_by_its_title(titled, words, address, title):
+    page = page_of(nodes.reference("", words, refuri=address))
     names.name_pages(titled, page, "README")
-    assert links(page) == [(words, "docs/moves.html")]
+    assert links(page) == [(title, address)]
 
 
 def test_a_link_names_a_page_beside_its_own(titled):
@@ -214,6 +215,13 @@ def test_words_of_commands_stay_whole():
         "plan single-link --output", 'plan <span class="word">single-link</span> '
         '<span class="word">--output</span>'
     )  # fmt: skip
+
+
+def test_a_long_word_of_code_may_break():
+    short = '<code><span class="pre">--acceleration-limit</span></code>'
+    long = f'<code><span class="pre">{"a" * 40}</span></code>'
+    assert words.keep_whole(short) == short
+    assert words.keep_whole(long) == long.replace("pre", "pre long")
 
 
 def whole_words_of(body):
@@ -370,7 +378,7 @@ def pages_of_site():
 
 
 CUT = """() => {
-    const shown = "article :is(pre, .cell_output, table, img)";
+    const shown = "article :is(pre, .cell_output, table, img, code)";
     const scrolling = ".table-wrapper, .frame, .text_html, .highlight pre, .equation";
     const edge = document.documentElement.clientWidth + 1;
     const cut = [...document.querySelectorAll(shown)].filter(element => {
