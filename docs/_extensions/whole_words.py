@@ -1,8 +1,9 @@
 """Words that no line breaks, and lines that do.
 
 A browser would break an option, a method's name or an angle after its hyphen, and a number from its
-unit. Cells of tables have a least width on a phone, so that a row is not many lines high. In what a
-cell of a notebook prints, a sentence goes on in the next line; a row of columns stays, and scrolls.
+unit. Cells of tables have a least width, long ones everywhere and others on a phone, so that a row
+is not many lines high. In what a cell of a notebook prints, a sentence goes on in the next line; a
+row of columns stays, and scrolls.
 """
 
 from __future__ import annotations
@@ -28,8 +29,12 @@ _UNITS = (
 _NUMBER = r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?"
 _WITH_UNIT = rf"(?<![\w.^/-]){_NUMBER}[ \n](?:{_UNITS})(?![\w^/])"
 _NAME = r"(?<![^\s(,;\"])-?\w+(?:[-/]\w+)*[-/]\w*[A-Z0-9]\w*(?![\w-])|(?<![^\s(])-\w+(?:/\w+)?"
-_WHOLE = re.compile(rf"{_WITH_UNIT}|{_NAME}")
-_IN_CELLS = re.compile(rf"{_WITH_UNIT}|[^\s<>]+-[^\s<>]+|(?<!\S)-\w+(?:/\w+)?")
+_IN_BRACKETS = r"\[[^\[\]\s]+(?: m)?\]"
+_RANGE = rf"(?<![\w.]){_NUMBER} (?:to|of) {_NUMBER}(?![\w.])"
+_WHOLE = re.compile(rf"{_WITH_UNIT}|{_IN_BRACKETS}|{_NAME}")
+_IN_CELLS = re.compile(
+    rf"{_RANGE}|{_WITH_UNIT}|{_IN_BRACKETS}|[^\s<>]+-[^\s<>]+|(?<!\S)-\w+(?:/\w+)?"
+)
 _WIDTH_OF_A_LETTER = 0.8
 """Of a usual one, by that of a zero."""
 MOST_LETTERS = 32
@@ -71,19 +76,23 @@ def _flowing(printed: str) -> str:
 def _is_sentence(line: str) -> bool:
     """Whether a line is too long for a phone, and has no columns: two spaces would be between."""
     letters_on_a_phone = 40
-    words = re.sub(r"<[^>]*>", "", line)
+    fewest_words = 5  # a row of a file has fewer
+    text = re.sub(r"<[^>]*>", "", line).strip()
     whole = line.count("<span") == line.count("</span>")
-    return whole and len(words) > letters_on_a_phone and "  " not in words.strip()
+    has_words = len(text.split()) >= fewest_words and "  " not in text
+    return whole and len(text) > letters_on_a_phone and has_words
 
 
 def _with_room(cell: re.Match[str]) -> str:
     """A cell of a table with its least width on a phone, and its words whole."""
     letters = len(" ".join(re.sub(r"<[^>]*>", "", cell["content"]).split()))
     short = 20  # letters, up to which a cell is one line
-    lines = 6  # of a long cell
-    room = letters if letters <= short else min(38, max(short, letters // lines))
+    lines = 4  # of a longer cell
+    most = 46
+    room = letters if letters <= short else min(most, max(short, letters // lines))
+    length = "short" if letters <= lines * short else "long"
     content = _in_texts(cell["content"], lambda text: _IN_CELLS.sub(_as_word, text))
-    opening = f'<{cell["tag"]}{cell["attributes"]} data-room style="--room: {_WIDTH_OF_A_LETTER * room:.1f}ch">'
+    opening = f'<{cell["tag"]}{cell["attributes"]} data-room="{length}" style="--room: {_WIDTH_OF_A_LETTER * room:.1f}ch">'
     if "style=" in cell["attributes"]:  # of a notebook's own table
         opening = f"<{cell['tag']}{cell['attributes']}>"
     return f"{opening}{content}</{cell['tag']}>"

@@ -1,6 +1,7 @@
 "use strict";
 // The order of results: a page whose title has the words, a section, a page with such a heading, a public name, a page that mentions them.
 
+// Of one rank the pages of docs come before the course.
 const rank = { title: 500, section: 400, heading: 300, name: 200, mention: 100 };
 const lists = ["CHANGELOG", "docs/commands", "docs/reference", "docs/licences"]; // they mention everything
 
@@ -34,7 +35,8 @@ var Scorer = {
       return hasHeading(page, words) ? rank.heading : rank.mention;
     };
     const isList = kind !== "object" && lists.some((list) => page.startsWith(list));
-    return place() - (isList ? rank.mention / 2 : 0) + Math.min(score, rank.mention / 2 - 1);
+    const isDocs = page.startsWith("docs/") && !isList;
+    return place() + (isDocs ? 40 : 0) - (isList ? 40 : 0) + Math.min(score, 39) / 2;
   },
   // the weights of Sphinx, by which results of one rank are ordered
   objNameMatch: 11,
