@@ -3,9 +3,9 @@
     python docs/make_pictures.py [NAME.png ...]       all, if none is named
 
 A picture `images/NAME.png` of a page is what a command, or a block of Python, on a page writes as
-NAME.png, word for word; some have other makers (`MAKERS`). `images/NAME-narrow.png` is the same with
-its panels below each other, which the site shows on a phone. Beside them `images/shown.json` says
-what each of them shows: its command, its words, its lines with their looks and some of their
+NAME.png, word for word; some have other makers (`MAKERS`). `images/NAME-narrow.png` is the same
+with its panels below each other, which the site shows on a phone. Beside them `images/shown.json`
+says what each of them shows: its command, its words, its lines with their looks and some of their
 values. A test makes them again without writing, and names those that are older than what they show.
 """
 

@@ -18,7 +18,7 @@ _COMMAND = re.compile(r'<div class="highlight-(?:console|sh)\b.*?</pre>', re.DOT
 _PRINTED = re.compile(r'(<div class="cell_output\b.*?<pre>)(.*?)(</pre>)', re.DOTALL)
 _CELL = re.compile(r"<(?P<tag>t[dh])\b(?P<attributes>[^>]*)>(?P<content>.*?)</(?P=tag)>", re.DOTALL)
 _LEFT_ALONE = re.compile(
-    r"<(pre|script|style|svg|math|button|code)\b.*?</\1>|<[^>]*>", re.DOTALL | re.IGNORECASE
+    r"<(pre|script|style|svg|math|button|code|td|th)\b.*?</\1>|<[^>]*>", re.DOTALL
 )
 _LONG = re.compile(r'<span class="pre">([^<]{33,})</span>')
 _HYPHENATED = re.compile(r"(?<![^\s>])[^\s<>]*-[^\s<>]*(?![^<]*>)")
@@ -56,7 +56,7 @@ def _as_word(found: re.Match[str]) -> str:
 
 
 def _in_texts(body: str, change: Callable[[str], str]) -> str:
-    """A page with a change in its texts, and none in code, formulas and tags."""
+    """A page with a change in its texts, and none in code, formulas, cells and tags."""
     pieces = list[str]()
     end = 0
     for left_alone in _LEFT_ALONE.finditer(body):
@@ -92,10 +92,10 @@ def _with_room(cell: re.Match[str]) -> str:
     room = letters if letters <= short else min(most, max(short, letters // lines))
     length = "short" if letters <= lines * short else "long"
     content = _in_texts(cell["content"], lambda text: _IN_CELLS.sub(_as_word, text))
-    opening = f'<{cell["tag"]}{cell["attributes"]} data-room="{length}" style="--room: {_WIDTH_OF_A_LETTER * room:.1f}ch">'
+    width = f'data-room="{length}" style="--room: {_WIDTH_OF_A_LETTER * room:.1f}ch"'
     if "style=" in cell["attributes"]:  # of a notebook's own table
-        opening = f"<{cell['tag']}{cell['attributes']}>"
-    return f"{opening}{content}</{cell['tag']}>"
+        width = ""
+    return f"<{cell['tag']}{cell['attributes']} {width}>{content}</{cell['tag']}>"
 
 
 def _on_page(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any) -> None:

@@ -467,8 +467,8 @@ BROKEN = r"""() => {
                 const range = document.createRange();
                 range.setStart(texts.currentNode, found.index);
                 range.setEnd(texts.currentNode, found.index + found[0].length);
-                const lines = new Set([...range.getClientRects()].map(({ top }) => Math.round(top)));
-                if (lines.size > 1 && found[0].length <= 32) broken.push(found[0]);
+                const tops = [...range.getClientRects()].map(({ top }) => Math.round(top));
+                if (new Set(tops).size > 1 && found[0].length <= 32) broken.push(found[0]);
             }
         }
     }

@@ -1,5 +1,7 @@
 """A figure stacked for a phone: its panels below each other, with what they said together."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -35,7 +37,7 @@ def test_panels_stand_below_each_other_in_reading_order():
     assert stacked.get_figwidth() == NARROW
     places = boxes(stacked)
     assert len(places) == 4
-    for upper, lower in zip(places, places[1:]):
+    for upper, lower in pairwise(places):
         assert lower.y1 < upper.y0
         assert lower.x0 == pytest.approx(upper.x0)
     titles = [ax.get_title(loc="left") for ax in stacked.axes]
