@@ -70,8 +70,8 @@ def framed(tag: re.Match[str], picture: Path | None) -> str:
 
 
 def _source_of(attributes: str) -> str:
-    found = _SOURCE.search(attributes)
-    return found[1] if found else ""
+    source = _SOURCE.search(attributes)
+    return source[1] if source else ""
 
 
 def _on_page(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any) -> None:

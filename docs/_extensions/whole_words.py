@@ -50,9 +50,9 @@ def keep_whole(body: str) -> str:
     return _in_texts(body, lambda text: _WHOLE.sub(_as_word, text))
 
 
-def _as_word(found: re.Match[str]) -> str:
-    whole = len(found[0]) <= MOST_LETTERS
-    return f'<span class="word">{found[0]}</span>' if whole else found[0]
+def _as_word(match: re.Match[str]) -> str:
+    word = match[0]
+    return f'<span class="word">{word}</span>' if len(word) <= MOST_LETTERS else word
 
 
 def _in_texts(body: str, change: Callable[[str], str]) -> str:

@@ -14,7 +14,7 @@ const beginnings = () => {
 
 const hasAll = (title, words) => {
   const inTitle = title.toLowerCase().split(/[^\p{Letter}\p{Number}_]+/u);
-  return words.length > 0 && words.every((word) => inTitle.some((other) => other.startsWith(word)));
+  return words.length > 0 && words.every((word) => inTitle.some((beginning) => beginning.startsWith(word)));
 };
 
 // Whether a heading of a page has the words.
