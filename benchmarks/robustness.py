@@ -34,6 +34,7 @@ from quietarm.ocp import (
     plan_move,
     shaped_cycloid,
 )
+from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies.figures import BLUE, RED, stack
 
 LINK, ARM, LINKS = SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()
@@ -77,11 +78,14 @@ def row_of(name: str, plan: Plan) -> Row:
 
 def rows_of(task: PointToPoint, starts: int) -> list[Row]:
     """Every motion of a move that there is."""
-    rows = [row_of(REST, plan_move(task, starts=starts))]
+    at_rest = plan_move(task, starts=starts)
+    rows = [row_of(REST, at_rest)]
+    nominal = evaluate_robustness(at_rest.candidate, {"frequency": WIDEST}, samples=1)
+    limit = TOLERATED * nominal.cycloid
     for size in RANGES:
         robust = replace(task, uncertainty=Uncertainty({"frequency": size}))
         try:
-            plan = plan_move(robust, starts=starts)
+            plan = plan_move(robust, residual_limit=limit, starts=starts)
         except SolverFailedError as none:
             console().print(f"{100 * size:g} %: {none}")
             continue

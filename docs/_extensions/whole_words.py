@@ -68,7 +68,9 @@ def _in_texts(body: str, change: Callable[[str], str]) -> str:
 def _flowing(printed: str) -> str:
     """What a cell prints, with every sentence in an element that goes on in the next line."""
     return "\n".join(
-        f'<span class="sentence">{line}</span>' if _is_sentence(line) else line
+        f'<span class="sentence">{_HYPHENATED.sub(_as_word, line)}</span>'
+        if _is_sentence(line)
+        else line
         for line in printed.split("\n")
     )
 

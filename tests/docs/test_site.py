@@ -264,6 +264,12 @@ def test_a_cell_has_room_for_its_words():
     assert room_of("some words " * 100) < 38
 
 
+def test_a_command_that_a_cell_prints_breaks_between_its_words():
+    command = "$ quietarm plan --plant-file table.py --set stiffness=6 --target 180deg"
+    page = f'<div class="cell_output docutils"><pre>{command}\n</pre></div>'
+    assert whole_words_of(page) == ["--plant-file", "--set", "--target"]
+
+
 def test_sentences_of_a_cell_go_on_and_columns_stay():
     sentence = "found no motion of 6 terms with residual at most 0 m; try another limit"
     row = "plain cycloid    F1 = 77.1146 mm   F2 = 91.15 mJ   net work = 40.88 mJ"
