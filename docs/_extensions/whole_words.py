@@ -20,22 +20,25 @@ _CELL = re.compile(r"<(?P<tag>t[dh])\b(?P<attributes>[^>]*)>(?P<content>.*?)</(?
 _LEFT_ALONE = re.compile(
     r"<(pre|script|style|svg|math|button|code|td|th)\b.*?</\1>|<[^>]*>", re.DOTALL
 )
+_BEFORE_ARGUMENTS = '<span class="sig-paren">(</span>'
+"""Of a signature: there a name that is wider than a phone goes on in the next line."""
 _LONG = re.compile(r'<span class="pre">([^<]{33,})</span>')
 _HYPHENATED = re.compile(r"(?<![^\s>])[^\s<>]*-[^\s<>]*(?![^<]*>)")
 _UNITS = (
-    r"%|ms|us|s|h|um|mm|cm|m|kN|N(?: m)?|mJ|J|mW|W|kHz|Hz|deg|rad(?:/s(?:\^[23])?)?|"
-    r"m/s(?:\^[23])?|kg|g|t|kB|MB|GB|V|A|points?|seconds?|minutes?|hours?|px"
+    r"%|ms|us|s|h|um|mm|cm|m|kN|N(?: m)?(?: s)?(?:/rad)?|mJ|J|mW|W|kHz|Hz|deg|"
+    r"rad(?:/s(?:\^[23])?)?|m/s(?:\^[23])?|kg(?: m\^2)?|g|t|kB|MB|GB|V|A|points?|seconds?|minutes?|hours?|px"
 )
 _NUMBER = r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?"
 _WITH_UNIT = rf"(?<![\w.^/-]){_NUMBER}[ \n](?:{_UNITS})(?![\w^/])"
 _NAME = r"(?<![^\s(,;\"])-?\w+(?:[-/]\w+)*[-/]\w*[A-Z0-9]\w*(?![\w-])|(?<![^\s(])-\w+(?:/\w+)?"
 _IN_BRACKETS = r"\[[^\[\]\s]+(?: m)?\]"
 _RANGE = rf"(?<![\w.]){_NUMBER} (?:to|of) {_NUMBER}(?![\w.])"
-_WHOLE = re.compile(rf"{_WITH_UNIT}|{_IN_BRACKETS}|{_NAME}")
+_OPTION = r"(?<![\w-])--\w[\w-]*(?:=[^\s<>,;)]+)?"
+_WHOLE = re.compile(rf"{_WITH_UNIT}|{_IN_BRACKETS}|{_OPTION}|{_NAME}")
 _IN_CELLS = re.compile(
     rf"{_RANGE}|{_WITH_UNIT}|{_IN_BRACKETS}|[^\s<>]+-[^\s<>]+|(?<!\S)-\w+(?:/\w+)?"
 )
-_WIDTH_OF_A_LETTER = 0.8
+_WIDTH_OF_A_LETTER = 0.88
 """Of a usual one, by that of a zero."""
 MOST_LETTERS = 32
 """Of a word that is kept whole: an address may break."""
@@ -44,6 +47,7 @@ MOST_LETTERS = 32
 def keep_whole(body: str) -> str:
     """A page with every word that must not break in an element of its own."""
     body = _COMMAND.sub(lambda block: _HYPHENATED.sub(_as_word, block[0]), body)
+    body = body.replace(_BEFORE_ARGUMENTS, f"{_BEFORE_ARGUMENTS}<wbr>")
     body = _LONG.sub(r'<span class="pre long">\1</span>', body)
     body = _PRINTED.sub(lambda block: block[1] + _flowing(block[2]) + block[3], body)
     body = _CELL.sub(_with_room, body)
