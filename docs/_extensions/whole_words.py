@@ -26,7 +26,8 @@ _LONG = re.compile(r'<span class="pre">([^<]{33,})</span>')
 _HYPHENATED = re.compile(r"(?<![^\s>])[^\s<>]*-[^\s<>]*(?![^<]*>)")
 _UNITS = (
     r"%|ms|us|s|h|um|mm|cm|m|kN|N(?: m)?(?: s)?(?:/rad)?|mJ|J|mW|W|kHz|Hz|deg|"
-    r"rad(?:/s(?:\^[23])?)?|m/s(?:\^[23])?|kg(?: m\^2)?|g|t|kB|MB|GB|V|A|points?|seconds?|minutes?|hours?|px"
+    r"rad(?:/s(?:\^[23])?)?|m/s(?:\^[23])?|kg(?: m\^2)?|g|t|kB|MB|GB|V|A|"
+    r"points?|seconds?|minutes?|hours?|px"
 )
 _NUMBER = r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?"
 _WITH_UNIT = rf"(?<![\w.^/-]){_NUMBER}[ \n](?:{_UNITS})(?![\w^/])"
