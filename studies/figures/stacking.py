@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
 from matplotlib.legend import Legend
+from matplotlib.text import Text
 
 from quietarm.ocp.checks import positive, takes
 from quietarm.studies.figures.axes import broken_into_lines, head, letters_an_inch
@@ -61,8 +62,8 @@ def stack(figure: Figure, width: float = NARROW) -> Figure | None:
     lines = sum(_set_narrow(legend, width) for legend in [*stacked.legends])
     heights = [_narrowed(ax, width) for ax in panels]
     grid = GridSpec(len(panels), 1, figure=stacked, height_ratios=heights)
-    for place, ax in zip(grid, panels):
-        ax.set_subplotspec(place)
+    for number, ax in enumerate(panels):
+        ax.set_subplotspec(grid[number])
     for scale in filter(_is_scale, stacked.axes):  # from where the layout begins
         scale.set_position(_parents_of(scale)[0].get_position())
     title = stacked._suptitle  # pyright: ignore[reportAttributeAccessIssue]
@@ -117,26 +118,32 @@ def _narrowed(ax: Axes, width: float) -> float:
     for side in ("left", "center"):
         if title := ax.get_title(loc=side):
             text = ax.set_title(title, loc=side)
-            text.set_text(broken_into_lines(title, width - _BESIDE, text.get_fontsize()))
+            text.set_text(broken_into_lines(title, width - _BESIDE, _size_of(text)))
     for axis, room in ((ax.xaxis, width), (ax.yaxis, _PANEL_HIGH - _AROUND)):
         text = axis.label
-        text.set_text(broken_into_lines(text.get_text(), room, text.get_fontsize()))
+        text.set_text(broken_into_lines(text.get_text(), room, _size_of(text)))
     return _PANEL_HIGH
+
+
+def _size_of(text: Text) -> float:
+    """Of its letters [points]."""
+    return float(text.get_fontsize())
 
 
 def _set_narrow(legend: Legend, width: float) -> int:
     """Set a legend of a figure, or in place of a panel, anew; its number of lines."""
     texts = [text.get_text() for text in legend.get_texts()]
-    size = legend.get_texts()[0].get_fontsize()
+    size = _size_of(legend.get_texts()[0])
     sample = 0.5  # inches of the line beside its words, with the room around it
     letters = max(len(line) for text in texts for line in text.splitlines())
     columns = max(1, int(width / (sample + letters / letters_an_inch(size))))
     labels = [broken_into_lines(text, width - sample, size) for text in texts]
     title = broken_into_lines(legend.get_title().get_text(), width, size)
     options: dict[str, Any] = {"fontsize": size, "frameon": False, "title": title or None}
-    handles = [*legend.legend_handles]
-    if legend.axes is not None:
-        legend.axes.legend(handles, labels, loc="center left", borderaxespad=0, **options)
+    handles: list[Any] = [*legend.legend_handles]
+    panel: Any = legend.axes  # none of a legend of a figure
+    if panel is not None:
+        panel.legend(handles, labels, loc="center left", borderaxespad=0, **options)
         columns = 1
     else:
         figure: Any = legend.get_figure()
