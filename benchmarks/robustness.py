@@ -34,6 +34,8 @@ from quietarm.ocp import (
     plan_move,
     shaped_cycloid,
 )
+from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
+from quietarm.studies.figures import BLUE, RED, stack
 
 LINK, ARM, LINKS = SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()
 MOVES = {
@@ -76,11 +78,14 @@ def row_of(name: str, plan: Plan) -> Row:
 
 def rows_of(task: PointToPoint, starts: int) -> list[Row]:
     """Every motion of a move that there is."""
-    rows = [row_of(REST, plan_move(task, starts=starts))]
+    at_rest = plan_move(task, starts=starts)
+    rows = [row_of(REST, at_rest)]
+    nominal = evaluate_robustness(at_rest.candidate, {"frequency": WIDEST}, samples=1)
+    limit = TOLERATED * nominal.cycloid
     for size in RANGES:
         robust = replace(task, uncertainty=Uncertainty({"frequency": size}))
         try:
-            plan = plan_move(robust, starts=starts)
+            plan = plan_move(robust, residual_limit=limit, starts=starts)
         except SolverFailedError as none:
             console().print(f"{100 * size:g} %: {none}")
             continue
@@ -94,19 +99,26 @@ def rows_of(task: PointToPoint, starts: int) -> list[Row]:
     return rows
 
 
-PLANS, SHAPED = "#0072b2", "#d55e00"
-
-
-def label_place(row: Row, own: list[Row], size: tuple[float, float]) -> tuple[int, int]:
-    """Where a label stands beside its point, clear of rising lines and other labels [points]."""
+def label_place(row: Row, series: list[Row], size: tuple[float, float]) -> tuple[int, int]:
+    """Where a label stands beside its point, clear of lines, axes and other labels [points]."""
     energy, width = size
-    away = [((one.energy - row.energy) / energy, (one.width - row.width) / width) for one in own]
-    if row.name.lower() not in SHAPERS and row is own[-1]:
-        return 7, 3
-    if row.name == REST or row.name.lower() in SHAPERS:
-        left = any(0 < x < 0.1 and abs(y) < 0.1 for x, y in away) and row.name != REST
-        return (-7, 3) if left else (7, -9)
-    return (-7, -9) if any(abs(x) < 0.1 and 0 < y < 0.1 for x, y in away) else (-7, 4)
+    is_shaper = row.name.lower() in SHAPERS
+    near = 0.12
+    away = [
+        ((point.energy - row.energy) / energy, (point.width - row.width) / width)
+        for point in series
+    ]
+    right = (7, 4)
+    left = (-7, 4)
+    if is_shaper:
+        crowded = any(0 < x < near and abs(y) < near for x, y in away)
+        return left if crowded else right
+    if row is series[-1]:
+        return right
+    if row.name == REST:
+        return (9, -9)
+    # below where the next point of the line stands close above
+    return (-7, -9) if any(abs(x) < near and 0 < y < near for x, y in away) else left
 
 
 def draw(of_moves: dict[str, list[Row]], path: Path) -> None:
@@ -115,13 +127,15 @@ def draw(of_moves: dict[str, list[Row]], path: Path) -> None:
     FigureCanvasAgg(figure)
     panels = figure.subplots(2, 3)
     for ax, (title, rows) in zip(panels.flat, of_moves.items(), strict=False):
-        far, high = (max(getattr(row, name) for row in rows) for name in ("energy", "width"))
+        far = max(row.energy for row in rows)
+        high = max(row.width for row in rows)
         shaped = [row for row in rows if row.name.lower() in SHAPERS]
         plans = [row for row in rows if row not in shaped]
-        for own, style, colour in ((plans, "o-", PLANS), (shaped, "s", SHAPED)):
-            ax.plot([row.energy for row in own], [row.width for row in own], style, color=colour)
-            for row in own:
-                place = label_place(row, own, (far, high))
+        for series, style, colour in ((plans, "o-", BLUE), (shaped, "s", RED)):
+            energies = [row.energy for row in series]
+            ax.plot(energies, [row.width for row in series], style, color=colour)
+            for row in series:
+                place = label_place(row, series, (far, high))
                 ax.annotate(
                     row.name, (row.energy, row.width), xytext=place, fontsize=9,
                     textcoords="offset points", ha="right" if place[0] < 0 else "left",
@@ -136,12 +150,15 @@ def draw(of_moves: dict[str, list[Row]], path: Path) -> None:
         ax.set_ylabel("width of insensitivity to frequency [%]")
     marks = [
         Line2D(
-            [], [], color=PLANS, marker="o", label="plan: at rest, or robust to so many per cent"
+            [], [], color=BLUE, marker="o", label="plan: at rest, or robust to so many per cent"
         ),
-        Line2D([], [], color=SHAPED, marker="s", linestyle="", label="input shaper"),
+        Line2D([], [], color=RED, marker="s", linestyle="", label="input shaper"),
     ]
     figure.legend(handles=marks, loc="outside lower center", ncols=2, frameon=False)
     figure.savefig(path, dpi=100)
+    stacked = stack(figure)
+    if stacked is not None:
+        stacked.savefig(path.with_name(f"{path.stem}-narrow.png"), dpi=150)
 
 
 def main() -> None:

@@ -32,6 +32,8 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_inline_tabs",
     "glossary_links",
+    "page_names",
+    "readable_pictures",
     "search_snippets",
     "whole_words",
 ]
@@ -47,7 +49,8 @@ include_patterns = [
 exclude_patterns = ["docs/_*"]
 html_theme, html_title = "furo", "quietarm"
 html_static_path, html_extra_path = ["_static"], ["_root"]
-html_css_files, html_js_files = ["site.css"], ["front.js"]
+html_css_files, html_js_files = ["site.css"], ["front.js", "scrolling.js"]
+html_search_scorer = str(Path(__file__).with_name("_static") / "search_order.js")
 html_show_sphinx, html_copy_source, smartquotes = False, False, False
 html_show_search_summary = False  # search_snippets.js has them without a server
 html_theme_options = {"top_of_page_buttons": []}

@@ -3,8 +3,9 @@
     python docs/make_pictures.py [NAME.png ...]       all, if none is named
 
 A picture `images/NAME.png` of a page is what a command, or a block of Python, on a page writes as
-NAME.png, word for word; some have other makers (`MAKERS`). Beside them `images/shown.json` says
-what each of them shows: its command, its words, its lines with their looks and some of their
+NAME.png, word for word; some have other makers (`MAKERS`). `images/NAME-narrow.png` is the same
+with its panels below each other, which the site shows on a phone. Beside them `images/shown.json`
+says what each of them shows: its command, its words, its lines with their looks and some of their
 values. A test makes them again without writing, and names those that are older than what they show.
 """
 
@@ -55,6 +56,14 @@ _IMAGE = re.compile(r"images/([\w.-]+)\)")
 Shown = dict[str, Any]
 
 
+class Picture(NamedTuple):
+    """A picture, what it shows, and the same picture for a phone, where there is one."""
+
+    content: bytes
+    shown: Shown
+    narrow: bytes | None = None
+
+
 class Command(NamedTuple):
     """A line of a page, and the lines before it that write files which it reads."""
 
@@ -70,6 +79,11 @@ def names() -> list[str]:
     """Pictures that a page shows."""
     pages = [*DOCS.glob("*.md"), DOCS.parent / "README.md"]
     return sorted({name for page in pages for name in _IMAGE.findall(page.read_text())})
+
+
+def narrow_name(name: str) -> str:
+    """Of the same picture for a phone."""
+    return f"{Path(name).stem}-narrow.png"
 
 
 @cache
@@ -107,7 +121,7 @@ def _needed(line: str, before: list[str]) -> Iterator[str]:
 # How they are made
 
 
-def made_by_command(command: Command, name: str, quick: bool) -> tuple[bytes, Shown]:
+def made_by_command(command: Command, name: str, quick: bool) -> Picture:
     """Run a command in the folder where one stands; its picture, and what that shows."""
     _put_files_of_page(command.page)
     figure = None
@@ -116,7 +130,18 @@ def made_by_command(command: Command, name: str, quick: bool) -> tuple[bytes, Sh
             main([*shlex.split(line)[1:], "--quiet", *(_quicker(line) if quick else [])])
         figure = figures[-1] if figures else figure
     assert figure is not None
-    return Path(OF_COMMAND.get(name, name)).read_bytes(), figure
+    return _picture_of(figure, Path(OF_COMMAND.get(name, name)), quick)
+
+
+def _picture_of(figure: Figure, path: Path, quick: bool) -> Picture:
+    """A file, what its figure shows, and the figure for a phone."""
+    stacked = None if quick or path.suffix == ".gif" else qa.figures.stack(figure)
+    narrow = None
+    if stacked is not None:
+        content = io.BytesIO()
+        stacked.savefig(content, format="png", dpi=150)
+        narrow = content.getvalue()
+    return Picture(path.read_bytes(), shown_by(figure), narrow)
 
 
 def _quicker(line: str) -> list[str]:
@@ -134,11 +159,11 @@ def python_of(name: str) -> str | None:
     return None
 
 
-def made_by_python(block: str, name: str) -> tuple[bytes, Shown]:
+def made_by_python(block: str, name: str, quick: bool) -> Picture:
     """Run a block of Python in the folder where one stands."""
     with drawn_figures() as figures:
         exec(compile(block, name, "exec"), {"__name__": "__main__"})
-    return Path(name).read_bytes(), figures[-1]
+    return _picture_of(figures[-1], Path(name), quick)
 
 
 @contextmanager
@@ -152,18 +177,18 @@ def ending_well() -> Iterator[None]:
 
 
 @contextmanager
-def drawn_figures() -> Iterator[list[Shown]]:
-    """What is drawn meanwhile, in the order in which it is saved."""
-    shown = list[Shown]()
+def drawn_figures() -> Iterator[list[Figure]]:
+    """The figure that is saved last meanwhile."""
+    drawn = list[Figure]()
     save = Figure.savefig
 
     def keep(figure: Figure, *arguments: Any, **settings: Any) -> None:
         save(figure, *arguments, **settings)
-        shown[:] = [shown_by(figure)]
+        drawn[:] = [figure]
 
     Figure.savefig = keep  # pyright: ignore[reportAttributeAccessIssue]
     try:
-        yield shown
+        yield drawn
     finally:
         Figure.savefig = save
 
@@ -181,7 +206,7 @@ def _put_files_of_page(page: str) -> None:
         Path("ur5_robot.urdf").write_bytes(Path(str(urdf)).read_bytes())
 
 
-def fronts_compared(quick: bool) -> tuple[bytes, Shown]:
+def fronts_compared(quick: bool) -> Picture:
     """Fronts of the arm's first move: five seeds of the paper's searches, and the gradient's."""
     from quietarm.studies.compare import compare_fronts
     from quietarm.studies.figures import comparison_figure
@@ -198,7 +223,7 @@ def fronts_compared(quick: bool) -> tuple[bytes, Shown]:
     comparison = replace(compare_fronts(fronts), floor=qa.energy_floor(task).energy)
     figure = comparison_figure(comparison, paper_points(task, {6}))
     figure.savefig("front.png", dpi=150)
-    return Path("front.png").read_bytes(), shown_by(figure)
+    return _picture_of(figure, Path("front.png"), quick)
 
 
 @contextmanager
@@ -217,7 +242,7 @@ def a_page(width: int, height: int, **settings: Any) -> Iterator[Any]:
         browser.close()
 
 
-def page_of_sliders(quick: bool) -> tuple[bytes, Shown]:
+def page_of_sliders(quick: bool) -> Picture:
     """The page of explore, with a front, and a plan within its box."""
     from playwright.sync_api import expect
 
@@ -248,27 +273,42 @@ def page_of_sliders(quick: bool) -> tuple[bytes, Shown]:
     finally:
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=240)
-    return picture, {"words": masked([*words, *map(str, titles)]), "lines": [], "areas": []}
+    shown: Shown = {"words": masked([*words, *map(str, titles)]), "lines": [], "areas": []}
+    return Picture(picture, shown)
 
 
-def page_to_drag(quick: bool) -> tuple[bytes, Shown]:
+def page_to_drag(quick: bool) -> Picture:
     """The front to drag of the site's first page, a fifth of the way, as the cycloid swings."""
     sys.path.insert(0, str(DOCS / "_extensions"))
     from site_front import page_of_fronts
 
     page_of_fronts().save("front.html")
-    with a_page(1200, 700, reduced_motion="reduce") as page:
-        page.goto(Path("front.html").resolve().as_uri())
+    picture, words = _cards_of("front.html", 1200)
+    shown: Shown = {"words": masked(words), "lines": [], "areas": []}
+    return Picture(picture, shown, None if quick else _cards_of("front.html", 378, 2)[0])
+
+
+def _cards_of(file: str, width: int, dots: int = 1) -> tuple[bytes, list[str]]:
+    """The page to drag, and its words; on a phone a pixel of a page has several dots."""
+    with a_page(width, 700, reduced_motion="reduce", device_scale_factor=dots) as page:
+        page.goto(Path(file).resolve().as_uri())
         page.focus("#handle")
         for _ in range(11):
             page.keyboard.press("ArrowRight")
         page.evaluate("document.activeElement.blur()")
         words = page.evaluate("document.body.innerText").splitlines()
-        picture = page.locator(".cards").screenshot()
-    return picture, {"words": masked(words), "lines": [], "areas": []}
+        return _with_dots(page.locator(".cards").screenshot(), 96 * dots), words
 
 
-MAKERS: Mapping[str, Callable[[bool], tuple[bytes, Shown]]] = {
+def _with_dots(picture: bytes, an_inch: int) -> bytes:
+    """A picture that says how large it is, as matplotlib's do."""
+    content = io.BytesIO()
+    with Image.open(io.BytesIO(picture)) as image:
+        image.save(content, format="PNG", dpi=(an_inch, an_inch))
+    return content.getvalue()
+
+
+MAKERS: Mapping[str, Callable[[bool], Picture]] = {
     "front.png": fronts_compared,
     "drag.png": page_to_drag,
     "explore.png": page_of_sliders,
@@ -276,8 +316,8 @@ MAKERS: Mapping[str, Callable[[bool], tuple[bytes, Shown]]] = {
 """Makers of pictures that no command writes; told whether less will do."""
 
 
-def make(name: str, quick: bool = False) -> tuple[bytes, Shown]:
-    """A picture and what it shows, made in a folder of its own."""
+def make(name: str, quick: bool = False) -> Picture:
+    """A picture, made in a folder of its own."""
     home = Path.cwd()
     with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
         os.chdir(folder)
@@ -285,7 +325,7 @@ def make(name: str, quick: bool = False) -> tuple[bytes, Shown]:
             if name in MAKERS:
                 return MAKERS[name](quick)
             if block := python_of(name):
-                return made_by_python(block, name)
+                return made_by_python(block, name, quick)
             command = command_of(name)
             if command is None:
                 raise ValueError(f"no command on a page writes {name}; add it there, or to MAKERS")
@@ -387,19 +427,25 @@ def _smaller(picture: bytes) -> bytes:
     small = io.BytesIO()
     with Image.open(io.BytesIO(picture)) as image:
         few = image.convert("RGB").quantize(colours, dither=Image.Dither.NONE)
-        few.save(small, format="PNG", optimize=True)
+        # by its size on paper the site knows how high its letters are
+        few.save(small, format="PNG", optimize=True, dpi=image.info.get("dpi"))
     return small.getvalue()
 
 
 def write(name: str) -> None:
     """Make a picture, write it, and what it shows."""
-    picture, shown = make(name)
-    if name.endswith(".png"):
-        picture = _smaller(picture)
+    picture = make(name)
+    content = _smaller(picture.content) if name.endswith(".png") else picture.content
     command = command_of(name) if name not in MAKERS else None
     line = command.line if command else ""
-    shown = {"command": line, "file": digest(picture), **shown}
-    (IMAGES / name).write_bytes(picture)
+    shown = {"command": line, "file": digest(content), **picture.shown}
+    (IMAGES / name).write_bytes(content)
+    narrow_place = IMAGES / narrow_name(name)
+    narrow_place.unlink(missing_ok=True)
+    if picture.narrow is not None:
+        narrow = _smaller(picture.narrow)
+        shown["narrow"] = digest(narrow)
+        narrow_place.write_bytes(narrow)
     entries = {**recorded(), name: shown}
     lines = [f"{json.dumps(key)}: {json.dumps(entries[key])}" for key in sorted(entries)]
     SHOWN.write_text("{\n" + ",\n".join(lines) + "\n}\n")

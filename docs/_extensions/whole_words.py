@@ -1,25 +1,108 @@
-"""Words of commands that no line breaks: a browser would break an option after its hyphens.
+"""Words that no line breaks, and lines that do.
 
-On a wide screen a long command goes on in the next line, between two words; on a narrow one it
-scrolls (`site.css`).
+A browser would break an option, a method's name or an angle after its hyphen, and a number from its
+unit. Cells of tables have a least width, long ones everywhere and others on a phone, so that a row
+is not many lines high. In what a cell of a notebook prints, a sentence goes on in the next line; a
+row of columns stays, and scrolls.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 from sphinx.application import Sphinx
 
-_BLOCK = re.compile(r'<div class="highlight-(?:console|sh)\b.*?</pre>', re.DOTALL)
+_COMMAND = re.compile(r'<div class="highlight-(?:console|sh)\b.*?</pre>', re.DOTALL)
+_PRINTED = re.compile(r'(<div class="cell_output\b.*?<pre>)(.*?)(</pre>)', re.DOTALL)
+_CELL = re.compile(r"<(?P<tag>t[dh])\b(?P<attributes>[^>]*)>(?P<content>.*?)</(?P=tag)>", re.DOTALL)
+_LEFT_ALONE = re.compile(
+    r"<(pre|script|style|svg|math|button|code|td|th)\b.*?</\1>|<[^>]*>", re.DOTALL
+)
+_BEFORE_ARGUMENTS = '<span class="sig-paren">(</span>'
+"""Of a signature: there a name that is wider than a phone goes on in the next line."""
+_LONG = re.compile(r'<span class="pre">([^<]{33,})</span>')
 _HYPHENATED = re.compile(r"(?<![^\s>])[^\s<>]*-[^\s<>]*(?![^<]*>)")
+_UNITS = (
+    r"%|ms|us|s|h|um|mm|cm|m|kN|N(?: m)?(?: s)?(?:/rad)?|mJ|J|mW|W|kHz|Hz|deg|"
+    r"rad(?:/s(?:\^[23])?)?|m/s(?:\^[23])?|kg(?: m\^2)?|g|t|kB|MB|GB|V|A|"
+    r"points?|seconds?|minutes?|hours?|px"
+)
+_NUMBER = r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?"
+_WITH_UNIT = rf"(?<![\w.^/-]){_NUMBER}[ \n](?:{_UNITS})(?![\w^/])"
+_NAME = r"(?<![^\s(,;\"])-?\w+(?:[-/]\w+)*[-/]\w*[A-Z0-9]\w*(?![\w-])|(?<![^\s(])-\w+(?:/\w+)?"
+_IN_BRACKETS = r"\[[^\[\]\s]+(?: m)?\]"
+_RANGE = rf"(?<![\w.]){_NUMBER} (?:to|of) {_NUMBER}(?![\w.])"
+_OPTION = r"(?<![\w-])--\w[\w-]*(?:=[^\s<>,;)]+)?"
+_WHOLE = re.compile(rf"{_WITH_UNIT}|{_IN_BRACKETS}|{_OPTION}|{_NAME}")
+_IN_CELLS = re.compile(
+    rf"{_RANGE}|{_WITH_UNIT}|{_IN_BRACKETS}|[^\s<>]+-[^\s<>]+|(?<!\S)-\w+(?:/\w+)?"
+)
+_WIDTH_OF_A_LETTER = 0.88
+"""Of a usual one, by that of a zero."""
+MOST_LETTERS = 32
+"""Of a word that is kept whole: an address may break."""
 
 
 def keep_whole(body: str) -> str:
-    """A page with every word of a command that has a hyphen in an element of its own."""
-    return _BLOCK.sub(
-        lambda block: _HYPHENATED.sub(r'<span class="word">\g<0></span>', block[0]), body
+    """A page with every word that must not break in an element of its own."""
+    body = _COMMAND.sub(lambda block: _HYPHENATED.sub(_as_word, block[0]), body)
+    body = body.replace(_BEFORE_ARGUMENTS, f"{_BEFORE_ARGUMENTS}<wbr>")
+    body = _LONG.sub(r'<span class="pre long">\1</span>', body)
+    body = _PRINTED.sub(lambda block: block[1] + _flowing(block[2]) + block[3], body)
+    body = _CELL.sub(_with_room, body)
+    return _in_texts(body, lambda text: _WHOLE.sub(_as_word, text))
+
+
+def _as_word(match: re.Match[str]) -> str:
+    word = match[0]
+    return f'<span class="word">{word}</span>' if len(word) <= MOST_LETTERS else word
+
+
+def _in_texts(body: str, change: Callable[[str], str]) -> str:
+    """A page with a change in its texts, and none in code, formulas, cells and tags."""
+    pieces = list[str]()
+    end = 0
+    for left_alone in _LEFT_ALONE.finditer(body):
+        pieces += [change(body[end : left_alone.start()]), left_alone[0]]
+        end = left_alone.end()
+    return "".join([*pieces, change(body[end:])])
+
+
+def _flowing(printed: str) -> str:
+    """What a cell prints, with every sentence in an element that goes on in the next line."""
+    return "\n".join(
+        f'<span class="sentence">{_HYPHENATED.sub(_as_word, line)}</span>'
+        if _is_sentence(line)
+        else line
+        for line in printed.split("\n")
     )
+
+
+def _is_sentence(line: str) -> bool:
+    """Whether a line is too long for a phone, and has no columns: two spaces would be between."""
+    letters_on_a_phone = 40
+    fewest_words = 5  # a row of a file has fewer
+    text = re.sub(r"<[^>]*>", "", line).strip()
+    whole = line.count("<span") == line.count("</span>")
+    has_words = len(text.split()) >= fewest_words and "  " not in text
+    return whole and len(text) > letters_on_a_phone and has_words
+
+
+def _with_room(cell: re.Match[str]) -> str:
+    """A cell of a table with its least width on a phone, and its words whole."""
+    letters = len(" ".join(re.sub(r"<[^>]*>", "", cell["content"]).split()))
+    short = 20  # letters, up to which a cell is one line
+    lines = 4  # of a longer cell
+    most = 46
+    room = letters if letters <= short else min(most, max(short, letters // lines))
+    length = "short" if letters <= lines * short else "long"
+    content = _in_texts(cell["content"], lambda text: _IN_CELLS.sub(_as_word, text))
+    width = f'data-room="{length}" style="--room: {_WIDTH_OF_A_LETTER * room:.1f}ch"'
+    if "style=" in cell["attributes"]:  # of a notebook's own table
+        width = ""
+    return f"<{cell['tag']}{cell['attributes']} {width}>{content}</{cell['tag']}>"
 
 
 def _on_page(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any) -> None:

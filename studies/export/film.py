@@ -43,9 +43,9 @@ _LINE = 0.2
 _LETTERS = 11.5
 """Width and height of a panel, heights of curves and of a line [inch]; letters an inch.
 
-A film is 5.4 inch wide: on a phone of 390 pixels a letter of 9 points is 9 pixels high.
+A film of two panels is 5.4 inch wide: on a phone of 390 pixels a letter of 10 points is 9 high.
 """
-_SMALL = 9
+_SMALL = 10
 """Points of the letters at axes."""
 _THIN = 0.8
 _DISC = 1e-5

@@ -27,5 +27,6 @@ from .motion import motion_figure as motion_figure
 from .robustness import draw_motions as draw_motions
 from .robustness import draw_robustness as draw_robustness
 from .robustness import motions_figure as motions_figure
+from .stacking import stack as stack
 from .surface_figures import draw_parallel as draw_parallel
 from .surface_figures import draw_peak as draw_peak

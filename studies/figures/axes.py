@@ -39,12 +39,28 @@ def axes_or_new(ax: Axes | None) -> Axes:
 
 
 def head(figure: Figure, sentence: str, facts: str = "") -> None:
-    """Set what is seen, and below it of what, at the left above a figure."""
-    letters_an_inch = 12
-    room = int(letters_an_inch * figure.get_figwidth())
-    paragraphs = [fill(words, room) for words in (sentence, facts) if words]
+    """Set what is seen, and below it of what, at the left above a figure.
+
+    The label of the title has both, each in one line.
+    """
+    size = 11
+    paragraphs = [words for words in (sentence, facts) if words]
     if paragraphs:
-        figure.suptitle("\n".join(paragraphs), x=0.01, ha="left", fontsize=11, linespacing=1.35)
+        broken = [broken_into_lines(words, figure.get_figwidth(), size) for words in paragraphs]
+        figure.suptitle(
+            "\n".join(broken), x=0.01, ha="left", fontsize=size, linespacing=1.35,
+            label="\n".join(paragraphs),
+        )  # fmt: skip
+
+
+def broken_into_lines(words: str, width: float, size: float) -> str:
+    """Words in lines that fit into a width [inch] in letters of a size [points]."""
+    return fill(words, max(1, int(letters_an_inch(size) * width)))
+
+
+def letters_an_inch(size: float) -> float:
+    """How many letters of a size [points] stand on an inch."""
+    return 132 / size
 
 
 def side_by_side(

@@ -1,16 +1,20 @@
 """The site: links to the glossary, the search without a server, code that breaks nowhere."""
 
 import importlib.util
+import re
 import shutil
 import sys
 from pathlib import Path
 from types import SimpleNamespace
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import pytest
 from pages import DOCS, ROOT
 
 nodes = pytest.importorskip("docutils.nodes")
 pytest.importorskip("sphinx")
+Image = pytest.importorskip("PIL.Image")
 DOCS_FOLDER = ROOT / "docs"
 SITE = ROOT / "build" / "site"
 CHROMIUM = next(
@@ -33,7 +37,10 @@ def extension(name):
 
 
 glossary = extension("glossary_links")
+names = extension("page_names")
+pictures = extension("readable_pictures")
 snippets = extension("search_snippets")
+words = extension("whole_words")
 
 
 # Links to the glossary
@@ -95,7 +102,107 @@ def test_the_glossary_itself_and_generated_lists_have_no_such_links(app):
         assert links(page) == []
 
 
-# Commands
+# Names of pages
+
+
+@pytest.fixture
+def titled(app):
+    """Pages with a title, one with a section."""
+    titles = {"docs/moves": nodes.title("", "Plan a move"), "docs/index": nodes.title("", "Home")}
+    entry = nodes.reference("", "How long after arrival", anchorname="#how-long")
+    tocs = {"docs/moves": page_of(entry), "docs/index": page_of()}
+    app.env = SimpleNamespace(titles=titles, tocs=tocs)
+    app.config = SimpleNamespace(root_doc="docs/index")
+    return app
+
+
+@pytest.mark.parametrize(
+    ("words", "address", "title"),
+    [
+        ("docs/moves.md", "docs/moves.html", "Plan a move"),
+        ("docs/moves.md", "docs/moves.html#how-long", "How long after arrival"),
+        ("docs/moves.md#how-long", "docs/moves.html#how-long", "How long after arrival"),
+        ("docs/moves.md", "docs/moves.html#other", "Plan a move"),
+        ("docs/none.md", "docs/none.html", "docs/none.md"),
+        ("the page docs/moves.md", "docs/moves.html", "the page docs/moves.md"),
+    ],
+)
+def test_a_link_names_a_page_by_its_title(titled, words, address, title):
+    page = page_of(nodes.reference("", words, refuri=address))
+    names.name_pages(titled, page, "README")
+    assert links(page) == [(title, address)]
+
+
+def test_a_link_names_a_page_beside_its_own(titled):
+    page = page_of(nodes.reference("", "moves.md", refuri="moves.html"))
+    names.name_pages(titled, page, "docs/start")
+    assert links(page) == [("Plan a move", "moves.html")]
+
+
+@pytest.mark.parametrize(
+    ("page", "neighbours", "following"),
+    [
+        ("README", {"prev": "a page"}, {"link": "index.html", "title": "Home"}),
+        ("docs/start", {"prev": "a page", "next": "another"}, "another"),
+        ("search", {}, None),
+    ],
+)
+def test_the_last_page_names_the_first_one(titled, page, neighbours, following):
+    names.end_where_it_begins(titled, page, "", neighbours, None)
+    assert neighbours.get("next") == following
+
+
+# Pictures
+
+
+def picture_at(folder, name, width, **settings):
+    """A picture of this width in a folder."""
+    path = folder / name
+    Image.new("RGB", (width, 100)).save(path, **settings)
+    return path
+
+
+def test_a_picture_is_as_wide_as_its_letters_need(tmp_path):
+    # 7 points are 9 pixels at 9 * 72 / 7 = 92.6 pixels an inch
+    ten_inches = picture_at(tmp_path, "a.png", 1500, dpi=(150, 150))
+    assert pictures.least_width(ten_inches) == pytest.approx(10 * 92.6, rel=0.01)
+    of_a_screen = picture_at(tmp_path, "b.png", 960)
+    assert pictures.least_width(of_a_screen) == pytest.approx(10 * 92.6, rel=0.01)
+    assert pictures.least_width(picture_at(tmp_path, "c.gif", 800)) == 0
+
+
+def framed(body, picture):
+    return pictures._IMAGE.sub(lambda tag: pictures.framed(tag, picture), body)
+
+
+def test_a_picture_opens_in_full_from_a_frame_that_scrolls(tmp_path):
+    picture = picture_at(tmp_path, "a.png", 960, dpi=(96, 96))
+    image = '<img alt="words" src="_images/a.png" />'
+    assert framed(f"<p>{image}</p>", picture) == (
+        '<p><span class="frame"><a class="picture" href="_images/a.png">'
+        '<img alt="words" src="_images/a.png" style="--least: 930px"></a></span></p>'
+    )
+    linked = f'<a class="reference" href="page.html">{image}</a>'  # leads where it led
+    assert framed(linked, picture).count("<a ") == 1
+
+
+def test_a_picture_with_a_variant_for_phones_shows_that(tmp_path):
+    picture = picture_at(tmp_path, "a.png", 960)
+    picture_at(tmp_path, "a-narrow.png", 300)
+    body = framed('<img alt="words" src="../_images/a.png"/>', picture)
+    assert '<source media="(max-width: 34em)" srcset="../_images/a-narrow.png">' in body
+    assert "frame" not in body
+    assert body.startswith('<a class="picture" href="../_images/a.png"><picture>')
+
+
+def test_a_picture_without_words_says_what_it_is(tmp_path):
+    picture = picture_at(tmp_path, "a.png", 960)
+    body = framed('<img alt="a.png" src="a.png" />', picture)
+    assert 'alt="picture that the cell above draws"' in body
+    assert body.count("alt=") == 1
+
+
+# Words and lines
 
 
 def test_words_of_commands_stay_whole():
@@ -104,10 +211,80 @@ def test_words_of_commands_stay_whole():
         "plan single-link --output a.png\n</pre></div></div><p>single-link</p>"
         '<div class="highlight-python"><pre>a-b</pre></div>'
     )
-    assert extension("whole_words").keep_whole(page) == page.replace(
+    assert words.keep_whole(page) == page.replace(
         "plan single-link --output", 'plan <span class="word">single-link</span> '
         '<span class="word">--output</span>'
     )  # fmt: skip
+
+
+def test_a_long_word_of_code_may_break():
+    short = '<code><span class="pre">--acceleration-limit</span></code>'
+    long = f'<code><span class="pre">{"a" * 40}</span></code>'
+    assert words.keep_whole(short) == short
+    assert words.keep_whole(long) == long.replace("pre", "pre long")
+
+
+def test_a_signature_breaks_before_its_arguments():
+    paren = '<span class="sig-paren">(</span>'
+    assert words.keep_whole(f"<dt>Arm{paren}alpha1=1)</dt>") == f"<dt>Arm{paren}<wbr>alpha1=1)</dt>"
+
+
+def whole_words_of(body):
+    return re.findall(r'<span class="word">(.*?)</span>', words.keep_whole(body), re.DOTALL)
+
+
+@pytest.mark.parametrize(
+    ("text", "whole"),
+    [
+        ("by MOEA/D-DE, or NSGA-II (MO-CMA-ES).", ["MOEA/D-DE", "NSGA-II", "MO-CMA-ES"]),
+        ("from -pi/2 to pi/4", ["-pi/2", "pi/4"]),
+        (
+            "in 0.46 s, 1.2 % and 40 rad/s^2, 0.15 N m",
+            ["0.46 s", "1.2 %", "40 rad/s^2", "0.15 N m"],
+        ),
+        ("a point-to-point move, and so on - or not", []),
+        ("a wide 3 of them", []),
+        ("as --coefficients=-0.0019, or --path", ["--coefficients=-0.0019", "--path"]),
+        ("a hub of 2.383e-2 kg m^2", ["2.383e-2 kg m^2"]),
+    ],
+)
+def test_names_and_numbers_with_units_stay_whole(text, whole):
+    assert whole_words_of(f"<p>{text}</p>") == whole
+    assert whole_words_of(f"<p><code>{text}</code></p>") == []
+
+
+def test_every_hyphenated_word_of_a_cell_stays_whole():
+    cells = "<td>single-link, a b</td><td>0.99 to 1.5</td><td>18 of 18</td><th>torque [N m]</th>"
+    whole = ["single-link,", "0.99 to 1.5", "18 of 18", "[N m]"]
+    assert whole_words_of(f"<table><tr>{cells}</tr></table>") == whole
+
+
+def room_of(content):
+    cell = words.keep_whole(f"<table><tr><td>{content}</td></tr></table>")
+    return float(re.search(r"--room: ([\d.]+)ch", cell)[1])
+
+
+def test_a_cell_has_room_for_its_words():
+    assert room_of("0.0445") < room_of("gradient, 50 points") < 18
+    assert room_of("some words " * 6) < 18  # four lines of twenty letters
+    assert 30 < room_of("some words " * 14) < 35
+    assert room_of("some words " * 100) < 41
+
+
+def test_a_command_that_a_cell_prints_breaks_between_its_words():
+    command = "$ quietarm plan --plant-file table.py --set stiffness=6 --target 180deg"
+    page = f'<div class="cell_output docutils"><pre>{command}\n</pre></div>'
+    assert whole_words_of(page) == ["--plant-file", "--set", "--target"]
+
+
+def test_sentences_of_a_cell_go_on_and_columns_stay():
+    sentence = "found no motion of 6 terms with residual at most 0 m; try another limit"
+    row = "plain cycloid    F1 = 77.1146 mm   F2 = 91.15 mJ   net work = 40.88 mJ"
+    of_file = "time_s,angle_rad,speed_rad_s,acceleration_rad_s2,tip_m,torque_Nm,power_W"
+    printed = f"<pre><span></span>{sentence}\n{row}\n{of_file}\n</pre>"
+    page = f'<div class="cell_output docutils">{printed}</div>'
+    assert words.keep_whole(page).count('class="sentence"') == 1
+    assert f'<span class="sentence"><span></span>{sentence}</span>\n{row}' in words.keep_whole(page)
 
 
 # The search
@@ -179,8 +356,8 @@ def test_a_command_breaks_nowhere_and_scrolls_on_a_phone(page, tmp_path):
     (tmp_path / sheet.name).write_bytes(sheet.read_bytes())
     line = "quietarm plan single-link --target 30deg --duration 0.8 --output a.json --output a.png"
     literal = "".join(f'<span class="pre">{word}</span> ' for word in line.split())
-    words = f'With <code class="literal">{literal}</code> ' * 5
-    written = extension("whole_words").keep_whole(CODE.format(line=line, words=words))
+    text = f'With <code class="literal">{literal}</code> ' * 5
+    written = words.keep_whole(CODE.format(line=line, words=text))
     (tmp_path / "code.html").write_text(written)
     page.set_viewport_size({"width": 390, "height": 844})
     page.goto((tmp_path / "code.html").as_uri())
@@ -221,8 +398,8 @@ def pages_of_site():
 
 
 CUT = """() => {
-    const shown = "article :is(pre, .cell_output, table, img)";
-    const scrolling = "table.docutils, .cell_output, .highlight pre, .equation";
+    const shown = "article :is(pre, .cell_output, table, img, code)";
+    const scrolling = ".table-wrapper, .frame, .text_html, .highlight pre, .equation";
     const edge = document.documentElement.clientWidth + 1;
     const cut = [...document.querySelectorAll(shown)].filter(element => {
         const hidden = getComputedStyle(element).overflowX === "hidden";
@@ -239,7 +416,6 @@ CUT = """() => {
 @in_chromium
 @built
 def test_every_page_names_the_next_one_fits_the_screen_and_has_headings(page):
-    last = set()
     for width in (1400, 390):
         page.set_viewport_size({"width": width, "height": 900})
         for path in pages_of_site():
@@ -247,13 +423,120 @@ def test_every_page_names_the_next_one_fits_the_screen_and_has_headings(page):
             page.goto(path.as_uri())
             assert page.evaluate("document.documentElement.scrollWidth") <= width, name
             assert page.evaluate(CUT) == [], name
-            if not page.locator(".related-pages .next-page .title").count():
-                last.add(name)
+            assert page.locator(".related-pages .next-page .title").count() == 1, name
             article = page.evaluate("document.querySelector('article').scrollHeight")
             if width == 1400 and article > 2 * 900:
                 headings = "article :is(h2, h3, dt) > a.headerlink"
                 assert page.locator(headings).count() >= 2, name
-    assert last == {"README.html"}  # with which the table of contents ends
+
+
+LETTERS = """() => [...document.querySelectorAll("article img")].map(image => ({
+    file: image.currentSrc, width: image.getBoundingClientRect().width,
+}))"""
+"""Which file of each picture is shown, and how wide."""
+SMALLEST = 7
+"""Points of the smallest letters of a figure; tests/studies/figures holds it."""
+FILM = (5.4, 10)
+"""Inches of a film of two panels, and points of its letters (studies/export/film.py)."""
+
+
+def inches_and_points(file):
+    """How wide a picture is on paper, and how high its smallest letters are."""
+    if file.startswith("data:") or file.endswith(".gif"):
+        return FILM
+    with Image.open(Path(url2pathname(urlsplit(file).path))) as image:
+        return image.width / image.info.get("dpi", (96, 96))[0], SMALLEST
+
+
+@pytest.fixture
+def phone(page):
+    """A page that is opened on a phone."""
+    page.set_viewport_size({"width": 390, "height": 844})
+    return page
+
+
+@pytest.mark.slow
+@in_chromium
+@built
+def test_letters_of_every_picture_are_nine_pixels_high_on_a_phone(phone):
+    small = []
+    for path in pages_of_site():
+        phone.goto(path.as_uri())
+        for shown in phone.evaluate(LETTERS):
+            inches, points = inches_and_points(shown["file"])
+            pixels = shown["width"] / inches * points / 72
+            if pixels < 8.95:
+                small.append((path.name, shown["file"][-40:], round(pixels, 1)))
+    assert small == []
+
+
+BROKEN = r"""() => {
+    const kept = /(?<!\S)-?\w+(?:[-/]\w+)*-\w+|(?<![\w.])\d[\d.]* (?:%|s|mm|J|N m|rad)(?!\w)/g;
+    const broken = [];
+    for (const cell of document.querySelectorAll("article :is(td, th)")) {
+        const texts = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+        while (texts.nextNode()) {
+            for (const found of texts.currentNode.data.matchAll(kept)) {
+                const range = document.createRange();
+                range.setStart(texts.currentNode, found.index);
+                range.setEnd(texts.currentNode, found.index + found[0].length);
+                const tops = [...range.getClientRects()].map(({ top }) => Math.round(top));
+                if (new Set(tops).size > 1 && found[0].length <= 32) broken.push(found[0]);
+            }
+        }
+    }
+    return broken;
+}"""
+"""Names and numbers with units in cells that stand on two lines."""
+TALL = """() => [...document.querySelectorAll("article table.docutils tr")]
+    .filter(row => row.getBoundingClientRect().height > 300)
+    .map(row => row.innerText.slice(0, 60))"""
+"""Rows of tables of more than a dozen lines."""
+UNSAID = """() => [...document.querySelectorAll("article *")].filter(element => {
+    const scrolls = ["auto", "scroll"].includes(getComputedStyle(element).overflowX);
+    const wide = scrolls && element.scrollWidth > element.clientWidth + 1;
+    return wide && !element.parentElement.dataset.hidden?.includes("right");
+}).map(element => element.tagName + " " + element.className + element.textContent.slice(0, 40))"""
+"""What scrolls without a sign of it."""
+
+
+@pytest.mark.slow
+@in_chromium
+@built
+def test_tables_and_logs_can_be_read_on_a_phone(phone):
+    for path in pages_of_site():
+        phone.goto(path.as_uri())
+        phone.wait_for_load_state("load")
+        name = path.relative_to(SITE).as_posix()
+        assert phone.evaluate(BROKEN) == [], name
+        assert phone.evaluate(TALL) == [], name
+        assert phone.evaluate(UNSAID) == [], name
+
+
+@pytest.mark.slow
+@in_chromium
+@built
+def test_the_sign_of_a_scroll_says_on_which_side_more_is(phone):
+    phone.goto((SITE / "docs" / "systems.html").as_uri())
+    holder = phone.locator(".scrolls:has(> .table-wrapper)").first
+    assert holder.get_attribute("data-hidden") == "right"
+    assert holder.locator("> .more.right").is_visible()
+    assert not holder.locator("> .more.left").is_visible()
+    for to, hidden in ((100, "left right"), (10_000, "left"), (0, "right")):
+        holder.locator("> .table-wrapper").evaluate("(table, to) => table.scrollTo(to, 0)", to)
+        phone.wait_for_function(
+            "([holder, hidden]) => holder.dataset.hidden === hidden",
+            arg=[holder.element_handle(), hidden],
+        )
+
+
+@pytest.mark.slow
+@in_chromium
+@built
+def test_a_tap_opens_the_full_picture(phone):
+    phone.goto((SITE / "docs" / "gallery.html").as_uri())
+    phone.locator("a.picture").first.click()
+    phone.wait_for_url("**/_images/plan.png")
 
 
 @pytest.mark.slow
@@ -270,3 +553,28 @@ def test_the_search_of_the_site_finds_text_with_its_words(page, query):
     assert results > 3
     assert page.locator("ul.search > li > p.context").count() == results
     assert page.locator("ul.search mark").count() >= results / 2
+
+
+@pytest.mark.slow
+@in_chromium
+@built
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("gallery", "docs/gallery.html"),
+        ("glossary", "docs/glossary.html"),
+        ("robots", "docs/robots.html"),
+        ("fronts", "docs/fronts.html"),
+        ("hypervolume", "docs/measures.html"),
+        ("vibration", "notebooks/02_three_plants.html"),
+    ],
+)
+def test_a_page_whose_heading_has_the_word_comes_before_those_that_mention_it(page, query, first):
+    page.goto(f"{(SITE / 'search.html').as_uri()}?q={query}")
+    page.wait_for_function(
+        "document.querySelector('.search-summary').innerText.includes('finished')"
+    )
+    results = page.locator("ul.search > li > a").evaluate_all(
+        "links => links.map(link => link.getAttribute('href').split('#')[0])"
+    )
+    assert results[0] == first

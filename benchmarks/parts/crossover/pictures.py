@@ -14,6 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from quietarm.studies.figures import stack
+
 from .words import RANDOM_STARTS, short_label, spelled_budget, two_digits, without_noise
 
 WAYS = (
@@ -50,7 +52,17 @@ def write_pictures(figures: Mapping[str, Any], folder: Path) -> None:
         drawn["noise.png"] = noise_figure(figures["noise"])
     for name, figure in drawn.items():
         if figure is not None:
-            figure.savefig(folder / name, dpi=110, metadata={"Software": ""})
+            _save(figure, folder / name)
+
+
+def _save(figure: Figure, path: Path) -> None:
+    """Write a picture, and beside it the one for phones, where its panels can be stacked."""
+    without_versions = {"Software": ""}
+    figure.savefig(path, dpi=110, metadata=without_versions)
+    stacked = stack(figure)
+    if stacked is not None:
+        narrow = path.with_name(f"{path.stem}-narrow.png")
+        stacked.savefig(narrow, dpi=150, metadata=without_versions)
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -233,8 +245,8 @@ def _over_groups(
 def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
     """What methods lack by the kind of energy."""
     words = {
-        "copper": "copper, smooth", "absolute": "|power|", "stages": "in stages",
-        "motor-map": "motor's map, jumps", "integer": "|power|, an integer",
+        "copper": "copper,\nsmooth", "absolute": "|power|", "stages": "in\nstages",
+        "motor-map": "motor's\nmap,\njumps", "integer": "an\ninteger",
     }  # fmt: skip
     groups = {kind: kinds[kind] for kind in words if kinds[kind]}
     return _over_groups(groups, words, 8.5) if groups else None

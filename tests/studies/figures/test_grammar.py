@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from inks import inks_of, scales_of
 from matplotlib.colors import to_rgb
-from pages import DOCS
+from matplotlib.text import Text
+from pages import DOCS, ROOT
 
 import quietarm as qa
 from quietarm.ocp import CycloidPolynomial, Mark, Polish, energy_floor, evaluate_robustness
@@ -17,6 +18,7 @@ from quietarm.studies.compare import compare_fronts, compare_plans
 from quietarm.studies.export.film import _draw, animate
 from quietarm.studies.figures import Line
 from quietarm.studies.figures.grammar import HEAT, INKS, MEANINGS, OTHERS, look, looks, variants
+from quietarm.studies.figures.stacking import NARROW
 
 GRAMMAR = {ink.lower() for ink in INKS}
 
@@ -104,6 +106,30 @@ def test_every_public_figure_is_drawn_in_the_colours_of_the_grammar(figures):
     strange = {name: inks_of(figure) - GRAMMAR for name, figure in figures.items()}
     assert {name: inks for name, inks in strange.items() if inks} == {}
     assert set().union(*map(scales_of, figures.values())) <= {HEAT}
+
+
+def letters_of(figure):
+    """Sizes of the words of a figure [points]."""
+    texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+    return {text.get_fontsize() for text in texts}
+
+
+def test_letters_are_as_high_as_the_site_counts_on(figures):
+    # docs/_extensions/readable_pictures.py: at 93 pixels an inch 7 points are 9 pixels
+    for name, figure in figures.items():
+        assert min(letters_of(figure)) >= (10 if name == "a film" else 7), name
+    for notebook in (ROOT / "notebooks").glob("*.ipynb"):
+        sizes = re.findall(r"fontsize=([\d.]+)", notebook.read_text(encoding="utf-8"))
+        assert all(float(size) >= 7 for size in sizes), notebook.name
+
+
+def test_every_figure_fits_a_phone_when_it_is_stacked(figures):
+    for name, figure in figures.items():
+        stacked = None if name == "a film" else qa.figures.stack(figure)
+        if stacked is not None:
+            stacked.draw_without_rendering()
+            drawn = stacked.get_tightbbox()  # [inch]
+            assert drawn.width <= NARROW + 0.05, name
 
 
 def test_titles_stand_left_and_axes_have_units(figures):

@@ -1,0 +1,120 @@
+"""A figure stacked for a phone: its panels below each other, with what they said together."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import quietarm as qa
+from quietarm.studies.figures.axes import head, legend_below, letter, new_figure
+from quietarm.studies.figures.stacking import MOST_PANELS, NARROW
+
+SENTENCE = "This plan takes 0.0237 J and arrives at rest; the plain cycloid leaves 77 mm"
+
+
+def wide(rows=2, columns=2, **settings):
+    """A figure of several panels with a head and a legend."""
+    figure = new_figure(4.0 * columns, 3.0 * rows)
+    panels = figure.subplots(rows, columns, squeeze=False, **settings)
+    for number, ax in enumerate(panels.flat):
+        ax.plot([0, 1], [number, number], label="plan" if number == 0 else "_")
+        ax.set_title(f"panel {number}", loc="left", fontsize=10)
+    for ax in panels[-1]:
+        ax.set_xlabel("time [s]")
+    letter(list(panels.flat)[:9])
+    head(figure, SENTENCE, "single-link, 0 to 30 deg in 0.8 s")
+    legend_below(figure, list(panels.flat), 3, 9)
+    return figure
+
+
+def boxes(figure):
+    figure.draw_without_rendering()
+    return [ax.get_position() for ax in figure.axes]
+
+
+def test_panels_stand_below_each_other_in_reading_order():
+    stacked = qa.figures.stack(wide())
+    assert stacked.get_figwidth() == NARROW
+    places = boxes(stacked)
+    assert len(places) == 4
+    for upper, lower in pairwise(places):
+        assert lower.y1 < upper.y0
+        assert lower.x0 == pytest.approx(upper.x0)
+    titles = [ax.get_title(loc="left") for ax in stacked.axes]
+    assert titles == [f"({name}) panel {number}" for number, name in enumerate("abcd")]
+
+
+def test_the_figure_stays_as_it_is():
+    figure = wide()
+    before = boxes(figure)
+    size = figure.get_size_inches()
+    qa.figures.stack(figure)
+    np.testing.assert_array_equal(figure.get_size_inches(), size)
+    np.testing.assert_allclose([box.extents for box in boxes(figure)],
+                               [box.extents for box in before], atol=0.01)  # fmt: skip
+    assert [legend.get_texts()[0].get_text() for legend in figure.legends] == ["plan"]
+
+
+def test_words_keep_their_size_and_fit():
+    stacked = qa.figures.stack(wide())
+    stacked.draw_without_rendering()
+    drawn = stacked.get_tightbbox()  # [inch]
+    assert drawn.x0 >= -0.02
+    assert drawn.x1 <= NARROW + 0.02
+    title = stacked.get_suptitle()
+    assert " ".join(title.split()) == f"{SENTENCE} single-link, 0 to 30 deg in 0.8 s"
+    assert title.count("\n") >= 2
+    (legend,) = stacked.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["plan"]
+    assert legend.get_texts()[0].get_fontsize() == 9
+
+
+def test_what_panels_say_together_each_says_alone():
+    stacked = qa.figures.stack(wide(sharex=True))
+    stacked.draw_without_rendering()
+    for ax in stacked.axes:
+        assert ax.get_xlabel() == "time [s]"
+        assert any(label.get_visible() and label.get_text() for label in ax.get_xticklabels())
+    alone = qa.figures.stack(wide())  # these share nothing
+    assert [ax.get_xlabel() for ax in alone.axes] == ["", "", "time [s]", "time [s]"]
+
+
+def test_a_legend_in_place_of_a_panel_comes_last():
+    figure = new_figure(8.0, 6.0)
+    panels = figure.subplots(2, 2)
+    spare = panels[0, 1]
+    (line,) = panels[0, 0].plot([0, 1])
+    spare.axis("off")
+    spare.legend([line], ["best without parametrisation, at rest, of all of them"], fontsize=10)
+    stacked = qa.figures.stack(figure)
+    places = boxes(stacked)
+    of_legend = places[stacked.axes.index(next(ax for ax in stacked.axes if not ax.axison))]
+    assert of_legend.y0 == min(place.y0 for place in places)
+    assert of_legend.height < 0.3 * max(place.height for place in places)
+
+
+def test_each_scale_of_colours_stays_beside_its_panel():
+    figure = new_figure(8.0, 4.0)
+    for ax in figure.subplots(1, 2, sharey=True):
+        figure.colorbar(ax.pcolormesh(np.arange(4.0).reshape(2, 2)), ax=[ax])
+    figure.draw_without_rendering()
+    upper, lower, of_upper, of_lower = boxes(qa.figures.stack(figure))
+    for panel, scale in ((upper, of_upper), (lower, of_lower)):
+        assert scale.x0 > panel.x1
+        assert (scale.y0 + scale.y1) / 2 == pytest.approx((panel.y0 + panel.y1) / 2, abs=0.02)
+
+
+def test_what_cannot_part_stays_together():
+    many = wide(1 + MOST_PANELS // 3, 3)
+    assert qa.figures.stack(many) is None
+    figure = new_figure(8.0, 4.0)
+    panels = figure.subplots(1, 2)
+    meshes = [ax.pcolormesh(np.arange(4.0).reshape(2, 2)) for ax in panels]
+    figure.colorbar(meshes[0], ax=list(panels))
+    assert qa.figures.stack(figure) is None
+
+
+@pytest.mark.parametrize("width", [0.0, -1.0, float("nan")])
+def test_the_width_is_positive(width):
+    with pytest.raises(ValueError, match="width"):
+        qa.figures.stack(wide(), width)
