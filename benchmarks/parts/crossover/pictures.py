@@ -34,6 +34,12 @@ NORM = TwoSlopeNorm(0.0, -MOST_DECADES, MOST_DECADES)
 DIVERGING = matplotlib.colormaps["RdBu_r"]
 NO_FRONT = "#f3e7b3"
 """Of a cell where the gradient has no front yet on most moves, so that nothing is compared."""
+COLOUR_OF = {
+    "gradient, 50 points": "#1b1b1b", "gradient": "#1b1b1b", "MOEA/D-DE": "#0072b2",
+    "memetic MOEA/D-DE": "#d55e00", "MO-CMA-ES": "#009e73", "GDE3": "#cc79a7",
+    "NSGA-II": "#7f7f00", "differences": "#56b4e9", "differences of 1 % of the box": "#56b4e9",
+}  # fmt: skip
+"""Of the methods that several pictures have."""
 COLOURS = ("#1b1b1b", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7f7f00", "#56b4e9", "#8c510a")
 
 
@@ -146,10 +152,19 @@ def per_cents(ax: Axes, values: Sequence[float]) -> None:
     ax.yaxis.set_minor_formatter(NullFormatter())
 
 
+def colours_of(names: Sequence[str]) -> dict[str, str]:
+    """The colour of each name: a method's is the same in all pictures, others take what is left."""
+    usual = {name: COLOUR_OF[name] for name in names if name in COLOUR_OF}
+    free = [colour for colour in COLOURS if colour not in usual.values()]
+    return usual | dict(zip([name for name in names if name not in usual], free))
+
+
 def labelled_lines(ax: Axes, lines: Mapping[str, tuple[Any, Any]], *, log_y: bool = True) -> None:
     """Lines, at most eight, each with its name at its right end, so that none covers another."""
+    colours = colours_of(list(lines))
     ends = list[tuple[float, str, str, float]]()
-    for colour, (name, (x, y)) in zip(COLOURS, lines.items()):
+    for name, (x, y) in lines.items():
+        colour = colours[name]
         ax.plot(x, y, color=colour, marker="o", markersize=3)
         ends.append((float(y[-1]), name, colour, float(x[-1])))
     low, high = ax.get_ylim()
