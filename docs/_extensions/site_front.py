@@ -15,7 +15,7 @@ def page_of_fronts():
     half = qa.PointToPoint(arm, target=pi / 2, duration=0.8)
     fronts = {
         "Flexible link": qa.epsilon_front(sixth, bound=0.2),
-        "Same link, weaker motor": qa.epsilon_front(weaker, bound=0.2),
+        "Same link, weaker motor": qa.epsilon_front(weaker, qa.CycloidPolynomial(6), bound=0.2),
         "Arm on a flexible link": qa.epsilon_front(half, bound=0.5),
         "searched": qa.search(sixth, algorithm="nsga2", bound=0.2, seed=0),
     }

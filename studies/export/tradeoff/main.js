@@ -129,7 +129,14 @@ const choices = (field, words, first, onChange) => words.forEach((word, k) => {
   const label = element(field, "label");
   const input = element(label, "input");
   Object.assign(input, { type: "radio", name: field.id, value: k, checked: k === first });
-  input.addEventListener("change", () => onChange(k));
+  // After a click the arrow keys go on along the front; whoever chose by keys stays here.
+  let clicked = false;
+  label.addEventListener("pointerdown", () => { clicked = true; });
+  input.addEventListener("change", () => {
+    onChange(k);
+    if (clicked) byId("handle").focus({ preventScroll: true });
+    clicked = false;
+  });
   label.append(word);
 });
 // So many seconds of the motion in a second on the screen, from fast to slow.
