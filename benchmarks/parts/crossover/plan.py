@@ -28,6 +28,9 @@ LADDER = (3, 5, 10, 50, 200)
 LONGEST = LADDER[-1]
 CROSSED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic", "slsqp")
 """Methods of candidates that are run in every cell of the map."""
+SMALL = ("gde3", "moead-de")
+SMALL_POPULATION = (("population", 20),)
+"""Of these with the smallest budget: a hundred individuals have ten generations there."""
 CENTRAL = ("cmopso", "smsemoa", "moead", "nsga2+polish", "gde3+polish", "random")
 """Methods of candidates that are run at the centre beside these."""
 RANDOM_STARTS = (("continuation", False),)
@@ -179,8 +182,11 @@ def crossing(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
             if (terms, budget) == (CENTRE_TERMS, 10_000) or seed >= SEEDS[budget]:
                 continue
             for move in moves:
+                case = Case(move, terms)
                 for method in CROSSED:
-                    yield Planned("crossing", seed, Case(move, terms), method, budget)
+                    yield Planned("crossing", seed, case, method, budget)
+                for method in SMALL if budget == BUDGETS[0] else ():
+                    yield Planned("crossing", seed, case, method, budget, SMALL_POPULATION)
 
 
 def kinds(moves: Sequence[Move], seed: int) -> Iterator[Planned]:

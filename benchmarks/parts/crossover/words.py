@@ -14,6 +14,8 @@ LABELS = {
     "multistart starts=100": "multistart",
     "nsga2+polish": "NSGA-II, polished",
     "gde3+polish": "GDE3, polished",
+    "gde3 population=20": "GDE3 of 20",
+    "moead-de population=20": "MOEA/D-DE of 20",
     "moead-de reevaluate=5": "MOEA/D-DE, five evaluations",
     "slsqp": "differences",
     "slsqp continuation=False": "differences, random starts",
