@@ -219,7 +219,7 @@ class Results:
         return runs or self.of(f"{CONTROL} points=20", 0, problem)
 
     def control_within(self, problem: str, seconds: float) -> list[Run]:
-        """The gradient's front of most points that took no longer; none where all took longer."""
+        """The gradient's front that took longest, and no longer; none where all took longer."""
         rungs = [
             run
             for run in self.runs_of_problem[problem]
@@ -374,7 +374,9 @@ def cell(results: Results, terms: int, budget: int, crossed: Sequence[str]) -> d
     problems = results.problems(terms)
     have = searches_in(results, ("centre", "crossing", "large"), budget, problems, 5)
     searches = [
-        (label, spent) for label, spent in have if label in crossed and not takes_slopes(label)
+        (label, spent)
+        for label, spent in have
+        if label.partition(" ")[0] in crossed and not takes_slopes(label)
     ]
     rivals: dict[str, Rival] = {
         "to its end": lambda name, spent: results.control(name),
@@ -766,7 +768,7 @@ def energy_by_terms(
 def kind_figures(results: Results) -> dict[str, Any]:
     """By the kind of energy, on the moves that all kinds have, with motions between."""
     figures = {}
-    moves = {Problem(name).move for name in results.whole if Problem(name).kind in KINDS[1:]}
+    moves = moves_with_other_kinds(results)
     for kind in KINDS:
         problems = [name for name in results.problems(kind=kind) if Problem(name).move in moves]
         methods = {run.label for run in results.runs if run.axis == "energy" and run.budget}
@@ -776,6 +778,81 @@ def kind_figures(results: Results) -> dict[str, Any]:
             if sum(bool(results.of(label, 10_000, name)) for name in problems) >= 8
         ]
         figures[kind] = compare(results, problems, searches, "between") if problems else []
+    return figures
+
+
+def moves_with_other_kinds(results: Results) -> set[str]:
+    """The moves that were run with several kinds of energy."""
+    return {Problem(name).move for name in results.whole if Problem(name).kind in KINDS[1:]}
+
+
+def against_differences(results: Results, crossed: Sequence[str]) -> dict[str, Any]:
+    """By the kind of energy, the searches against differences with as many candidates.
+
+    And at the centre against differences whose starts are random; and what differences lack where
+    an integer is among the variables, by seed.
+    """
+    budget = 10_000
+    moves = moves_with_other_kinds(results)
+    by_kind = {}
+    for kind in KINDS:
+        problems = [name for name in results.problems(kind=kind) if Problem(name).move in moves]
+        searches = [
+            (label, budget)
+            for label in crossed
+            if not takes_slopes(label)
+            and sum(bool(results.of(label, budget, name)) for name in problems) >= 8
+        ]
+        by_kind[kind] = compare(
+            results,
+            problems,
+            searches,
+            "between",
+            lambda name, spent: results.of(DIFFERENCES, budget, name),
+        )
+    random = f"{DIFFERENCES} continuation=False"
+    by_seed = defaultdict[int, list[float]](list)
+    for name in results.problems(kind="integer"):
+        for run in results.of(DIFFERENCES, budget, name):
+            by_seed[run.seed].append(results.missing(run, "between"))
+    return {
+        "kinds": by_kind,
+        "random_starts": compare(
+            results,
+            results.problems(),
+            [("moead-de", budget)],
+            "between",
+            lambda name, spent: results.of(random, budget, name),
+        ),
+        "integer_by_seed": [float(np.median(values)) for _, values in sorted(by_seed.items())],
+    }
+
+
+def gain_of_coefficients(
+    results: Results, crossed: Sequence[str], fewer: int = 10, more: int = 24
+) -> dict[str, dict[str, int]]:
+    """On how many moves a method's energy within 1 mm is less with more coefficients.
+
+    After 10,000 candidates; beside it the moves on which it has no such motion with more of them.
+    """
+    figures = {}
+    for method in crossed:
+        energies = dict[int, dict[str, float]]()
+        for terms in (fewer, more):
+            runs_of = {name: results.of(method, 10_000, name) for name in results.problems(terms)}
+            energies[terms] = {
+                Problem(name).move: float(
+                    np.median([run.energy if np.isfinite(run.energy) else np.inf for run in runs])
+                )
+                for name, runs in runs_of.items()
+                if runs
+            }
+        moves = energies[fewer].keys() & energies[more].keys()
+        figures[method] = {
+            "moves": len(moves),
+            "less": sum(energies[more][move] < energies[fewer][move] for move in moves),
+            "none": sum(energies[more][move] == np.inf for move in moves),
+        }
     return figures
 
 
@@ -847,6 +924,8 @@ def compute(folder: Path) -> dict[str, Any]:
         "tuned": tuned(results),
         "kinds": kind_figures(results),
         "noise": noise_figures(results),
+        "differences": against_differences(results, crossed),
+        "gain": gain_of_coefficients(results, crossed),
         "attained": {
             "seconds": times.tolist(),
             "shares": attained(results, centre, methods, times),
