@@ -115,7 +115,8 @@ def draw_cell(ax: Axes, corner: tuple[int, int], row: Mapping[str, Any] | None, 
         ax.add_patch(Rectangle(corner, 1, 1, facecolor="#eeeeee", edgecolor="white"))
         middle(ax, corner, "not run", "#777777")
         return
-    text = f"{short_label(row['method'])}\n{two_digits(row['missing'])} %\n{rival}\n"
+    name = short_label(row["method"]).replace(" of ", "\nof ")
+    text = f"{name}\n{two_digits(row['missing'])} %\n{rival}\n"
     if row["no_front"]:
         ax.add_patch(Rectangle(corner, 1, 1, facecolor=NO_FRONT, edgecolor="white"))
         middle(ax, corner, f"{text}nothing yet", "black")
@@ -264,6 +265,8 @@ def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
         "motor-map": "motor's\nmap,\njumps", "integer": "an\ninteger",
     }  # fmt: skip
     groups = {kind: kinds[kind] for kind in words if kinds[kind]}
+    if "integer" in groups:  # differences keep the number with which they start
+        groups["integer"] = [row for row in groups["integer"] if row["method"] != "slsqp"]
     return _over_groups(groups, words, 8.5) if groups else None
 
 
