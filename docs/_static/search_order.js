@@ -1,8 +1,8 @@
 "use strict";
-// The order of results: a page whose title has the words, a section, a page with such a heading, a public name, a page that mentions them.
+// The order of results: a page whose title has the words, a section, a page with such a heading, a public name, a page that mentions them, an option of a command.
 
 // Of one rank the pages of docs come before the course.
-const rank = { title: 500, section: 400, heading: 300, name: 200, mention: 100 };
+const rank = { title: 500, section: 400, heading: 300, name: 200, mention: 100, option: 50 };
 const lists = ["CHANGELOG", "docs/commands", "docs/reference", "docs/licences"]; // they mention everything
 
 // As many letters of a word as its forms share: robust, robustness; limit, limits.
@@ -29,7 +29,7 @@ var Scorer = {
   score: ([page, title, , , score, , kind]) => {
     const words = beginnings();
     const place = () => {
-      if (kind === "object") return rank.name;
+      if (kind === "object") return page.startsWith("docs/commands") ? rank.option : rank.name;
       if (kind === "title") return title.includes(" > ") ? rank.section : rank.title;
       if (hasAll(title, words)) return rank.title;
       return hasHeading(page, words) ? rank.heading : rank.mention;
