@@ -1,5 +1,6 @@
 """What is shipped: versions, type information, pinned requirements, nothing of one machine."""
 
+import lzma
 import subprocess
 import sys
 import tomllib
@@ -132,7 +133,11 @@ UNSAFE = ["pickle." + "load", "cPickle", "joblib." + "load", "allow_pickle" + "=
 def test_no_file_holds_a_path_of_one_machine_or_loads_a_pickle(files):
     assert len(files) > 50  # the listing is there
     for path in {*files} - {Path(__file__)}:
+        if path.suffix in (".png", ".gif"):  # compressed, three bytes may be any
+            continue
         content = path.read_bytes()
+        if path.suffix == ".xz":
+            content = lzma.decompress(content)
         # a test may make a file that must be refused
         words = MACHINE if path.is_relative_to(ROOT / "tests") else [*MACHINE, *UNSAFE]
         assert [word for word in words if word.encode() in content] == [], path
