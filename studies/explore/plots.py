@@ -126,7 +126,10 @@ class Plots:
 
     def _tradeoff(self, pick: Callable[[int], None]) -> Any:
         """The front, and where the motion in hand lies."""
-        ranges = {"x_range": Range1d(0.0, 1.0), "y_range": Range1d(0.0, 1.0)}
+        ranges: dict[str, Any] = {
+            "x_range": Range1d(start=0.0, end=1.0),
+            "y_range": Range1d(start=0.0, end=1.0),
+        }
         plot: Any = figure(name="front", tools="", x_axis_label=" ",
                            y_axis_label="energy F2 [J]", **ranges)  # fmt: skip
         points = self._sources["points"]

@@ -182,6 +182,7 @@ def _css_name(meaning: str) -> str:
 def _readable(colour: str) -> str:
     """A colour, or a darker one, in which letters are read on white."""
     weights = np.array([0.2126, 0.7152, 0.0722])  # WCAG 2: relative luminance
+    darker = colour
     for share in np.linspace(0.0, 0.9, 10):
         darker = _mixed(colour, 0.0, float(share))
         channels = np.array(to_rgb(darker))
@@ -195,7 +196,8 @@ def _readable(colour: str) -> str:
 
 def _mixed(colour: str, towards: float, share: float) -> str:
     """A colour on its way to black, 0, or white, 1."""
-    return to_hex([(1 - share) * channel + share * towards for channel in to_rgb(colour)])
+    red, green, blue = ((1 - share) * channel + share * towards for channel in to_rgb(colour))
+    return to_hex((red, green, blue))
 
 
 def _in_script(value: Any) -> str:
