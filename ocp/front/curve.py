@@ -15,6 +15,7 @@ from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
 from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.too_short import refuse_too_short
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.problem import LEAST_ENERGY, NonlinearProgram, Solution, Transcription
@@ -52,8 +53,12 @@ class Curve:
 
     @classmethod
     def begin(cls, task: PointToPoint, profile: JointProfile, setup: Setup) -> Curve:
-        """On the steps that the setup or the task asks for."""
+        """On the steps that the setup or the task asks for.
+
+        InfeasibleTaskError where not even a rigid joint is as fast as the task.
+        """
         profile.refuse_no_choice()
+        refuse_too_short(task)
         return cls(Transcription.of(task, profile, setup.steps), setup)
 
     @property

@@ -25,6 +25,7 @@ from quietarm.ocp.planning.least_time import fitting_spline, least_time
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.request import PlanRequest
+from quietarm.ocp.planning.too_short import refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
@@ -59,6 +60,15 @@ def plan_on_chosen_profile(request: PlanRequest) -> Plan:
 
     InfeasibleTaskError, where no profile does, has the duration that would do.
     """
+    try:
+        refuse_too_short(request.task)
+        return _plan_on_first_that_will_do(request)
+    except InfeasibleTaskError as error:
+        raise _with_a_duration(error, request) from None
+
+
+def _plan_on_first_that_will_do(request: PlanRequest) -> Plan:
+    """The plan along the profile of a request, or on a spline, or of more terms."""
     plan = _plan_within_limits(request) if request.task.limits else _plan_without_limits(request)
     if plan is not None and (plan.residual_limit or 0.0) <= request.residual_limit.size:
         return plan
@@ -70,11 +80,7 @@ def plan_on_chosen_profile(request: PlanRequest) -> Plan:
         return on_spline
     if plan is not None:
         return plan
-    request = request.along(more_terms(request.task))
-    try:
-        return _state_terms(plan_along(request))
-    except InfeasibleTaskError as error:
-        raise _with_a_duration(error, request) from None
+    return _state_terms(plan_along(request.along(more_terms(request.task))))
 
 
 def _plan_without_limits(request: PlanRequest) -> Plan | None:
@@ -163,10 +169,10 @@ def _state_terms(plan: Plan, settings: Mapping[str, Setting] | None = None) -> P
 def _with_a_duration(error: InfeasibleTaskError, request: PlanRequest) -> InfeasibleTaskError:
     """The error with the duration that would do, where a longer one does."""
     if not request.task.limits or request.setup.bound is not None:
-        return InfeasibleTaskError(error.what, "")
+        return InfeasibleTaskError(error.what)
     duration = _feasible_duration(request)
-    remedy = f"a duration of {duration:g} s will also do" if duration else ""
-    motion = f"motion of {request.profile.amount}"
+    remedy = f"a duration of {duration:g} s will do" if duration else ""
+    motion = f"motion of {more_terms(request.task).amount}"
     what = error.what.replace(motion, f"{motion} or on a spline", 1)
     return InfeasibleTaskError(what, remedy)
 
