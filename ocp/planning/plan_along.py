@@ -21,7 +21,6 @@ from quietarm.ocp.planning.best_of_starts import best_of_starts, solve_from_star
 from quietarm.ocp.planning.certify import OVERRUN, certify_one
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.request import PlanRequest
-from quietarm.ocp.planning.too_short import refuse_too_short
 from quietarm.ocp.record import REST
 from quietarm.ocp.robustness import Worst
 from quietarm.ocp.task import PointToPoint
@@ -39,7 +38,6 @@ Array = NDArray[np.float64]
 
 def plan_along(request: PlanRequest) -> Plan:
     """The plan along the profile of a request, within its residual limit."""
-    refuse_too_short(request.task)
     began = time.perf_counter()
     plan = _adapt_limit(request) if request.residual_limit.adapts else _keep_limit(request)
     return plan.restated(seconds=time.perf_counter() - began)
