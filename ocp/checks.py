@@ -167,7 +167,13 @@ def takes(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
                 value = arguments.get(name, default)
                 if value is not default:
                     _check_kind(name, value, kind)
-            return function(*args, **kwargs)
+            try:
+                return function(*args, **kwargs)
+            except SystemError as error:
+                # casadi before 3.8 turns a Ctrl-C within a sum or a product into one
+                if isinstance(error.__cause__, KeyboardInterrupt):
+                    raise error.__cause__ from None
+                raise
 
         return checked
 

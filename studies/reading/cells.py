@@ -94,7 +94,7 @@ def seconds_of(cells: Any) -> Any:
     parts = cells.str.strip().str.extract(f"^{_CLOCK.pattern}$")
     numbers = parts[["hours", "minutes"]].apply(to_numeric)
     seconds = to_numeric(parts["seconds"].str.replace(r"[,:]", ".", regex=True))
-    late = parts["half"].str.lower().str.startswith("p").fillna(False).astype(bool)
+    late = parts["half"].str.lower().str.startswith("p", na=False).astype(bool)
     hours = numbers["hours"].fillna(0).where(parts["half"].isna(), numbers["hours"] % 12)
     time = 3600 * (hours + 12 * late) + 60 * numbers["minutes"] + seconds
     known = time.dropna()

@@ -14,6 +14,7 @@ import pytest
 
 from quietarm.models.compiled import Compiled
 from quietarm.ocp import Ipopt, energy_floor, epsilon_front, plan_move
+from quietarm.ocp.checks import takes
 
 X = ca.SX.sym("x")
 SQUARE = Compiled(lambda: ca.Function("square", [X], [X * X]), side_by_side=True)
@@ -52,6 +53,15 @@ def test_a_swallowed_ctrl_c_comes_after_what_casadi_does_in_place_of_errors_that
 def test_an_error_of_its_own_stays_one():
     with pytest.raises(ZeroDivisionError):
         Compiled.guard(lambda: 1 / 0)
+
+
+def test_a_ctrl_c_that_casadi_made_a_system_error_is_one_again():
+    @takes()
+    def add(x, y):  # as casadi's own sums do before 3.8
+        raise SystemError("<built-in function plus> returned a result") from KeyboardInterrupt()
+
+    with pytest.raises(KeyboardInterrupt):
+        add(1, 2)
 
 
 def test_calls_side_by_side_have_memory_of_their_own():

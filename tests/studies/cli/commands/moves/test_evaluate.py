@@ -77,7 +77,9 @@ def written(name, content):
 
 def assert_same(front):
     """The front is that of `X`: the file's order does not matter, nor which figures it states."""
-    assert [p.coefficients for p in front.points] == [tuple(row) for row in X.tolist()]
+    coefficients = [point.coefficients for point in front.points]
+    # pandas before 3.1 may read another last digit
+    assert coefficients == [pytest.approx(row, rel=1e-14) for row in X.tolist()]
     # the reference front's figures are by CVODES as well
     assert front.residuals == pytest.approx(CLAIMS[:, 0], rel=1e-5, abs=1e-9)
     assert front.energies == pytest.approx(CLAIMS[:, 1], rel=1e-8)
