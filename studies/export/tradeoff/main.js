@@ -28,11 +28,12 @@ const showWords = () => {
     }
   });
   const others = beside.filter(({ kind, points }) => kind !== "plan" && points.length && points[0][0] !== null);
-  byId("nearest").textContent = unbroken(others.map(({ label, points }) => {
+  const words = others.map(({ label, points }) => {
     const [residual, energy] = points.reduce((best, other) => (Math.abs(other[0] - point.residual) < Math.abs(best[0] - point.residual) ? other : best));
-    const words = residual < rest ? "at rest" : `${(factor * residual).toPrecision(3)} ${unit}`;
-    return `${label}${points.length > 1 ? ", nearest" : ""}: ${words}, ${energy.toPrecision(3)} J`;
-  }).join("; "));
+    const still = residual < rest ? "at rest" : `${(factor * residual).toPrecision(3)} ${unit}`;
+    return `${label}${points.length > 1 ? ", nearest" : ""}: ${still}, ${energy.toPrecision(3)} J`;
+  }).join("; ");
+  byId("nearest").textContent = unbroken(words.charAt(0).toUpperCase() + words.slice(1));
 };
 const showTime = () => {
   const { move, time } = state;
@@ -63,8 +64,8 @@ const drawAll = () => {
 };
 const invitation = (move, several) => {
   if (!several) return "A motion of something that bends, over the plain cycloid of the same move.";
-  if (move.joined) return "Every point is a way to make this move, and the curve has the best of them. Drag along it.";
-  return "Every point is a way to make this move. Drag from one to the next.";
+  if (!move.joined) return "Each point is a way to make this move. Drag the ring from one to the next.";
+  return "Each point is a way to make this move. Drag the ring: left is stiller, right takes less energy.";
 };
 // Motions with names, of which some may lie on each other.
 const beginNames = (points) => {
@@ -167,7 +168,7 @@ addEventListener("keydown", (event) => {
 });
 stillness.addEventListener("change", () => play(!stillness.matches));
 
-// In a frame of another page: it says the colours by {quietarm: {theme: "dark"}} and keys by {quietarm: {key: "ArrowLeft"}}, and is told how high this page is.
+// In a frame of another page: it says the colours by {quietarm: {theme: "dark"}}, keys by {quietarm: {key: "ArrowLeft"}} and that the ring has the keys from now on by {quietarm: {focus: true}}, and is told how high this page is.
 document.documentElement.classList.toggle("framed", framed);
 const tellHeight = () => {
   if (framed) window.parent.postMessage({ quietarm: { height: Math.ceil(document.querySelector("main").getBoundingClientRect().height) } }, "*");
@@ -177,6 +178,7 @@ const tellHeight = () => {
 let drawnSize = "";
 addEventListener("message", ({ data }) => {
   if (Object.hasOwn(SIDEWAYS, data?.quietarm?.key ?? "")) chooseBy(data.quietarm.key);
+  if (data?.quietarm?.focus === true) beginKeys();
   const theme = data?.quietarm?.theme;
   if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;
   if (theme === "auto") delete document.documentElement.dataset.theme;
