@@ -13,10 +13,10 @@ const showMotion = () => {
   showTime();
 };
 const showWords = () => {
-  const { figure_names: names, cycloid, beside, factor, unit, rest } = state.move;
+  const { figure_names: names, cycloid } = state.move;
   const point = chosen();
   byId("names").value = state.point;
-  byId("sentence").textContent = unbroken(point.sentence);
+  say(point);
   const rows = byId("figures");
   rows.replaceChildren();
   names.forEach((name, k) => {
@@ -27,6 +27,11 @@ const showWords = () => {
       if (motion.notes[k]) element(cell, "small", motion.notes[k]);
     }
   });
+};
+// What a motion trades, and the nearest ones of other methods.
+const say = (point) => {
+  const { beside, factor, unit, rest } = state.move;
+  byId("sentence").textContent = unbroken(point.sentence);
   const others = beside.filter(({ kind, points }) => kind !== "plan" && points.length && points[0][0] !== null);
   const words = others.map(({ label, points }) => {
     const [residual, energy] = points.reduce((best, other) => (Math.abs(other[0] - point.residual) < Math.abs(best[0] - point.residual) ? other : best));
@@ -34,6 +39,18 @@ const showWords = () => {
     return `${label}${points.length > 1 ? ", nearest" : ""}: ${still}, ${energy.toPrecision(3)} J`;
   }).join("; ");
   byId("nearest").textContent = unbroken(words.charAt(0).toUpperCase() + words.slice(1));
+};
+// Room for the longest words of all motions, so that nothing below them jumps.
+const LONGEST = 4; // of the sentences: the one with the most letters need not have the most lines
+const holdRoom = () => {
+  const room = byId("sentence").parentElement;
+  room.style.minHeight = "";
+  const byLength = [...state.move.points].sort((a, b) => b.sentence.length - a.sentence.length);
+  const heights = byLength.slice(0, LONGEST).map((point) => {
+    say(point);
+    return room.offsetHeight;
+  });
+  room.style.minHeight = `${Math.max(...heights)}px`;
 };
 const showTime = () => {
   const { move, time } = state;
@@ -60,6 +77,7 @@ const drawAll = () => {
   drawSwing();
   drawPanels();
   ghostTrails = trailsOf(ofCycloid(state.move.scores));
+  holdRoom();
   showMotion();
 };
 const invitation = (move, several) => {
@@ -86,7 +104,6 @@ const take = (move) => {
   const several = lastPoint() > 0;
   byId("heading").textContent = several ? "How still, for how much energy?" : "A motion, and the plain cycloid";
   byId("choosing").hidden = !several;
-  byId("sentence").classList.toggle("changes", several);
   beginNames(move.points);
   byId("invitation").textContent = invitation(move, several);
   byId("title").textContent = unbroken(`${move.title}.`);
