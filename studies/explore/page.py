@@ -240,7 +240,9 @@ def _facts(explored: Explored) -> str:
     facts["computed in"] = facts.pop("time")
     if explored.of_front:
         facts["status"] = "a point of the front"
-    lines = (f"<div><b>{escape(name)}</b> {escape(raised(value))}</div>" for name, value in facts.items())
+    lines = (
+        f"<div><b>{escape(name)}</b> {escape(raised(value))}</div>" for name, value in facts.items()
+    )
     return "".join(lines)
 
 

@@ -99,7 +99,10 @@ class Plots:
             self._sources[name].data = table.to_dict("list")
         zero = [] if explored.front else [0.0]  # few points alone would say nothing of their size
         for at, direction in zip(_POINT, (self._front.x_range, self._front.y_range)):
-            drawn = [*zero, *(value for name in _ON_FRONT for value in self._sources[name].data[at])]
+            drawn = [
+                *zero,
+                *(value for name in _ON_FRONT for value in self._sources[name].data[at]),
+            ]
             low = min(drawn)
             high = max(drawn)
             room = _ROOM * (high - low) or 1.0

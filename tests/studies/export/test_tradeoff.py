@@ -66,8 +66,8 @@ def test_a_point_says_what_it_trades(shown):
     # README: at rest within the box 0.0445 J, the plain cycloid 0.0911 J and 77 mm
     assert re.fullmatch(
         r"The tip arrives at rest and takes 0\.044\d J, 51 % less energy than the plain cycloid, "
-        r"which leaves it swinging by up to 77\.1 mm\. One millimetre of residual vibration would save about "
-        r"0\.\d+ mJ\.",
+        r"which leaves it swinging by up to 77\.1 mm\. One millimetre of residual vibration would "
+        r"save about 0\.\d+ mJ\.",
         first["sentence"],
     )
     share = 1 - second["energy"] / first["energy"]
@@ -210,7 +210,9 @@ def test_plans_are_chosen_among_themselves_and_their_limits_are_drawn(plan, cycl
     limited = replace(plan, task=task)
     (move,) = trade_off({"limited": limited, "plain": cycloid}).moves
     assert [point["name"] for point in move["points"]] == ["limited", "plain"]
-    assert move["points"][0]["sentence"].startswith("limited: the tip arrives at rest and takes 0.0")
+    assert move["points"][0]["sentence"].startswith(
+        "limited: the tip arrives at rest and takes 0.0"
+    )
     assert move["panels"]["torque"]["limits"] == [[-0.3, 0.2]]
     with pytest.raises(ValueError, match="61 plans of one move are given, of which a page shows"):
         trade_off({str(number): plan for number in range(61)})

@@ -390,8 +390,8 @@ def test_the_axis_ends_beyond_all_marks_and_the_key_has_the_marks_of_the_front(o
     assert "the paper's best (6 terms)" in key
 
 
-# Of every picture the words that are cut, that other words cover, or that a curve or a mark crosses;
-# lines of a grid are behind the words, which have a halo.
+# Of every picture the words that are cut, that other words cover, or that a curve or a mark
+# crosses; lines of a grid are behind the words, which have a halo.
 CROSSED = """() => {
     const boxOf = (element) => {
         const {left, right, top, bottom} = element.getBoundingClientRect();
