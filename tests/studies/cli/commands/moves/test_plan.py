@@ -109,7 +109,7 @@ def test_the_force_of_a_linear_drive_falls_with_speed(done, typed):
         "evaluate linear-axis --target 300mm --duration 1.0 --coefficients 0 --quiet "
         f"--output e.json --torque-speed {typed}"
     )
-    assert "torque-speed 100N@0,40N@0.5" in out
+    assert "force-speed 100N@0,40N@0.5" in out
     plan = Plan.load("e.json")
     assert plan.task.torque_speed == ((100.0, 0.0), (40.0, 0.5))
     # force + 120 N s/m |speed| within 100 N: the line's force, less its fall, by hand
