@@ -32,10 +32,11 @@ def joint_unit(unit: str, joint: str) -> str:
 
 
 def joint_label(label: str, joint: str) -> str:
-    """A label of a rotary joint's quantity likewise: joint torque is drive force."""
+    """A label of a rotary joint's quantity likewise: joint torque is drive force, torque force."""
     if joint == ROTARY:
         return label
-    return label.replace("joint torque", "drive force").replace("angle", "position")
+    label = label.replace("joint torque", "drive force").replace("torque", "force")
+    return label.replace("angle", "position")
 
 
 def deg(degrees: float) -> float:

@@ -40,6 +40,8 @@ class Quantity:
         Its place among the panels of a picture, from the joint's motion to the torque.
     always_drawn : bool
         Whether a picture of a motion has it where no task limits it, too.
+    joint : str
+        The kind of joint whose unit and label these are.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Quantity:
     in_scenarios: bool = False
     panel: int = 5
     always_drawn: bool = False
+    joint: str = ROTARY
 
     @property
     def limit(self) -> str:
@@ -141,6 +144,7 @@ def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
             quantity,
             unit=unit_of(quantity.unit, joint, tip_unit),
             label=joint_label(quantity.label, joint),
+            joint=joint,
         )
         for name, quantity in QUANTITIES.items()
     }
@@ -255,7 +259,7 @@ class TorqueSpeedLine:
     joint: str = ROTARY
 
     def __post_init__(self) -> None:
-        words = joint_label("joint torque", self.joint).split()[-1]
+        words = joint_label("torque", self.joint)
         try:
             pairs = [(torque, speed) for torque, speed in self.points]
         except (TypeError, ValueError):
@@ -366,7 +370,7 @@ class Limit:
     def of_line(cls, line: TorqueSpeedLine) -> Limit:
         """Of the torque by a torque-speed line."""
         return cls(
-            Quantity(TORQUE_SPEED, "", "share of the drive's torque", line),
+            Quantity(TORQUE_SPEED, "", "share of the drive's torque", line, joint=line.joint),
             -1.0,
             1.0,
         )
@@ -378,8 +382,8 @@ class Limit:
 
     @property
     def label(self) -> str:
-        """What messages call it: as its option, torque-speed, or the quantity."""
-        return self.name.replace("_", "-")
+        """What messages call it: torque-speed, or the quantity; of a linear joint a force."""
+        return joint_label(self.name.replace("_", "-"), self.quantity.joint)
 
     @property
     def both_ways(self) -> bool:

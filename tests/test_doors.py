@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import quietarm as qa
+from quietarm.models import LinearAxis
 
 # Of these classes; `Motions` is what the pictures of motions take.
 KINDS = (
@@ -308,3 +309,11 @@ def test_a_notebook_shows_what_a_robust_plan_is_worth():
     worst = f"{plan.worst.residual:.3g} m with frequency "
     assert f"<td>worst-case residual</td><td>{worst}" in shown
     assert "<td>limits</td><td>torque 0.5 N m, torque-speed 1.5Nm@0,0.8Nm@20</td>" in shown
+
+
+def test_a_notebook_shows_forces_of_a_linear_axis():
+    task = qa.PointToPoint(LinearAxis(), 0.3, 0.8, torque_limit=90.0)
+    shown = qa.evaluate_coefficients(task, [0.01])._repr_html_()
+    assert "<td>limits</td><td>force 90 N</td>" in shown
+    assert re.search(r"<td>peak force</td><td>[\d.]+ N</td>", shown)
+    assert "torque" not in shown

@@ -11,8 +11,25 @@ addEventListener("message", ({ data, source }) => {
 });
 addEventListener("DOMContentLoaded", () => {
   frames().forEach(tellTheme);
+  addSkip();
   new MutationObserver(() => frames().forEach(tellTheme)).observe(document.body, { attributes: true, attributeFilter: ["data-theme"] });
 });
+
+// A link at the page's start by which the keyboard is at the first frame's ring, without a press of Tab for every link of the side bar.
+const addSkip = () => {
+  const [frame] = frames();
+  const start = document.querySelector(".skip-to-content");
+  if (!frame || !start) return;
+  frame.id ||= "front-to-drag";
+  const link = Object.assign(document.createElement("a"), { href: `#${frame.id}`, className: start.className, textContent: "Skip to the front to drag" });
+  link.addEventListener("click", (event) => {
+    event.preventDefault();
+    frame.scrollIntoView();
+    frame.focus({ preventScroll: true });
+    tell(frame, { focus: true });
+  });
+  start.after(link);
+};
 
 // Left and right go to the frame that is in sight, or under the mouse; up and down scroll this page, as ever.
 const CHART = 300; // pixels at the top of a frame in which its front is

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quietarm.models.joint_motion import ROTARY, joint_unit
+from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, NotNegative, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
@@ -196,7 +196,9 @@ class Plan(MotionAnswer):
             "status": self.status.text,
         }
         joint = task.plant.joint
-        return to_html((name, joint_unit(words, joint)) for name, words in rows.items())
+        return to_html(
+            (joint_label(name, joint), joint_unit(words, joint)) for name, words in rows.items()
+        )
 
     def _robust_rows(self) -> dict[str, str]:
         """What a notebook shows of parameter errors: their ranges, and the worst case."""

@@ -19,7 +19,7 @@ import numpy as np
 from quietarm.metaheuristics.objective.noise import noise_share
 from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
+from quietarm.models.joint_motion import LINEAR, ROTARY, joint_label, joint_unit
 from quietarm.models.units import is_number, parse_quantity
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, has_no, known, unknown, whole
@@ -123,7 +123,8 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
         return {of: parse_of_plant(name, value, joint, tip_unit) for of, value in by_joint.items()}
     limited = quantities[name.removesuffix("_limit")]
     sides = text.split(":")
-    what = f"a{'n' * (limited.name == 'acceleration')} {limited.name}"
+    article = "an" if limited.name == "acceleration" else "a"
+    what = f"{article} {joint_label(limited.name, joint)}"
     values = [parse_usual(limited.unit, what, side) for side in sides]
     if len(values) > 2:
         raise ValueError(f"{text!r} is no limit; give one number, or one for each side as -30:40")

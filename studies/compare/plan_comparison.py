@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from quietarm.models.joint_motion import ROTARY, joint_unit
+from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Plan, PointToPoint, QuietarmError
 from quietarm.ocp.checks import takes
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
@@ -97,7 +97,7 @@ def motions_table(
     """A row for each motion with all its figures; what is known of none is left out."""
     rows = [{"motion": motion.name, **dict(_cells(motion, tip_unit))} for motion in motions]
     table = pd.DataFrame(rows).dropna(axis=1, how="all")
-    return table.rename(columns=lambda name: joint_unit(str(name), joint))
+    return table.rename(columns=lambda name: joint_label(joint_unit(str(name), joint), joint))
 
 
 def _cells(judged: JudgedMotion, tip_unit: str) -> Iterator[tuple[str, float | str | None]]:

@@ -12,14 +12,14 @@ from typing import Any, NamedTuple
 
 from quietarm.metaheuristics import PAPER_BOX
 from quietarm.models import Plant
-from quietarm.models.joint_motion import ROTARY, joint_unit
+from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Front, Plan, PointToPoint, epsilon_front, evaluate_coefficients, plan_move
 from quietarm.ocp.front.curve import Progress, no_report
 from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.window import default_window
 from quietarm.studies.export.formats import export_plan
 from quietarm.studies.reading.profiles import families, profile_of
-from quietarm.studies.report.words import moved
+from quietarm.studies.report.words import moved, raised
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary
 
@@ -73,7 +73,8 @@ class Explored:
     front: Front | None = None
     kept: Plan | None = None
     reach: tuple[float, ...] = ()
-    """Range of every coefficient by hand, on either side of 0: the box, or what is beyond it."""
+    """Range of every coefficient by hand, on either side of 0: the box, or more where it is beyond
+    that or at its edge."""
     opened: PointToPoint | None = None
     """The move of the first plan; its dials keep their ranges."""
 
@@ -85,10 +86,16 @@ class Explored:
         object.__setattr__(self, "opened", self.opened or self.task)
 
     def _range(self, coefficient: float) -> float:
-        """The bound that the gradient is asked for, the profile's own or the paper's; or more."""
+        """The bound that the gradient is asked for, the profile's own or the paper's; or more.
+
+        A coefficient at its end is given room: else its handle could go one way alone.
+        """
         of_profile = self.plan.profile.default_bound
         box = self.bound or of_profile or PAPER_BOX.get(self.plan.task.plant.name, _USUAL_BOX)
-        tenths = ceil(abs(coefficient) / _TENTH - 1e-9)
+        room = 0.02  # of a coefficient: so far at least is the end of its slider
+        if (1 + room) * abs(coefficient) <= box:
+            return box
+        tenths = ceil((1 + room) * abs(coefficient) / _TENTH)
         return max(box, float(f"{tenths * _TENTH:.6g}"))
 
     @property
@@ -119,7 +126,10 @@ class Explored:
         for axis in self.library.grid.axes if self.library else ():
             ends[axis.name] = axis.unit, axis.values[0], axis.values[-1]
         quantities = quantities_of(joint, tip_unit).values()
-        limits = {quantity.limit: (quantity.name, quantity.unit) for quantity in quantities}
+        limits = {
+            quantity.limit: (joint_label(quantity.name, joint), raised(quantity.unit))
+            for quantity in quantities
+        }
         limits |= {"residual_limit": ("residual", tip_unit), "bound": ("largest |a_n|", "-")}
         return {
             **{name: _dial("move", name, *end) for name, end in ends.items()},

@@ -33,8 +33,10 @@ from quietarm.ocp import QuietarmError
 from quietarm.studies.explore.move import FILES, Dial, Explored
 from quietarm.studies.explore.plots import PANELS, Plots
 from quietarm.studies.figures.grammar import INK, RED
+from quietarm.studies.figures.meaning import is_plain_cycloid
 from quietarm.studies.reading.profiles import families
 from quietarm.studies.report.moves import HARD_REMEDIES, plan_rows
+from quietarm.studies.report.words import raised
 
 Change = Callable[[Explored], Explored]
 _WAIT = 5
@@ -66,6 +68,7 @@ class Page:
         self._file.js_on_change("data", save)
         self._shape = Column(name="shape")
         self._figures = Div(name="figures")
+        self._key = Div(name="key", styles={"color": "#57606a", "font-size": ".85rem"})
         self._said = Div(name="said", tags=[self._file])  # it is part of the document as a tag
         self._buttons = [
             _button(
@@ -102,7 +105,7 @@ class Page:
         self._document.js_on_event("document_ready", fine)
         answers = [plant, Row(children=[profile, terms]), _in_twos(self._buttons)]
         return [
-            self._said, self._figures, *self._plots.roots, self._shape,
+            self._said, self._figures, self._key, *self._plots.roots, self._shape,
             Column(children=answers, name="answers"), moved, limits, _in_twos(files, "files"),
         ]  # fmt: skip
 
@@ -153,6 +156,7 @@ class Page:
         def report(done: int, total: int) -> None:
             words = f"front: {done} of {total} points"
             self._document.add_next_tick_callback(partial(self._say, words))
+            self._document.add_next_tick_callback(partial(self._plots.entitle_front, words))
 
         self._begin(lambda explored: explored.find_front(report), "front ...")
 
@@ -213,6 +217,7 @@ class Page:
             if not _same(field.value, explored.shown[name]):
                 field.value = explored.shown[name]
         self._figures.text = _facts(explored)
+        self._key.text = _key(explored)
         self._buttons[-1].label = "Drop curve" if explored.kept is explored.plan else "Keep curve"
         self._plots.show(explored)
 
@@ -235,8 +240,25 @@ def _facts(explored: Explored) -> str:
     facts["computed in"] = facts.pop("time")
     if explored.of_front:
         facts["status"] = "a point of the front"
-    lines = (f"<div><b>{escape(name)}</b> {escape(value)}</div>" for name, value in facts.items())
+    lines = (
+        f"<div><b>{escape(name)}</b> {escape(raised(value))}</div>" for name, value in facts.items()
+    )
     return "".join(lines)
+
+
+def _key(explored: Explored) -> str:
+    """What the colours and lines are that can be seen now."""
+    colour = "Green" if explored.task.ranges else "Blue"
+    words = [f"{colour}: this motion, a ring beside the front"]
+    if is_plain_cycloid(explored.plan):
+        words[0] += "; it still is the plain cycloid"
+    else:
+        words.append("grey: the plain cycloid of the same move")
+    if explored.kept:
+        words.append("red, dashed: the curve that was kept")
+    limits = "limits that the motion comes near, and " if explored.task.limits else ""
+    words.append(f"dotted: {limits}5 % of the plain cycloid's residual, over the frequency error")
+    return "; ".join(words) + ". After arrival curves are lighter."
 
 
 def _button(label: str, pressed: Callable[[], Any], **look: Any) -> Button:

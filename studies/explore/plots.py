@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -56,9 +56,12 @@ _BODY = ("xs", "ys", "colour", "width")
 _POINT = ("x", "y")
 _COLUMNS: Mapping[str, tuple[str, ...]] = {
     "film": (*_BODY, "frames", "words"), "paths": _TRAIL, "corners": _POINT,
-    "points": _POINT, "here": _POINT, **dict.fromkeys(("robustness", *PANELS), _CURVE),
+    "points": _POINT, "here": _POINT, "cycloid": _POINT,
+    **dict.fromkeys(("robustness", *PANELS), _CURVE),
 }  # fmt: skip
 """Of the source of everything that is drawn."""
+_ON_FRONT = ("points", "here", "cycloid")
+"""Sources of what lies on the plane of the front."""
 
 
 class Plots:
@@ -80,28 +83,34 @@ class Plots:
 
     def show(self, explored: Explored) -> None:
         """Show another motion in all plots."""
-        words = "Press Front to see what each millimetre saves"
+        self.entitle_front("press Front for the least energy of each residual")
         if explored.front:
-            words = "front: click near it for a motion of it"
-        self._front.title.text = words
+            self.entitle_front("front: click near it for a motion of it")
         colour = MEANINGS[_meaning(explored.plan)].colour
-        line, marks, _ = self._front.renderers
+        line, marks, _, here = self._front.renderers
         line.glyph.line_color = colour
         marks.glyph.update(line_color=colour, fill_color=colour)
-        self._front.axis.visible = self._front.grid.visible = bool(explored.front)
-        self._front.outline_line_alpha = float(bool(explored.front))
+        here.glyph.line_color = INK if explored.front else colour
         self._front.xaxis.axis_label = residual_label(
             explored.task.plant.tip_unit, explored.task.residual_window
         )
         for name, rows in _drawn(explored).items():
             table = pd.DataFrame(rows, columns=_COLUMNS[name])
             self._sources[name].data = table.to_dict("list")
+        zero = [] if explored.front else [0.0]  # few points alone would say nothing of their size
         for at, direction in zip(_POINT, (self._front.x_range, self._front.y_range)):
-            drawn = [*self._sources["points"].data[at], *self._sources["here"].data[at]]
-            low = min(drawn, default=0.0)
-            high = max(drawn, default=1.0)
+            drawn = [
+                *zero,
+                *(value for name in _ON_FRONT for value in self._sources[name].data[at]),
+            ]
+            low = min(drawn)
+            high = max(drawn)
             room = _ROOM * (high - low) or 1.0
             direction.update(start=low - room, end=high + room)
+
+    def entitle_front(self, words: str) -> None:
+        """Say above the front what can be done there, or how far it is."""
+        self._front.title.text = words
 
     def _stage(self, document: Document) -> Any:
         """The structure, which the browser plays by itself."""
@@ -132,18 +141,19 @@ class Plots:
         }
         plot: Any = figure(name="front", tools="", x_axis_label=" ",
                            y_axis_label="energy F2 [J]", **ranges)  # fmt: skip
-        points = self._sources["points"]
-        here = self._sources["here"]
+        points, here, cycloid = (self._sources[name] for name in _ON_FRONT)
 
         def tapped(event: Tap) -> None:
-            drawn = pd.DataFrame(points.data), pd.DataFrame(here.data)
-            nearest = _nearest(*drawn, (float(event.x or 0.0), float(event.y or 0.0)))
+            drawn = [pd.DataFrame(source.data) for source in (points, here, cycloid)]
+            nearest = _nearest(drawn, (float(event.x or 0.0), float(event.y or 0.0)))
             if nearest is not None:
                 pick(nearest)
 
         plot.on_event(Tap, tapped)
         plot.line(*_POINT, source=points)
         plot.scatter(*_POINT, source=points, size=7)
+        plot.scatter(*_POINT, source=cycloid, size=9, marker="square",
+                     color=MEANINGS["plain cycloid"].colour)  # fmt: skip
         plot.scatter(*_POINT, source=here, fill_alpha=0, line_color=INK, size=17, line_width=2.5,
                      level="overlay")  # fmt: skip
         return plot
@@ -156,11 +166,12 @@ class Plots:
         return plot
 
 
-def _nearest(points: pd.DataFrame, here: pd.DataFrame, clicked: tuple[float, float]) -> int | None:
-    """The number of the point of the front that is nearest to a place, as it is drawn."""
+def _nearest(drawn: Sequence[pd.DataFrame], clicked: tuple[float, float]) -> int | None:
+    """The number of the front's point, the first of what is drawn, that is nearest to a place."""
+    points, *_ = drawn
     if points.empty:
         return None
-    spans = np.ptp(pd.concat([points, here]).to_numpy(float), axis=0)
+    spans = np.ptp(pd.concat(drawn).to_numpy(float), axis=0)
     away = (points.to_numpy(float) - clicked) / np.where(spans > 0, spans, 1.0)
     return int((away**2).sum(axis=1).argmin())
 
@@ -180,8 +191,12 @@ def _drawn(explored: Explored) -> dict[str, Rows]:
     drawn = lines[1]
     scale = tip_scale(plan.task.plant.tip_unit)[1]
     points = [(scale * point.residual, point.energy) for point in front]
-    here = [(scale * plan.residual, plan.energy)] * bool(front)
-    rows = {"points": points, "here": here, "robustness": _robustness(plan, drawn.colour)}
+    rows = {
+        "points": points,
+        "here": [(scale * plan.residual, plan.energy)],
+        "cycloid": [(scale * cycloid.residual, cycloid.energy)],
+        "robustness": _robustness(plan, drawn.colour),
+    }
     in_order = [ghost, *lines[2:], drawn]  # this motion above the others
     return rows | _film(drawn, ghost) | {name: _quantity(in_order, name) for name in PANELS}
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from quietarm.models.joint_motion import joint_label, joint_unit
 from quietarm.studies.figures.axes import new_figure
 from quietarm.studies.figures.grammar import BLUE, FAINT, GREY, INK, RED
 from quietarm.studies.identify import Identified, Part, Recording
@@ -72,7 +73,9 @@ def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[R
         f"noise {part.noise:.1%}", loc="left", fontsize=8,
     )  # fmt: skip
     quantity = next(iter(recording.signals))
-    over.set_ylabel(f"{quantity}\n[{units[quantity]}]", fontsize=8)
+    joint = machine.plant.joint
+    unit = joint_unit(units[quantity], joint)
+    over.set_ylabel(f"{joint_label(quantity, joint)}\n[{unit}]", fontsize=8)
     over.tick_params(labelbottom=False)
     gap = np.append(np.diff(time) > 3 * np.median(np.diff(time)), False)
     below.plot(time, np.where(gap, np.nan, 100 * residual / size), color=RED, linewidth=0.6)

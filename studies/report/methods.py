@@ -37,3 +37,10 @@ def label_of(method: str, solver: str = "") -> str:
     if alone != name:
         words += ", polished"
     return f"{words} {bracket}{settings}" if bracket else words
+
+
+def described(method: str) -> str:
+    """A method of fronts with what it is, for who does not know its name: search (NSGA-II)."""
+    kind = "gradient" if is_gradient(method) else "search"
+    name = label_of(method).replace(" (", "; ").removesuffix(")")
+    return f"{kind} ({name})"

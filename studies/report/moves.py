@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quietarm.models.joint_motion import ROTARY, joint_unit
+from quietarm.models.joint_motion import joint_label, joint_unit
 from quietarm.ocp import (
     CycloidPolynomial,
     Floor,
@@ -55,8 +55,8 @@ and within this share of the time that the plain cycloid takes."""
 _FAR = 0.1
 """A limit that a motion does not come to this share of does not act, and silences no warning."""
 _SEEN = 1e-6
-_ROUNDING = 1e-12
-"""A joint turns back where it does so by more [rad]; smaller angles are rounding errors."""
+_ROUNDING = 1e-9
+"""A joint passes its target where it does so by more [rad, m]; less is a rounding error."""
 
 
 def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[Row]:
@@ -250,8 +250,7 @@ def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]
 
 
 def _peak_name(name: str, task: PointToPoint) -> str:
-    force = name == "torque" and task.plant.joint != ROTARY
-    return f"peak {'force' if force else name.replace('_', ' ')}"
+    return joint_label(f"peak {name.replace('_', ' ')}", task.plant.joint)
 
 
 def _tip(task: PointToPoint, displacement: float) -> str:

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import quietarm as qa
-from quietarm.models import JointMotion
+from quietarm.models import JointMotion, LinearAxis
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.sample import sample_plant
 
@@ -50,6 +50,10 @@ def test_limits_of_one_direction_and_of_the_speed():
     assert (task.acceleration_limit, task.torque_limit) == ((-30.0, 40.0), 0.3)
     words = "torque 0.3 N m", "acceleration -30 to 40 rad/s^2", "torque-speed 1.5Nm@0,0.8Nm@20"
     assert tuple(map(str, task.limits)) == words
+    axis = qa.PointToPoint(
+        LinearAxis(), 0.3, 0.8, torque_limit=90.0, torque_speed=[(99, 0), (9, 2)]
+    )
+    assert tuple(map(str, axis.limits)) == ("force 90 N", "force-speed 99N@0,9N@2")
     # 1.5 N m less 0.035 N m s of the speed: half of it at 10 rad/s is 0.575 N m, in any direction
     line = task.limits[-1].quantity.values
     for torque, speed in ((0.575, 10.0), (-0.575, 10.0), (0.575, -10.0)):

@@ -80,9 +80,9 @@ const drawCycloid = (plot, box) => {
   front.cycloid = { at: [x, y], words: draw(plot, "text", { "text-anchor": "middle", class: "halo" }, unbroken(words)) };
 };
 const WORDS_FROM = 14; // pixels below the top of the picture, where the unit of the energy stands
-const placeCycloidsWords = (knob) => {
+const placeCycloidsWords = (handle) => {
   const { at, words } = front.cycloid;
-  const { middle, base, box } = placeWords(words, at, 9, [...front.obstacles, knob], { ...front.box, top: WORDS_FROM });
+  const { middle, base, box } = placeWords(words, at, 9, [...front.obstacles, ...handle], { ...front.box, top: WORDS_FROM });
   setAll(words, { x: middle, y: base });
   return box;
 };
@@ -122,7 +122,7 @@ const drawKey = () => {
   const markOf = (look, size) => (picture) => mark(picture, look, [11, 7], size);
   entry(method, joined && points.length > 1 ? (picture) => draw(picture, "path", { d: "M0 7H22", stroke: "var(--this)", "stroke-width": 2.6 }) : markOf({ mark: sign, colour: own, filled: points[0].name !== "" }));
   for (const others of beside) entry(others.label, markOf({ ...others, filled: isFilled(others) }));
-  entry("plain cycloid", markOf({ ...CYCLOID, filled: !front.cycloidIsOutside }, 1.5));
+  entry("plain cycloid (not optimised)", markOf({ ...CYCLOID, filled: !front.cycloidIsOutside }, 1.5));
 };
 
 const coarse = matchMedia("(pointer: coarse)");
@@ -136,8 +136,9 @@ const placeHandle = () => {
   const invitation = coarse.matches ? "drag me" : "drag, or use the arrow keys";
   const spot = byId("spot");
   spot.textContent = front.touched || !several ? unbroken(point.spot) : invitation;
-  const ofCycloid = placeCycloidsWords(boxAround([x, y], KNOB));
-  const { middle, base } = placeWords(spot, [x, y], KNOB + 1, [...front.obstacles, ofCycloid], { ...front.box, top: WORDS_FROM });
+  const guides = [{ left, right: x, top: y - 1, bottom: y + 1 }, { left: x - 1, right: x + 1, top: y, bottom }];
+  const ofCycloid = placeCycloidsWords([boxAround([x, y], KNOB), ...guides]);
+  const { middle, base } = placeWords(spot, [x, y], KNOB + 1, [...front.obstacles, ...guides, ofCycloid], { ...front.box, top: WORDS_FROM });
   setAll(spot, { x: middle - x, y: base - y });
 };
 const choose = (number) => {
@@ -176,6 +177,10 @@ const ENDS = { Home: -Infinity, End: Infinity };
 const chooseBy = (key) => {
   byId("handle").classList.add("keyed");
   choose(state.point + { ...SIDEWAYS, ...UPRIGHT, ...ENDS }[key]);
+};
+const beginKeys = () => {
+  byId("handle").classList.add("keyed");
+  byId("handle").focus({ preventScroll: true });
 };
 addEventListener("keydown", (event) => {
   const { key, target } = event;

@@ -13,10 +13,10 @@ const showMotion = () => {
   showTime();
 };
 const showWords = () => {
-  const { figure_names: names, cycloid, beside, factor, unit, rest } = state.move;
+  const { figure_names: names, cycloid } = state.move;
   const point = chosen();
   byId("names").value = state.point;
-  byId("sentence").textContent = unbroken(point.sentence);
+  say(point);
   const rows = byId("figures");
   rows.replaceChildren();
   names.forEach((name, k) => {
@@ -27,12 +27,30 @@ const showWords = () => {
       if (motion.notes[k]) element(cell, "small", motion.notes[k]);
     }
   });
+};
+// What a motion trades, and the nearest ones of other methods.
+const say = (point) => {
+  const { beside, factor, unit, rest } = state.move;
+  byId("sentence").textContent = unbroken(point.sentence);
   const others = beside.filter(({ kind, points }) => kind !== "plan" && points.length && points[0][0] !== null);
-  byId("nearest").textContent = unbroken(others.map(({ label, points }) => {
+  const words = others.map(({ label, points }) => {
     const [residual, energy] = points.reduce((best, other) => (Math.abs(other[0] - point.residual) < Math.abs(best[0] - point.residual) ? other : best));
-    const words = residual < rest ? "at rest" : `${(factor * residual).toPrecision(3)} ${unit}`;
-    return `${label}${points.length > 1 ? ", nearest" : ""}: ${words}, ${energy.toPrecision(3)} J`;
-  }).join("; "));
+    const still = residual < rest ? "at rest" : `${(factor * residual).toPrecision(3)} ${unit}`;
+    return `${label}${points.length > 1 ? ", nearest" : ""}: ${still}, ${energy.toPrecision(3)} J`;
+  }).join("; ");
+  byId("nearest").textContent = unbroken(words.charAt(0).toUpperCase() + words.slice(1));
+};
+// Room for the longest words of all motions, so that nothing below them jumps.
+const LONGEST = 4; // of the sentences: the one with the most letters need not have the most lines
+const holdRoom = () => {
+  const room = byId("sentence").parentElement;
+  room.style.minHeight = "";
+  const byLength = [...state.move.points].sort((a, b) => b.sentence.length - a.sentence.length);
+  const heights = byLength.slice(0, LONGEST).map((point) => {
+    say(point);
+    return room.offsetHeight;
+  });
+  room.style.minHeight = `${Math.max(...heights)}px`;
 };
 const showTime = () => {
   const { move, time } = state;
@@ -59,12 +77,13 @@ const drawAll = () => {
   drawSwing();
   drawPanels();
   ghostTrails = trailsOf(ofCycloid(state.move.scores));
+  holdRoom();
   showMotion();
 };
 const invitation = (move, several) => {
   if (!several) return "A motion of something that bends, over the plain cycloid of the same move.";
-  if (move.joined) return "Every point is a way to make this move, and the curve has the best of them. Drag along it.";
-  return "Every point is a way to make this move. Drag from one to the next.";
+  if (!move.joined) return "Each point is a way to make this move. Drag the ring from one to the next.";
+  return "Each point is a way to make this move. Drag the ring: left is stiller, right takes less energy.";
 };
 // Motions with names, of which some may lie on each other.
 const beginNames = (points) => {
@@ -85,7 +104,6 @@ const take = (move) => {
   const several = lastPoint() > 0;
   byId("heading").textContent = several ? "How still, for how much energy?" : "A motion, and the plain cycloid";
   byId("choosing").hidden = !several;
-  byId("sentence").classList.toggle("changes", several);
   beginNames(move.points);
   byId("invitation").textContent = invitation(move, several);
   byId("title").textContent = unbroken(`${move.title}.`);
@@ -167,7 +185,7 @@ addEventListener("keydown", (event) => {
 });
 stillness.addEventListener("change", () => play(!stillness.matches));
 
-// In a frame of another page: it says the colours by {quietarm: {theme: "dark"}} and keys by {quietarm: {key: "ArrowLeft"}}, and is told how high this page is.
+// In a frame of another page: it says the colours by {quietarm: {theme: "dark"}}, keys by {quietarm: {key: "ArrowLeft"}} and that the ring has the keys from now on by {quietarm: {focus: true}}, and is told how high this page is.
 document.documentElement.classList.toggle("framed", framed);
 const tellHeight = () => {
   if (framed) window.parent.postMessage({ quietarm: { height: Math.ceil(document.querySelector("main").getBoundingClientRect().height) } }, "*");
@@ -177,6 +195,7 @@ const tellHeight = () => {
 let drawnSize = "";
 addEventListener("message", ({ data }) => {
   if (Object.hasOwn(SIDEWAYS, data?.quietarm?.key ?? "")) chooseBy(data.quietarm.key);
+  if (data?.quietarm?.focus === true) beginKeys();
   const theme = data?.quietarm?.theme;
   if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;
   if (theme === "auto") delete document.documentElement.dataset.theme;

@@ -19,8 +19,9 @@ from quietarm.ocp import (
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.ocp.simulation.mesh import default_steps
-from quietarm.studies.report.methods import is_gradient, label_of
-from quietarm.studies.report.words import title_of_picture
+from quietarm.studies.figures.comparison import KnownPoint
+from quietarm.studies.report.methods import described, is_gradient
+from quietarm.studies.report.words import counted, title_of_picture
 from quietarm.studies.reproduce.paper import paper_points
 
 MOST_MOTIONS = 60
@@ -156,15 +157,13 @@ def _move_of(group: Answers) -> Move:
     meaning = _plan_of(front.task)
     beside += [Beside(name, "plan", (_place(plan),), meaning) for name, plan in plans.items()]
     known = paper_points(front.task, [front.profile.size])
-    beside += [
-        Beside(point.label, "known", ((point.residual, point.energy),), "paper") for point in known
-    ]
+    beside += [_beside_known(point, front.profile.size) for point in known]
     return Move(
         label=label,
         task=front.task,
         choices=tuple(_choice(front, point) for point in points),
         cycloid=evaluate_coefficients(front.task, []),
-        method=f"front by {label_of(method)}",
+        method=described(method),
         joined=is_gradient(method) and not front.gaps,
         left_out=len(front.points) - len(points),
         beside=tuple(beside),
@@ -211,8 +210,15 @@ def _beside_front(front: Front) -> Beside:
     method = front.record.method
     places = tuple((point.residual, point.energy) for point in _along(front.points))
     if is_gradient(method):
-        return Beside(label_of(method), "gradient", places, _plan_of(front.task))
-    return Beside(label_of(method), "search", places, "search")
+        return Beside(described(method), "gradient", places, _plan_of(front.task))
+    return Beside(described(method), "search", places, "search")
+
+
+def _beside_known(point: KnownPoint, terms: int) -> Beside:
+    words = f"the paper's best ({counted(terms, 'term')})"
+    if point.residual is None:
+        words += ": energy as printed"
+    return Beside(words, "known", ((point.residual, point.energy),), "paper")
 
 
 def _plan_of(task: PointToPoint) -> str:

@@ -59,17 +59,29 @@ const drawPanel = (panel, quantity) => {
   draw(svg, "text", { x: (box.left + box.right) / 2, y: box.bottom + 31, "text-anchor": "middle" }, `time [${across.unit("s")}]`);
   draw(svg, "rect", { x: box.x(duration), y: box.top, width: box.right - box.x(duration), height: box.bottom - box.top, fill: "var(--after)" });
   draw(svg, "line", { x1: box.x(duration), x2: box.x(duration), y1: box.top, y2: box.bottom, stroke: "var(--arrival)", "stroke-dasharray": "4 3" });
-  draw(svg, "text", { x: Math.min(box.x(duration), box.right - 42), y: box.top - 5, "font-size": 11 }, "arrival");
+  const arrival = draw(svg, "text", { x: Math.min(box.x(duration), box.right - 42), y: box.top - 5, "font-size": 11 }, "arrival");
   draw(svg, "line", { x1: box.left, x2: box.right, y1: box.y(0), y2: box.y(0), stroke: "var(--soft)", "stroke-opacity": 0.5 });
-  for (const level of limits) draw(svg, "line", { x1: box.left, x2: box.right, y1: box.y(level), y2: box.y(level), stroke: "var(--limit)", "stroke-width": 1.5, "stroke-dasharray": "1.6 4", "stroke-linecap": "round" });
+  for (const level of limits) draw(svg, "line", { ...DOTTED, x1: box.left, x2: box.right, y1: box.y(level), y2: box.y(level) });
+  if (limits.length) nameLimit(svg, box, arrival);
   panel.placeOf = (value, k) => [box.x(times[k]), box.y(value)];
   const curve = (colour, wide) => [1, AFTER].map((seen) => draw(svg, "path", { ...ROUND, stroke: colour, "stroke-width": wide, "stroke-opacity": seen }));
   setCurve(panel, curve("var(--cycloid)", 1.7), ofCycloid(rows)[panel.line]);
   panel.curve = curve("var(--this)", 2.2);
-  if (limits.length) draw(svg, "text", { x: box.left + 4, y: box.y(Math.max(...limits)) + (Math.max(...limits) > 0 ? -4 : 13), "font-size": 11, class: "halo" }, "limit");
   panel.cursor = draw(svg, "line", { y1: box.top, y2: box.bottom, stroke: "var(--ink)", "stroke-width": 1.2 });
   panel.ghostDot = draw(svg, "circle", { r: 3.5, fill: "var(--cycloid)" });
   panel.dot = draw(svg, "circle", { r: 4.5, fill: "var(--this)", stroke: "var(--card)", "stroke-width": 1.2 });
+};
+const DOTTED = { stroke: "var(--limit)", "stroke-width": 1.5, "stroke-dasharray": "1.6 4", "stroke-linecap": "round" };
+// What the dotted lines are: above the picture, where no curve goes, on the side that the arrival leaves free.
+const nameLimit = (svg, box, arrival) => {
+  const text = draw(svg, "text", { y: box.top - 5, "font-size": 11 }, "limit");
+  const dots = draw(svg, "line", { ...DOTTED, y1: box.top - 9, y2: box.top - 9 });
+  const [sample, space] = [16, 5];
+  const wide = sample + space + text.getComputedTextLength();
+  const isFree = Number(arrival.getAttribute("x")) > box.left + wide + 2 * space;
+  const left = isFree ? box.left : box.right - wide;
+  setAll(dots, { x1: left + 1, x2: left + sample });
+  setAll(text, { x: left + sample + space });
 };
 // A curve until the arrival, and lighter from there on.
 const setCurve = (panel, [moving, after], row) => {

@@ -18,6 +18,9 @@ from quietarm.studies.tips import tip_scale
 _PREFIXES = {"nJ": 1e-9, "\u00b5J": 1e-6, "mJ": 1e-3, "J": 1.0}
 """Units of an energy, by which it has few zeros."""
 
+_ALIKE = 0.005
+"""Share by which two energies may differ and are the same to a reader."""
+
 
 @dataclass(frozen=True)
 class Figures:
@@ -87,9 +90,10 @@ def swing_words(choice: Choice) -> str:
     if choice.residual < REST:
         return _residual(choice)
     task = choice.plan.task
-    off = "" if task.final is None else "off what is asked by "
-    worst = " in the worst case" if task.ranges else ""
-    return f"swings {off}\u00b1{_residual(choice)}{worst}"
+    worst = " at worst" if task.ranges else ""
+    if task.final is not None:
+        return f"\u00b1{_residual(choice)} off what is asked{worst}"
+    return f"swings \u00b1{_residual(choice)}{worst}"
 
 
 def sentence(move: Move, choice: Choice) -> str:
@@ -140,9 +144,10 @@ def _digits(value: float, digits: int = 3) -> str:
 def _against_cycloid(move: Move, choice: Choice) -> str:
     """A motion beside the plain cycloid."""
     name = f"{choice.name}: the" if choice.name and len(move.choices) > 1 else "The"
-    takes = f"{name} tip {_arrival(choice)} for {_joules(choice.energy)}"
+    arrives = f"{name} tip {_arrival(choice)}"
+    takes = _joules(choice.energy)
     if is_plain_cycloid(choice.plan):
-        return f"{takes}; this is the plain cycloid itself."
+        return f"{arrives} and takes {takes}; this is the plain cycloid itself."
     cycloid = Choice(move.cycloid, move.cycloid.residual, move.cycloid.energy)
     than = _compared(choice.energy, cycloid.energy)
     does = f"leaves it swinging by up to {_residual(cycloid)}"
@@ -150,7 +155,19 @@ def _against_cycloid(move: Move, choice: Choice) -> str:
         does = f"is off that by up to {_residual(cycloid)}"
     if cycloid.residual < REST:
         does = f"arrives {_residual(cycloid)}, too"
-    return f"{takes}, {than} the plain cycloid, which {does}."
+    if not _buys_stillness(choice, cycloid):
+        return f"{arrives} and takes {takes}, {than} the plain cycloid, which {does}."
+    bought = "a still arrival" if choice.residual < REST else "a stiller arrival"
+    return (
+        f"{arrives}. That takes {takes}, {than} the plain cycloid, and buys {bought}: the cycloid "
+        f"{does}."
+    )
+
+
+def _buys_stillness(choice: Choice, cycloid: Choice) -> bool:
+    """Whether a motion takes more energy than the plain cycloid, and leaves less vibration."""
+    takes_more = choice.energy > (1 + _ALIKE) * cycloid.energy
+    return takes_more and choice.residual < cycloid.residual
 
 
 def _arrival(choice: Choice) -> str:
@@ -160,19 +177,18 @@ def _arrival(choice: Choice) -> str:
         return f"arrives {_residual(choice)}"
     worst = " in the worst case" if task.ranges else ""
     if task.final is not None:
-        return f"swings after arrival, by up to {_residual(choice)} off what is asked{worst},"
+        return f"swings by up to {_residual(choice)} off what is asked after arrival{worst}"
     return f"swings by up to {_residual(choice)} after arrival{worst}"
 
 
 def _compared(energy: float, of_cycloid: float) -> str:
-    """An energy beside the plain cycloid's: "51 % less than"."""
-    alike = 0.005  # share of which two energies are the same to a reader
-    if abs(energy - of_cycloid) <= alike * abs(of_cycloid):
-        return "as much as"
+    """An energy beside the plain cycloid's: "51 % less energy than"."""
+    if abs(energy - of_cycloid) <= _ALIKE * abs(of_cycloid):
+        return "as much energy as"
     if of_cycloid <= 0:
-        return f"which is {_joules(energy - of_cycloid)} more than"
+        return f"{_joules(energy - of_cycloid)} more energy than"
     share = energy / of_cycloid - 1
-    return f"{percents([abs(share)])} {'less' if share < 0 else 'more'} than"
+    return f"{percents([abs(share)])} {'less' if share < 0 else 'more'} energy than"
 
 
 def _next_step(move: Move, choice: Choice) -> str:

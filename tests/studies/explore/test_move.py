@@ -66,9 +66,13 @@ def test_sliders_of_coefficients_span_the_box_and_what_is_beyond_it(begun):
     assert wider.change({"bound": None}).dials["a1"].most == 0.2
     planned = begun.solve()
     for name, value in planned.coefficients.items():
-        assert max(0.2, abs(value)) <= planned.dials[name].most < max(0.2, abs(value)) + 0.1
+        assert max(0.2, 1.02 * abs(value)) <= planned.dials[name].most
+        assert planned.dials[name].most < max(0.2, 1.02 * abs(value)) + 0.1
     assert planned.dials["a6"].most > 1.0  # of the README's plan, which has no box
     assert planned.dials["a1"].most == 0.2
+    # no coefficient begins at an end of its slider
+    at_the_end = Explored(evaluate_coefficients(TASK, [0.0, 0.2, -0.3]), bound=0.2)
+    assert at_the_end.reach == (0.2, 0.3, 0.4)
     # it stays while coefficients are changed: else a slider would go under the pointer
     assert planned.change({"a1": 0.0, "a2": 0.0}).reach == planned.reach
 
@@ -78,7 +82,8 @@ def test_a_linear_axis_is_set_in_millimetres_and_newtons():
     now = open_plant(axis).change({"target": 250.0, "torque_limit": 90.0, "deflection_limit": 4.0})
     assert now.task == PointToPoint(axis, 0.25, 0.8, torque_limit=90.0, deflection_limit=0.004)
     labels = [now.dials[name].label for name in ("target", "torque_limit", "speed_limit")]
-    assert labels == ["target [mm]", "torque [N]", "speed [m/s]"]
+    assert labels == ["target [mm]", "force [N]", "speed [m/s]"]
+    assert now.dials["acceleration_limit"].label == "acceleration [m/s\u00b2]"
     assert all(plant.joint == "linear" for plant in menu(axis).values())
 
 

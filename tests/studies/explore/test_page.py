@@ -111,6 +111,33 @@ def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
     assert 0 <= beside[0]["y"] < beside[0]["y"] + beside[0]["height"] <= beside[1]["y"] <= 844
 
 
+def test_from_the_start_the_motion_is_beside_the_front_and_the_key_has_what_is_seen(page):
+    front = "Bokeh.documents[0].get_model_by_name('front')"
+    key = "Bokeh.documents[0].get_model_by_name('key').text"
+    cycloid, here = (
+        page.evaluate(f"Object.values({front}.renderers[{k}].data_source.data).map(x => [...x])")
+        for k in (2, 3)
+    )
+    for [residual], [energy] in (cycloid, here):
+        # README: 77 mm and 0.0911 J
+        assert (residual, energy) == (
+            pytest.approx(77.1, abs=0.05),
+            pytest.approx(0.0911, abs=5e-5),
+        )
+    title = page.evaluate(f"{front}.title.text")
+    assert title == "press Front for the least energy of each residual"
+    words = page.evaluate(key)
+    assert "still is the plain cycloid" in words
+    assert all(unseen not in words for unseen in ("grey", "red", "limits"))
+    button(page, "Keep curve").click()
+    page.locator(".shape .noUi-handle").nth(1).press("ArrowLeft")
+    page.wait_for_function(f"{key}.includes('grey: the plain cycloid')")
+    words = page.evaluate(key)
+    assert "red, dashed: the curve that was kept" in words
+    assert "still is" not in words
+    api.expect(page.locator(".shape")).to_contain_text("faster in one part of the move")
+
+
 def test_with_the_shift_key_a_slider_goes_a_tenth_as_far(page):
     handle = page.locator(".shape .noUi-handle").nth(1)
 

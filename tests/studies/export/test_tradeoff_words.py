@@ -22,11 +22,13 @@ from quietarm.ocp import (
     Uncertainty,
     epsilon_front,
     evaluate_coefficients,
+    plan_move,
 )
 from quietarm.ocp.energy import Energy
 from quietarm.studies.export import trade_off
 from quietarm.studies.export.tradeoff.samples import unpacked
 from quietarm.studies.figures.grammar import MEANINGS, OTHERS
+from quietarm.studies.report.methods import described
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,9 @@ def points_of(front, **changes):
 def test_at_both_ends_and_between_a_sentence_says_what_is_saved(front):
     first, *between, last = points_of(front)
     stillest = front.points[0].energy
-    assert first["sentence"].startswith("The tip arrives at rest for 0.0445 J, 51 % less than")
+    assert first["sentence"].startswith(
+        "The tip arrives at rest and takes 0.0445 J, 51 % less energy than"
+    )
     for place, point in zip([*between, last], front.points[1:], strict=True):
         share, energy, at_rest = re.search(
             r" mm of residual vibration saves ([\d.]+) % of the energy: ([\d.]+) J, where "
@@ -155,17 +159,50 @@ def test_energies_that_differ_little_are_told_apart_and_none_is_no_division(fron
 
 def test_a_cycloid_that_takes_no_energy_is_compared_by_no_share(front):
     (move,) = trade_off(replace(front, points=front.points[:1])).moves
-    assert "51 % less than the plain cycloid" in move["points"][0]["sentence"]
+    assert "51 % less energy than the plain cycloid" in move["points"][0]["sentence"]
     free = replace(front.task, energy=NoEnergy())
     (move,) = trade_off(evaluate_coefficients(free, [0.0, -0.1])).moves
-    assert ", as much as the plain cycloid, which" in move["points"][0]["sentence"]
+    assert ", as much energy as the plain cycloid, which" in move["points"][0]["sentence"]
+
+
+def test_where_stillness_takes_more_energy_a_sentence_says_what_that_buys():
+    """README: at rest the arm takes 0.1315 J, the plain cycloid 0.1246 J, which leaves 15 mm."""
+    task = TASKS["arm"]()
+    still = plan_move(task, bound=0.5)
+    (move,) = trade_off(still).moves
+    assert move["points"][0]["sentence"] == (
+        "The tip arrives at rest. That takes 0.131 J, 5.6 % more energy than the plain cycloid, "
+        "and buys a still arrival: the cycloid leaves it swinging by up to 15.0 mm."
+    )
+    # more energy and more vibration buy nothing
+    worse = evaluate_coefficients(task, [0.3, -0.3])
+    (move,) = trade_off(worse).moves
+    assert "more energy than the plain cycloid, which" in move["points"][0]["sentence"]
+
+
+def test_methods_are_named_by_what_they_are(front, poor, task):
+    (move,) = trade_off([front, poor]).moves
+    assert move["method"] == "gradient (epsilon constraint)"
+    assert described("epsilon:ipopt") == "gradient (epsilon constraint, IPOPT)"
+    assert described("nsga2(crossover=0.7)") == "search (NSGA-II; crossover=0.7)"
+    assert described("vepso, polished") == "search (VEPSO, polished)"
+    assert [beside["label"] for beside in move["beside"]] == [
+        "search (NSGA-II)", "the paper's best (6 terms)",
+    ]  # fmt: skip
+
+
+def test_a_limit_of_a_linear_axis_is_a_force():
+    axis = PointToPoint(LinearAxis(), 0.3, 0.8, torque_limit=90.0)
+    (move,) = trade_off(evaluate_coefficients(axis, [0.0, -0.1])).moves
+    assert move["title"].endswith("force within 90 N")
+    assert move["panels"]["torque"]["title"] == "Drive force"
 
 
 def test_the_plain_cycloid_itself_is_compared_with_none(cycloid, plan):
     (move,) = trade_off(cycloid).moves
     assert move["points"][0]["sentence"] == (
-        "The tip swings by up to 77.1 mm after arrival for 0.0911 J; this is the plain cycloid "
-        "itself."
+        "The tip swings by up to 77.1 mm after arrival and takes 0.0911 J; this is the plain "
+        "cycloid itself."
     )  # docs/start.md: 77 mm; README: 0.0911 J
     (move,) = trade_off({"plan": plan, "plain": cycloid}).moves
     assert move["points"][1]["sentence"].startswith("plain: the tip swings by up to 77.1 mm")
@@ -177,10 +214,10 @@ def test_of_an_uncertain_task_a_sentence_is_of_the_worst_case_and_its_colour_gre
     (move,) = trade_off(plan).moves
     words = f"{1e3 * plan.residual:#.3g} mm"
     assert (
-        f"swings by up to {words} after arrival in the worst case for"
+        f"swings by up to {words} after arrival in the worst case and takes"
         in (move["points"][0]["sentence"])
     )
-    assert move["points"][0]["swing"] == f"swings \u00b1{words} in the worst case"
+    assert move["points"][0]["swing"] == f"swings \u00b1{words} at worst"
     assert (move["this"], move["mark"]) == ("robust-plan", "D")
 
 
@@ -189,7 +226,9 @@ def test_where_a_vibration_is_asked_for_on_arrival_nothing_is_called_rest(task):
     plan = evaluate_coefficients(swinging, [0.01, -0.17])
     (move,) = trade_off(plan).moves
     (point,) = move["points"]
-    assert f"by up to {1e3 * plan.residual:#.3g} mm off what is asked, for" in point["sentence"]
+    words = f"{1e3 * plan.residual:#.3g} mm off what is asked"
+    assert f"by up to {words} after arrival and takes" in point["sentence"]
+    assert point["swing"] == f"\u00b1{words}"
     assert "rest" not in point["sentence"] + point["swing"] + point["cells"][0]
     assert not move["swings_about_rest"]
 

@@ -109,7 +109,7 @@ def test_the_force_of_a_linear_drive_falls_with_speed(done, typed):
         "evaluate linear-axis --target 300mm --duration 1.0 --coefficients 0 --quiet "
         f"--output e.json --torque-speed {typed}"
     )
-    assert "torque-speed 100N@0,40N@0.5" in out
+    assert "force-speed 100N@0,40N@0.5" in out
     plan = Plan.load("e.json")
     assert plan.task.torque_speed == ((100.0, 0.0), (40.0, 0.5))
     # force + 120 N s/m |speed| within 100 N: the line's force, less its fall, by hand
@@ -161,10 +161,10 @@ def test_a_linear_axis_is_in_metres_and_newtons_from_the_line_to_the_c(call, don
     assert call("export axis.json --output mm.csv --columns time:ms,angle:mm,torque")[0] == 0
     assert Path("mm.csv").read_text().startswith("time_ms,position_mm,force_N\n")
     code, out, _ = call("compare axis.json --baselines zvd --output compared")
-    assert (code, "torque [N]" in out, "rad" in out) == (0, True, False)
+    assert (code, "force [N]" in out, "rad" in out) == (0, True, False)
     line = "plan linear-axis --target 300mm --duration 0.3 --terms 6"
     code, _, err = call(f"{line} --torque-limit 30")
-    assert (code, bool(re.search(r"<= 30 N; .* torque limit [\d.]+ N;", err))) == (1, True)
+    assert (code, bool(re.search(r"force <= 30 N; .* force limit [\d.]+ N;", err))) == (1, True)
     code, out, err = call(
         "evaluate linear-axis --target 8m --duration 3 --coefficients 0"
     )  # no degrees meant
