@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
-FULL = 900
+FULL = 760
 """Height up to which a slide is filled [pixels]: it is made smaller, but not too small to read."""
 FULL_WITH_PICTURE = 720
 """The same with a picture, whose letters have to be read from the last row."""
@@ -20,9 +20,11 @@ ROOM = 330
 """A slide that is less high than this has room for sentences, and follows on the one before."""
 TOGETHER = 720
 """Height up to which it does [pixels]."""
+WITH_SENTENCES = 600
+"""Height up to which a slide without a picture has its sentences [pixels]."""
 NEARLY_BLANK = 216
 """A text that is less high does not fill a slide without a program or a picture [pixels]."""
-PROGRAM_LINES = 34
+PROGRAM_LINES = 22
 """Most lines of a program on one slide; a longer one is cut before a definition."""
 OUTPUT_LINES = 26
 """Most lines that are printed on one slide."""
@@ -34,6 +36,8 @@ EQUATION = 80
 HEADING = 64
 TABLE_ROW = 30
 FILM = 430
+WITHOUT_ITS_WORDS = 90
+"""By which a page to drag is less high on a slide, where it has neither invitation nor foot."""
 LETTERS = 95
 """Letters on a line of text."""
 
@@ -140,7 +144,7 @@ def _pieces(cell):
     if "hide-input" not in cell.metadata.get("tags", []):
         pieces += [new_code_cell(part) for part in _parts_of_program(cell.source)]
     for output in cell.outputs:
-        parts = [output]
+        parts = [_on_the_wall(output)]
         if output.output_type == "stream":
             texts = _parts(output.text.strip("\n").split("\n"), OUTPUT_LINES)
             parts = [new_output("stream", name=output.name, text=text) for text in texts]
@@ -148,6 +152,17 @@ def _pieces(cell):
             new_code_cell("", outputs=[part], metadata={"tags": ["hide-input"]}) for part in parts
         ]
     return pieces
+
+
+def _on_the_wall(output):
+    """An output as a slide has it: a page to drag in a frame of its height without words."""
+    page = output.get("data", {}).get("text/html", "")
+    frame = _FRAME.search(page)
+    if not frame:
+        return output
+    lower = str(int(frame["height"]) - WITHOUT_ITS_WORDS)
+    page = page[: frame.start("height")] + lower + page[frame.end("height") :]
+    return new_output(output.output_type, {**output.data, "text/html": page})
 
 
 def _parts_of_program(source):
@@ -179,7 +194,7 @@ def _slides_of(unit):
             slides.append([_title(unit.shown)])
         slides[-1].append(piece)
     sentences = unit.said
-    if sum(map(_height, slides[0])) < ROOM:
+    if _has_room(slides[0], unit.text):
         slides[0][0] = new_markdown_cell(unit.text)
         sentences = unit.said[1:]
     notes = "\n\n".join(filter(None, sentences))
@@ -189,6 +204,13 @@ def _slides_of(unit):
         begins_section = number == 0 and unit.shown.startswith(("# ", "## "))
         _place(cells[0], "slide" if begins_section else "subslide")
     return slides
+
+
+def _has_room(slide, text):
+    """Whether a slide has room for all of its text."""
+    height = sum(map(_height, slide))
+    with_text = height - _height(slide[0]) + _height_of_text(text)
+    return height < ROOM or (with_text < WITH_SENTENCES and not _pictures(slide))
 
 
 def _place(cell, place):
@@ -208,13 +230,17 @@ def _begins_a_slide(slide, unit, number):
 
 
 def _fits(cells):
-    pictures = [
+    return sum(map(_height, cells)) <= (FULL_WITH_PICTURE if _pictures(cells) else FULL)
+
+
+def _pictures(cells):
+    """The pictures that cells show, and films."""
+    outputs = [output for cell in cells for output in cell.get("outputs", [])]
+    return [
         output
-        for cell in cells
-        for output in cell.get("outputs", [])
-        if "image/png" in output.get("data", {})
+        for output in outputs
+        if "image/png" in output.get("data", {}) or "<img" in output.get("data", {}).get("text/html", "")
     ]
-    return sum(map(_height, cells)) <= (FULL_WITH_PICTURE if pictures else FULL)
 
 
 def _title(text):
@@ -241,7 +267,7 @@ def _height_of_text(text):
         if block.startswith("#"):
             height += HEADING
         elif block.startswith("$$"):
-            height += EQUATION * max(1, block.count("\\tag"))
+            height += EQUATION * max(1, block.count("\\tag"), block.count("\\displaystyle"))
         elif block.startswith("|"):
             height += TEXT_LINE * (block.count("\n") + 1)
         else:

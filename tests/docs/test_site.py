@@ -10,6 +10,7 @@ from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
 import pytest
+from notebook_files import NOTEBOOKS, narrow_name
 from pages import DOCS, ROOT
 
 nodes = pytest.importorskip("docutils.nodes")
@@ -172,7 +173,8 @@ def test_a_picture_is_as_wide_as_its_letters_need(tmp_path):
 
 
 def framed(body, picture):
-    return pictures._IMAGE.sub(lambda tag: pictures.framed(tag, picture), body)
+    variant = pictures.narrow_variant(picture, picture.parent / "narrow")
+    return pictures._IMAGE.sub(lambda tag: pictures.framed(tag, picture, variant), body)
 
 
 def test_a_picture_opens_in_full_from_a_frame_that_scrolls(tmp_path):
@@ -193,6 +195,18 @@ def test_a_picture_with_a_variant_for_phones_shows_that(tmp_path):
     assert '<source media="(max-width: 34em)" srcset="../_images/a-narrow.png">' in body
     assert "frame" not in body
     assert body.startswith('<a class="picture" href="../_images/a.png"><picture>')
+
+
+def test_a_picture_of_a_notebook_has_its_variant_by_its_content(tmp_path):
+    picture = picture_at(tmp_path, "a.png", 960)
+    folder = tmp_path / "narrow"
+    folder.mkdir()
+    name = narrow_name(NOTEBOOKS / "03_shaping_a_move.ipynb", picture.read_bytes())
+    picture_at(folder, name, 300)
+    body = framed('<img alt="words" src="../_images/a.png"/>', picture)
+    assert f'srcset="../_images/{name}"' in body
+    other = picture_at(tmp_path, "b.png", 900)
+    assert pictures.narrow_variant(other, folder) is None
 
 
 def test_a_picture_without_words_says_what_it_is(tmp_path):
