@@ -12,14 +12,13 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
 from matplotlib.legend import Legend
 from matplotlib.text import Text
+from matplotlib.ticker import AutoLocator
 
 from quietarm.ocp.checks import positive, takes
-from quietarm.studies.figures.axes import broken_into_lines, head, letters_an_inch
+from quietarm.studies.figures.axes import NARROW, broken_into_lines, head, letters_an_inch
 
 MOST_PANELS = 8
 """More, as all quantities of six joints, would be a scroll of many screens."""
-NARROW = 3.85
-"""Width of a stacked figure [inch]: on a phone of 390 pixels its letters of 7 points are 9 high."""
 _PANEL_HIGH = 2.7
 _LINE_HIGH = 0.19
 _AROUND = 0.4
@@ -125,7 +124,10 @@ def _narrowed(ax: Axes, width: float) -> float:
             text.set_text(broken_into_lines(title, width - beside, _size_of(text)))
     if not ax.axison:
         return _height_of_drawing(ax, width)
-    for axis, room in ((ax.xaxis, width), (ax.yaxis, _PANEL_HIGH - _AROUND)):
+    if isinstance(ax.xaxis.get_major_locator(), AutoLocator):
+        ax.locator_params(axis="x", nbins=5)  # whose numbers stay apart
+    # the middle of a panel is right of that of the figure
+    for axis, room in ((ax.xaxis, width - _BESIDE / 2), (ax.yaxis, _PANEL_HIGH - _AROUND)):
         text = axis.label
         text.set_text(broken_into_lines(text.get_text(), room, _size_of(text)))
     return _PANEL_HIGH + _LINE_HIGH * _legend_below(ax, width)
@@ -150,7 +152,7 @@ def _size_of(text: Text) -> float:
 
 def _legend_below(ax: Axes, width: float) -> int:
     """Set a legend that would cover a narrow panel below it; the number of its lines there."""
-    widest = 0.65 * width
+    widest = 0.5 * width
     legend = ax.get_legend()
     if legend is None or _width_of(legend) < widest:
         return 0

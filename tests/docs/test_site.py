@@ -291,14 +291,39 @@ def test_a_command_that_a_cell_prints_breaks_between_its_words():
     assert whole_words_of(page) == ["--plant-file", "--set", "--target"]
 
 
+def printed_by_cell(*lines):
+    """A page with what a cell prints."""
+    printed = "\n".join(lines)
+    return f'<div class="cell_output docutils"><pre><span></span>{printed}\n</pre></div>'
+
+
 def test_sentences_of_a_cell_go_on_and_columns_stay():
     sentence = "found no motion of 6 terms with residual at most 0 m; try another limit"
     row = "plain cycloid    F1 = 77.1146 mm   F2 = 91.15 mJ   net work = 40.88 mJ"
     of_file = "time_s,angle_rad,speed_rad_s,acceleration_rad_s2,tip_m,torque_Nm,power_W"
-    printed = f"<pre><span></span>{sentence}\n{row}\n{of_file}\n</pre>"
-    page = f'<div class="cell_output docutils">{printed}</div>'
-    assert words.keep_whole(page).count('class="sentence"') == 1
-    assert f'<span class="sentence"><span></span>{sentence}</span>\n{row}' in words.keep_whole(page)
+    page = words.keep_whole(printed_by_cell(sentence, "", row, "", of_file))
+    assert page.count('class="sentence"') == 1
+    assert f'<span class="sentence"><span></span>{sentence}</span>\n\n{row}' in page
+
+
+def test_rows_of_a_table_scroll_together():
+    # the second row has no two spaces, and the third goes on below its column
+    rows = (
+        "from (0.25, -0.3): [ 0.008 -0.157] with  19.15 mJ, bent by  14.4 mm",
+        "from (1.1, 0.9): [1.038 1.032] with 663.94 mJ, bent by 245.6 mm",
+        "                   more steps or another seed may improve it a little",
+    )
+    page = printed_by_cell(*rows)
+    assert words.keep_whole(page) == page
+
+
+def test_a_sentence_that_a_program_broke_is_one_again():
+    first = "plant 'belt-table': torque fails at line 7 of a cell (a symbol is no number);"
+    second = "write def torque(self, joint, W, dW, ddW) that returns one expression"
+    page = words.keep_whole(printed_by_cell("PlainSine:", f"    {first}", f"    {second}"))
+    assert page.count('class="sentence"') == 1
+    assert "</span>PlainSine:\n" in page
+    assert "(a symbol is no number); write def" in page
 
 
 # The search

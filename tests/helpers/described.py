@@ -10,7 +10,7 @@ import re
 from IPython.core import pylabtools
 from PIL import Image
 from quietarm.studies.figures import stack
-from quietarm.studies.figures.stacking import NARROW
+from quietarm.studies.figures.axes import NARROW
 
 _draw = pylabtools.print_figure
 

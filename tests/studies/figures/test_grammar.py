@@ -20,7 +20,7 @@ from quietarm.studies.compare import compare_fronts, compare_plans
 from quietarm.studies.export.film import _draw, animate
 from quietarm.studies.figures import Line
 from quietarm.studies.figures.grammar import HEAT, INKS, MEANINGS, OTHERS, look, looks, variants
-from quietarm.studies.figures.stacking import NARROW
+from quietarm.studies.figures.axes import NARROW
 
 GRAMMAR = {ink.lower() for ink in INKS}
 
@@ -132,6 +132,8 @@ def test_every_figure_fits_a_phone_when_it_is_stacked(figures):
             stacked.draw_without_rendering()
             drawn = stacked.get_tightbbox()  # [inch]
             assert drawn.width <= NARROW + 0.05, name
+            assert -0.02 <= drawn.x0, name
+            assert drawn.x1 <= NARROW + 0.02, name
 
 
 def test_titles_stand_left_and_axes_have_units(figures):

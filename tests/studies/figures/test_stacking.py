@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import quietarm as qa
-from quietarm.studies.figures.axes import head, legend_below, letter, new_figure
-from quietarm.studies.figures.stacking import MOST_PANELS, NARROW
+from quietarm.studies.figures.axes import NARROW, head, legend_below, letter, new_figure
+from quietarm.studies.figures.stacking import MOST_PANELS
 
 SENTENCE = "This plan takes 0.0237 J and arrives at rest; the plain cycloid leaves 77 mm"
 
