@@ -14,6 +14,8 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
 FULL = 760
 """Height up to which a slide is filled [pixels]: it is made smaller, but not too small to read."""
+FULL_WITH_OUTPUT = 900
+"""The same with a short output, which alone would leave the next slide nearly blank."""
 FULL_WITH_PICTURE = 720
 """The same with a picture, whose letters have to be read from the last row."""
 ROOM = 330
@@ -193,10 +195,15 @@ def _slides_of(unit):
         if _begins_a_slide(slides[-1], unit, number):
             slides.append([_title(unit.shown)])
         slides[-1].append(piece)
-    sentences = unit.said
+    sentences = unit.said[:1]
     if _has_room(slides[0], unit.text):
         slides[0][0] = new_markdown_cell(unit.text)
-        sentences = unit.said[1:]
+        sentences = []
+    later = "\n\n".join(filter(None, unit.said[1:]))
+    if later and sum(map(_height, slides[-1])) < ROOM and not _pictures(slides[-1]):
+        slides[-1].append(_place(new_markdown_cell(later), "fragment"))
+    else:
+        sentences.append(later)
     notes = "\n\n".join(filter(None, sentences))
     if notes:
         slides[0].append(_place(new_markdown_cell(notes), "notes"))
@@ -223,10 +230,16 @@ def _begins_a_slide(slide, unit, number):
     if len(slide) == 1 and _height_of_text(unit.text) < NEARLY_BLANK:
         return False
     piece = unit.pieces[number]
+    if _is_short_output(piece) and sum(map(_height, [*slide, piece])) <= FULL_WITH_OUTPUT:
+        return False
     outputs = [cell for cell in unit.pieces[number + 1 : number + 2] if not cell.source]
     together = [piece, *outputs] if piece.source else [piece]
     parts_them = _fits([_title(unit.shown), *together]) and not _fits([*slide, *together])
     return parts_them or not _fits([*slide, piece])
+
+
+def _is_short_output(piece):
+    return not piece.source and not _pictures([piece]) and _height(piece) < NEARLY_BLANK
 
 
 def _fits(cells):
