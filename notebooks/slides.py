@@ -252,7 +252,8 @@ def _pictures(cells):
     return [
         output
         for output in outputs
-        if "image/png" in output.get("data", {}) or "<img" in output.get("data", {}).get("text/html", "")
+        if "image/png" in output.get("data", {})
+        or "<img" in output.get("data", {}).get("text/html", "")
     ]
 
 

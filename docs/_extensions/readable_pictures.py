@@ -2,10 +2,10 @@
 
 A picture of a page has a variant for phones, `NAME-narrow.png` beside it, where
 docs/make_pictures.py can stack its panels; one of a notebook has it in `notebooks/narrow`, by its
-content, where tests/notebooks/refresh.py puts it. Every other one is shown there no smaller than makes its
-letters nine pixels high, in a frame that scrolls. An author has nothing to remember: a picture says
-itself how large it is on paper (matplotlib writes the dots per inch), and no letters in it are
-smaller than 7 points.
+content, where tests/notebooks/refresh.py puts it. Every other one is shown there no smaller than
+makes its letters nine pixels high, in a frame that scrolls. An author has nothing to remember: a
+picture says itself how large it is on paper (matplotlib writes the dots per inch), and no letters
+in it are smaller than 7 points.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ import re
 
 from IPython.core import pylabtools
 from PIL import Image
+
 from quietarm.studies.figures import stack
 from quietarm.studies.figures.axes import NARROW
 

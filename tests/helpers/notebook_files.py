@@ -126,7 +126,9 @@ def execute(path, folder, client):
             data.pop(WIDGET, None)
             if "text/html" in data:
                 data.pop("text/plain", None)
-    return Executed(notebook, [printed(cell) for cell in extra], _pictures_for_phones(notebook, path))
+    return Executed(
+        notebook, [printed(cell) for cell in extra], _pictures_for_phones(notebook, path)
+    )
 
 
 def _pictures_for_phones(notebook, path):

@@ -19,8 +19,8 @@ from quietarm.ocp.front.polish import Gain
 from quietarm.studies.compare import compare_fronts, compare_plans
 from quietarm.studies.export.film import _draw, animate
 from quietarm.studies.figures import Line
-from quietarm.studies.figures.grammar import HEAT, INKS, MEANINGS, OTHERS, look, looks, variants
 from quietarm.studies.figures.axes import NARROW
+from quietarm.studies.figures.grammar import HEAT, INKS, MEANINGS, OTHERS, look, looks, variants
 
 GRAMMAR = {ink.lower() for ink in INKS}
 
@@ -132,7 +132,7 @@ def test_every_figure_fits_a_phone_when_it_is_stacked(figures):
             stacked.draw_without_rendering()
             drawn = stacked.get_tightbbox()  # [inch]
             assert drawn.width <= NARROW + 0.05, name
-            assert -0.02 <= drawn.x0, name
+            assert drawn.x0 >= -0.02, name
             assert drawn.x1 <= NARROW + 0.02, name
 
 
@@ -198,9 +198,7 @@ def test_a_shaper_has_one_look_in_every_figure(shaper, task, plan):
         qa.motion_figure([Line(plan, "plan"), Line(motion, name)]),
     ]
     for figure in figures:
-        lines = {
-            line.get_label().upper(): line for ax in figure.axes for line in ax.get_lines()
-        }
+        lines = {line.get_label().upper(): line for ax in figure.axes for line in ax.get_lines()}
         assert lines[name].get_color() == MEANINGS[name].colour
         width = lines[name].get_linewidth()  # by which matplotlib multiplies dashes
         drawn = Line2D([], [], linestyle=MEANINGS[name].dash, linewidth=width)
