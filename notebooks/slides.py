@@ -174,7 +174,7 @@ def _parts_of_program(source):
     parts = [""]
     for definition in re.split(r"\n\n\n(?=\S)", source):
         joined = f"{parts[-1]}\n\n\n{definition}" if parts[-1] else definition
-        if joined.count("\n") < PROGRAM_LINES:
+        if not parts[-1] or joined.count("\n") < PROGRAM_LINES:
             parts[-1] = joined
         else:
             parts.append(definition)
