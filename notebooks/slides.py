@@ -200,7 +200,8 @@ def _slides_of(unit):
         slides[0][0] = new_markdown_cell(unit.text)
         sentences = []
     later = "\n\n".join(filter(None, unit.said[1:]))
-    if later and sum(map(_height, slides[-1])) < ROOM and not _pictures(slides[-1]):
+    with_later = sum(map(_height, slides[-1])) + _height_of_text(later)
+    if later and with_later < WITH_SENTENCES and not _pictures(slides[-1]):
         slides[-1].append(_place(new_markdown_cell(later), "fragment"))
     else:
         sentences.append(later)
