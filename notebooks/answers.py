@@ -71,7 +71,7 @@ def quiet_duration():
 
 
 def energy_by_pairs_of_coefficients():
-    return 1e3 * energies_by_terms(MOVE, (2, 4, 6, 8))
+    return energies_by_terms(MOVE, (2, 4, 6, 8))
 
 
 def residual_on_a_stiffer_plate():
@@ -318,7 +318,7 @@ def torque_of_a_rigid_table():
 
 
 def energy_with_a_mast():
-    return 1e3 * qa.plan_move(replace(HALF_TURN, plant=MastOnTable()), starts=2).energy
+    return qa.plan_move(replace(HALF_TURN, plant=MastOnTable()), starts=2).energy
 
 
 def when_a_parameter_is_refused():
@@ -483,7 +483,7 @@ EXERCISES = {
     "01": (
         Numbers("the shortest duration with a residual below 1 mm", "s", quiet_duration),
         Numbers(
-            "the energies with 2, 4, 6 and 8 terms", "mJ", energy_by_pairs_of_coefficients, count=4
+            "the energies with 2, 4, 6 and 8 terms", "J", energy_by_pairs_of_coefficients, count=4
         ),
         Numbers(
             "the residual of the plan on the stiffer plate",
@@ -584,7 +584,7 @@ EXERCISES = {
         Numbers(
             "the peak torque for a rigid table", "N m", torque_of_a_rigid_table, tolerance=0.01
         ),
-        Numbers("the energy of the plan with the mast", "mJ", energy_with_a_mast),
+        Numbers("the energy of the plan with the mast", "J", energy_with_a_mast),
         Choice(
             "the first that refuses it",
             ("creation", "validate", "plan"),

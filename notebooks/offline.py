@@ -32,9 +32,16 @@ _FROM_THE_NETWORK = re.compile(
 _UNDESCRIBED = re.compile(r'alt="No description[^"]*"')
 _FRAME = re.compile(r'(?P<before><iframe[^>]*?)src="(?P<name>[\w.-]+\.html)"')
 """Of a page that stands beside the notebook."""
+_FRAME_ON_THE_WALL = """<style>
+main { max-width: none; padding: 0; }
+header { margin: 0; }
+.words, footer { display: none; }
+</style>"""
+"""On a slide a page to drag is as wide as the slide; who stands beside it says what one does."""
 _STYLE = """<style>
 .equation { display: flex; align-items: center; margin: 1em 0; }
 .equation div { flex: 1; }
+.equation mtd[columnalign="left"] { text-align: left; }
 math {
   font-family: "STIX Two Math", "STIX Math", "Cambria Math", "Latin Modern Math",
     "DejaVu Math TeX Gyre", math;
@@ -115,9 +122,10 @@ Reveal.on("slidechanged", fit);
 </script>"""
 
 
-def _with_its_page(frame, folder):
-    """A frame that has in it the page that it shows."""
+def _with_its_page(frame, folder, style):
+    """A frame that has in it the page that it shows, with styles of its own."""
     page = (folder / frame["name"]).read_text(encoding="utf-8")
+    page = page.replace("</head>", f"{style}</head>", 1)
     return f'{frame["before"]}srcdoc="{escape(page)}"'
 
 
@@ -145,6 +153,8 @@ class _Offline:
     """What pages and slides have in common."""
 
     head, foot = _STYLE, "</body>"
+    in_frames = ""
+    """What is added to the head of a page in a frame."""
 
     @pass_context
     def markdown2html(self, context, source):
@@ -160,7 +170,7 @@ class _Offline:
         texts = map(escape, alternatives(nb))
         page = _UNDESCRIBED.sub(lambda _: f'alt="{next(texts)}"', page)
         folder = Path((resources.get("metadata") or {}).get("path") or ".")
-        page = _FRAME.sub(lambda frame: _with_its_page(frame, folder), page)
+        page = _FRAME.sub(lambda frame: _with_its_page(frame, folder, self.in_frames), page)
         page = page.replace("</head>", f"{self.head}</head>", 1)
         return page.replace("</body>", self.foot), resources
 
@@ -173,6 +183,8 @@ class Page(_Offline, HTMLExporter):
 
 class Slides(_Offline, SlidesExporter):
     """Slides, which the arrow keys turn."""
+
+    in_frames = _FRAME_ON_THE_WALL
 
     def from_notebook_node(self, nb, *given, **settings):
         nb.cells = as_slides(nb.cells)

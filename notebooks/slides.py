@@ -12,17 +12,21 @@ from dataclasses import dataclass, field
 
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
-FULL = 900
+FULL = 760
 """Height up to which a slide is filled [pixels]: it is made smaller, but not too small to read."""
+FULL_WITH_OUTPUT = 900
+"""The same with a short output, which alone would leave the next slide nearly blank."""
 FULL_WITH_PICTURE = 720
 """The same with a picture, whose letters have to be read from the last row."""
 ROOM = 330
 """A slide that is less high than this has room for sentences, and follows on the one before."""
 TOGETHER = 720
 """Height up to which it does [pixels]."""
+WITH_SENTENCES = 600
+"""Height up to which a slide without a picture has its sentences [pixels]."""
 NEARLY_BLANK = 216
 """A text that is less high does not fill a slide without a program or a picture [pixels]."""
-PROGRAM_LINES = 34
+PROGRAM_LINES = 22
 """Most lines of a program on one slide; a longer one is cut before a definition."""
 OUTPUT_LINES = 26
 """Most lines that are printed on one slide."""
@@ -34,6 +38,8 @@ EQUATION = 80
 HEADING = 64
 TABLE_ROW = 30
 FILM = 430
+WITHOUT_ITS_WORDS = 90
+"""By which a page to drag is less high on a slide, where it has neither invitation nor foot."""
 LETTERS = 95
 """Letters on a line of text."""
 
@@ -140,7 +146,7 @@ def _pieces(cell):
     if "hide-input" not in cell.metadata.get("tags", []):
         pieces += [new_code_cell(part) for part in _parts_of_program(cell.source)]
     for output in cell.outputs:
-        parts = [output]
+        parts = [_on_the_wall(output)]
         if output.output_type == "stream":
             texts = _parts(output.text.strip("\n").split("\n"), OUTPUT_LINES)
             parts = [new_output("stream", name=output.name, text=text) for text in texts]
@@ -150,6 +156,17 @@ def _pieces(cell):
     return pieces
 
 
+def _on_the_wall(output):
+    """An output as a slide has it: a page to drag in a frame of its height without words."""
+    page = output.get("data", {}).get("text/html", "")
+    frame = _FRAME.search(page)
+    if not frame:
+        return output
+    lower = str(int(frame["height"]) - WITHOUT_ITS_WORDS)
+    page = page[: frame.start("height")] + lower + page[frame.end("height") :]
+    return new_output(output.output_type, {**output.data, "text/html": page})
+
+
 def _parts_of_program(source):
     """A program, cut before definitions where it is too long for a slide."""
     if source.count("\n") < PROGRAM_LINES:
@@ -157,7 +174,7 @@ def _parts_of_program(source):
     parts = [""]
     for definition in re.split(r"\n\n\n(?=\S)", source):
         joined = f"{parts[-1]}\n\n\n{definition}" if parts[-1] else definition
-        if joined.count("\n") < PROGRAM_LINES:
+        if not parts[-1] or joined.count("\n") < PROGRAM_LINES:
             parts[-1] = joined
         else:
             parts.append(definition)
@@ -178,10 +195,16 @@ def _slides_of(unit):
         if _begins_a_slide(slides[-1], unit, number):
             slides.append([_title(unit.shown)])
         slides[-1].append(piece)
-    sentences = unit.said
-    if sum(map(_height, slides[0])) < ROOM:
+    sentences = unit.said[:1]
+    if _has_room(slides[0], unit.text):
         slides[0][0] = new_markdown_cell(unit.text)
-        sentences = unit.said[1:]
+        sentences = []
+    later = "\n\n".join(filter(None, unit.said[1:]))
+    with_later = sum(map(_height, slides[-1])) + _height_of_text(later)
+    if later and with_later < WITH_SENTENCES and not _pictures(slides[-1]):
+        slides[-1].append(_place(new_markdown_cell(later), "fragment"))
+    else:
+        sentences.append(later)
     notes = "\n\n".join(filter(None, sentences))
     if notes:
         slides[0].append(_place(new_markdown_cell(notes), "notes"))
@@ -189,6 +212,13 @@ def _slides_of(unit):
         begins_section = number == 0 and unit.shown.startswith(("# ", "## "))
         _place(cells[0], "slide" if begins_section else "subslide")
     return slides
+
+
+def _has_room(slide, text):
+    """Whether a slide has room for all of its text."""
+    height = sum(map(_height, slide))
+    with_text = height - _height(slide[0]) + _height_of_text(text)
+    return height < ROOM or (with_text < WITH_SENTENCES and not _pictures(slide))
 
 
 def _place(cell, place):
@@ -201,20 +231,31 @@ def _begins_a_slide(slide, unit, number):
     if len(slide) == 1 and _height_of_text(unit.text) < NEARLY_BLANK:
         return False
     piece = unit.pieces[number]
+    if _is_short_output(piece) and sum(map(_height, [*slide, piece])) <= FULL_WITH_OUTPUT:
+        return False
     outputs = [cell for cell in unit.pieces[number + 1 : number + 2] if not cell.source]
     together = [piece, *outputs] if piece.source else [piece]
     parts_them = _fits([_title(unit.shown), *together]) and not _fits([*slide, *together])
     return parts_them or not _fits([*slide, piece])
 
 
+def _is_short_output(piece):
+    return not piece.source and not _pictures([piece]) and _height(piece) < NEARLY_BLANK
+
+
 def _fits(cells):
-    pictures = [
+    return sum(map(_height, cells)) <= (FULL_WITH_PICTURE if _pictures(cells) else FULL)
+
+
+def _pictures(cells):
+    """The pictures that cells show, and films."""
+    outputs = [output for cell in cells for output in cell.get("outputs", [])]
+    return [
         output
-        for cell in cells
-        for output in cell.get("outputs", [])
+        for output in outputs
         if "image/png" in output.get("data", {})
+        or "<img" in output.get("data", {}).get("text/html", "")
     ]
-    return sum(map(_height, cells)) <= (FULL_WITH_PICTURE if pictures else FULL)
 
 
 def _title(text):
@@ -241,7 +282,7 @@ def _height_of_text(text):
         if block.startswith("#"):
             height += HEADING
         elif block.startswith("$$"):
-            height += EQUATION * max(1, block.count("\\tag"))
+            height += EQUATION * max(1, block.count("\\tag"), block.count("\\displaystyle"))
         elif block.startswith("|"):
             height += TEXT_LINE * (block.count("\n") + 1)
         else:

@@ -1,14 +1,16 @@
 """Pictures whose letters can be read on a phone, and that open in full at a tap.
 
 A picture of a page has a variant for phones, `NAME-narrow.png` beside it, where
-docs/make_pictures.py can stack its panels. Every other one is shown there no smaller than makes its
-letters nine pixels high, in a frame that scrolls. An author has nothing to remember: a picture says
-itself how large it is on paper (matplotlib writes the dots per inch), and no letters in it are
-smaller than 7 points.
+docs/make_pictures.py can stack its panels; one of a notebook has it in `notebooks/narrow`, by its
+content, where tests/notebooks/refresh.py puts it. Every other one is shown there no smaller than
+makes its letters nine pixels high, in a frame that scrolls. An author has nothing to remember: a
+picture says itself how large it is on paper (matplotlib writes the dots per inch), and no letters
+in it are smaller than 7 points.
 """
 
 from __future__ import annotations
 
+import hashlib
 import posixpath
 import re
 import shutil
@@ -43,12 +45,16 @@ def least_width(picture: Path) -> int:
         return round(PIXELS_AN_INCH * image.width / dots)
 
 
-def narrow_variant(picture: Path) -> Path:
-    """The same picture for phones, which there may be."""
-    return picture.with_name(f"{picture.stem}-narrow.png")
+def narrow_variant(picture: Path, of_notebooks: Path) -> Path | None:
+    """The same picture for phones, if there is one: beside it, or among those of notebooks."""
+    beside = picture.with_name(f"{picture.stem}-narrow.png")
+    if beside.exists():
+        return beside
+    content = hashlib.sha256(picture.read_bytes()).hexdigest()[:16]
+    return next(of_notebooks.glob(f"*-{content}.png"), None)
 
 
-def framed(tag: re.Match[str], picture: Path | None) -> str:
+def framed(tag: re.Match[str], picture: Path | None, variant: Path | None = None) -> str:
     """A picture of a page as it is shown: its variant for phones, or in a frame that scrolls."""
     attributes = tag["attributes"]
     source = _source_of(attributes)
@@ -59,10 +65,10 @@ def framed(tag: re.Match[str], picture: Path | None) -> str:
     end = "" if tag["link"] else "</a>"
     if picture is None:  # in the page itself, as films of notebooks
         return f"{tag['link'] or ''}<img {attributes}>"
-    if narrow_variant(picture).exists():
-        narrow = posixpath.join(posixpath.dirname(source), narrow_variant(picture).name)
-        variant = f'<source media="{PHONE}" srcset="{narrow}">'
-        return f"{link}<picture>{variant}<img {attributes}></picture>{end}"
+    if variant is not None:
+        narrow = posixpath.join(posixpath.dirname(source), variant.name)
+        of_phones = f'<source media="{PHONE}" srcset="{narrow}">'
+        return f"{link}<picture>{of_phones}<img {attributes}></picture>{end}"
     image = f'<img {attributes} style="--least: {least_width(picture)}px">'
     if tag["link"]:
         return f"{link}{image}"
@@ -85,12 +91,12 @@ def _on_page(app: Sphinx, page: str, template: str, context: dict[str, Any], tre
         if source.startswith("data:"):
             return framed(tag, None)
         picture = files[unquote(posixpath.basename(source))]
-        variant = narrow_variant(picture)
-        if variant.exists():
+        variant = narrow_variant(picture, Path(app.srcdir, "notebooks", "narrow"))
+        if variant is not None:
             folder = Path(app.outdir, app.builder.imagedir)
             folder.mkdir(parents=True, exist_ok=True)
             shutil.copy(variant, folder)
-        return framed(tag, picture)
+        return framed(tag, picture, variant)
 
     context["body"] = _IMAGE.sub(frame, body)
 

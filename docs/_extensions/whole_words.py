@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 from sphinx.application import Sphinx
@@ -71,23 +72,56 @@ def _in_texts(body: str, change: Callable[[str], str]) -> str:
 
 
 def _flowing(printed: str) -> str:
-    """What a cell prints, with every sentence in an element that goes on in the next line."""
+    """What a cell prints, with every sentence in an element that goes on in the next line.
+
+    Blocks between empty lines that have columns stay as they are: their rows scroll together.
+    """
+    blocks = re.split(r"(\n\s*\n)", printed)
+    return "".join(block if _has_columns(block) else _flowing_block(block) for block in blocks)
+
+
+def _flowing_block(block: str) -> str:
     return "\n".join(
         f'<span class="sentence">{_HYPHENATED.sub(_as_word, line)}</span>'
         if _is_sentence(line)
         else line
-        for line in printed.split("\n")
+        for line in _joined(block.split("\n"))
     )
 
 
+def _joined(lines: list[str]) -> list[str]:
+    """Lines of a block, those in one that a program has broken because they were full."""
+    full = 70  # letters; programs break at 80 to 90
+    joined = lines[:1]
+    for before, line in pairwise(lines):
+        if len(_text_of(before)) >= full and _is_indented_as(line, before) and line.strip():
+            joined[-1] += f" {line.lstrip()}"
+        else:
+            joined.append(line)
+    return joined
+
+
+def _is_indented_as(line: str, before: str) -> bool:
+    indents = [len(_text_of(text)) - len(_text_of(text).lstrip()) for text in (line, before)]
+    return indents[0] == indents[1]
+
+
+def _text_of(line: str) -> str:
+    return re.sub(r"<[^>]*>", "", line)
+
+
+def _has_columns(block: str) -> bool:
+    """Whether a line of a block has two spaces between its words."""
+    return any("  " in _text_of(line).strip() for line in block.split("\n"))
+
+
 def _is_sentence(line: str) -> bool:
-    """Whether a line is too long for a phone, and has no columns: two spaces would be between."""
+    """Whether a line is too long for a phone, and has words."""
     letters_on_a_phone = 40
     fewest_words = 5  # a row of a file has fewer
-    text = re.sub(r"<[^>]*>", "", line).strip()
+    text = _text_of(line).strip()
     whole = line.count("<span") == line.count("</span>")
-    has_words = len(text.split()) >= fewest_words and "  " not in text
-    return whole and len(text) > letters_on_a_phone and has_words
+    return whole and len(text) > letters_on_a_phone and len(text.split()) >= fewest_words
 
 
 def _with_room(cell: re.Match[str]) -> str:

@@ -19,6 +19,8 @@ from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
 
+NARROW = 3.85
+"""Width of a figure for a phone [inch]: at 390 pixels its letters of 7 points are 9 high."""
 TITLE: dict[str, Any] = {"loc": "left", "fontsize": 10}
 """How the title of a panel is set."""
 
@@ -38,15 +40,17 @@ def axes_or_new(ax: Axes | None) -> Axes:
     return ax
 
 
-def head(figure: Figure, sentence: str, facts: str = "") -> None:
+def head(figure: Figure, sentence: str, facts: str = "", width: float | None = None) -> None:
     """Set what is seen, and below it of what, at the left above a figure.
 
+    Its lines are as wide as the figure, or of a width [inch] where a phone shows only a part of it.
     The label of the title has both, each in one line.
     """
     size = 11
     paragraphs = [words for words in (sentence, facts) if words]
     if paragraphs:
-        broken = [broken_into_lines(words, figure.get_figwidth(), size) for words in paragraphs]
+        width = width or figure.get_figwidth()
+        broken = [broken_into_lines(words, width, size) for words in paragraphs]
         figure.suptitle(
             "\n".join(broken), x=0.01, ha="left", fontsize=size, linespacing=1.35,
             label="\n".join(paragraphs),

@@ -21,6 +21,9 @@ SKY = "#56B4E9"
 INDIGO = "#332288"
 BROWN = "#7A4B1E"
 PINK = "#CC79A7"
+OLIVE = "#5C6300"
+PURPLE = "#7B1E7A"
+PETROL = "#0F5A66"
 INK = "#333333"
 """Axes' marks, limits, the paper's points, discs and hubs: what is given and not computed."""
 FAINT = "#BFC4CA"
@@ -63,6 +66,9 @@ ARRIVAL = Look(GREY, "--", width=0.8, on_dark="#9EA9B5")
 PAPER = Look(INK, "-.", mark="*", width=1.2, on_dark="#E8EBEF")
 FLOOR = Look(INK, (0, (7, 2)), mark="D", width=1.2, on_dark="#E8EBEF")
 """The best motion without a parametrisation."""
+ZV = Look(OLIVE, "--", mark="^", on_dark="#D9DB7A")
+ZVD = Look(PURPLE, (0, (4, 1, 1, 1)), mark="v", on_dark="#D6B8F5")
+EI = Look(PETROL, (0, (7, 2)), mark="P", on_dark="#C8F0F5")
 
 MEANINGS: Mapping[str, Look] = {
     "plan": PLAN,
@@ -73,6 +79,9 @@ MEANINGS: Mapping[str, Look] = {
     "arrival": ARRIVAL,
     "paper": PAPER,
     "floor": FLOOR,
+    "ZV": ZV,
+    "ZVD": ZVD,
+    "EI": EI,
 }
 """What each look means."""
 
@@ -80,7 +89,7 @@ AFTER_ARRIVAL = 0.45
 """Opacity of what is drawn after arrival, where the motion before it is opaque."""
 
 OTHERS = (RED, SKY, INDIGO, BROWN, PINK)
-"""Of what has no meaning of its own: a second plan, a shaper, a mode; never one of `MEANINGS`."""
+"""Of what has no meaning of its own: a second plan, a mode; never one of `MEANINGS`."""
 
 COLOURS = (BLUE, *OTHERS)
 """Of lines by their number, where none has a meaning."""
@@ -91,7 +100,8 @@ INKS = frozenset({look.colour for look in MEANINGS.values()} | {*OTHERS, INK, FA
 HEAT = "viridis"
 """The colours of a quantity over an area, from little to much."""
 
-_DASHES: Sequence[Dash] = ("-", "--", (0, (1, 1)), (0, (4, 1, 1, 1)), (0, (7, 2)))
+_DASHES: Sequence[Dash] = ("-", "--", (0, (5, 1, 1, 1, 1, 1)), (0, (4, 1, 1, 1)), (0, (7, 2)))
+"""None is dotted, as a limit is."""
 _MARKS = "os^Dv<>PX"
 
 
@@ -111,19 +121,30 @@ def looks(meanings: Sequence[str]) -> list[Look]:
     """A look for each of several lines, by what each of them is.
 
     The first line of a meaning has its look. Further ones of that meaning, and lines without one,
-    have a colour of `OTHERS`, with dashes and a mark to match.
+    have a colour of `OTHERS`, with dashes and a mark to match; no two of the first 25 of them have
+    both alike.
     """
     with_meaning = set[str]()
-    further = count(1)
+    further = count()
     answer = list[Look]()
     for meaning in meanings:
         if meaning in MEANINGS and meaning not in with_meaning:
             with_meaning.add(meaning)
             answer.append(MEANINGS[meaning])
         else:
-            number = next(further)
-            answer.append(replace(look(number), colour=OTHERS[(number - 1) % len(OTHERS)]))
+            place = next(further)
+            answer.append(_further_look(place))
     return answer
+
+
+def _further_look(place: int) -> Look:
+    """The look of a line that has none by its meaning, by its place from 0 among such lines."""
+    rounds = place // len(OTHERS)  # in each, colours meet other dashes
+    return Look(
+        OTHERS[place % len(OTHERS)],
+        _DASHES[(place + 1 + rounds) % len(_DASHES)],
+        _MARKS[(place + 1) % len(_MARKS)],
+    )
 
 
 def variants(meaning: str, number: int) -> list[Look]:

@@ -7,12 +7,14 @@ from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
 
 
 def meaning_of(motion: Plan | Floor | Candidate) -> str:
-    """Which of `MEANINGS` a motion is; empty for what is none of them, as an input shaper's."""
+    """Which of `MEANINGS` a motion is; another word for what is none of them, as a shaper "MZV"."""
     if isinstance(motion, Floor):
         return "floor"
     if is_plain_cycloid(motion):
         return "plain cycloid"
-    if isinstance(motion, Candidate) or isinstance(motion.profile, ShapedCycloid):
+    if isinstance(motion.profile, ShapedCycloid):
+        return motion.profile.shaper.upper()
+    if isinstance(motion, Candidate):
         return ""
     return "robust plan" if motion.task.ranges else "plan"
 

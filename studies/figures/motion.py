@@ -18,6 +18,7 @@ from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.checks import instance, takes, unknown
 from quietarm.ocp.limits import QUANTITIES, Shares, unit_of
 from quietarm.studies.figures.axes import (
+    NARROW,
     TITLE,
     axes_or_new,
     head,
@@ -125,7 +126,8 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
     drawn = list[Array]()
     title = heading(quantity, plant.joint, plant.tip_unit)
     for line in lines:
-        other_styles = [style for style in (":", "-.", "--") if style != line.style]
+        further = ("-.", "--", (0, (5, 1, 1, 1, 1, 1)))  # none dotted, as a limit is
+        other_styles: list[Dash] = [style for style in further if style != line.style]
         for i, values in enumerate(curves(line.plan, quantity)):
             if curve not in (None, i):
                 continue
@@ -272,14 +274,16 @@ def motion_figure(
     return figure
 
 
-def _head(figure: Figure, lines: Sequence[Line], title: str | None) -> None:
+def _head(
+    figure: Figure, lines: Sequence[Line], title: str | None, width: float | None = None
+) -> None:
     """Set a picture's title: by default what the motions take and leave, and of which move."""
     if title is not None:
-        head(figure, title)
+        head(figure, title, width=width)
         return
     motions = {line.label: line.plan for line in lines}
     facts = f"{title_of_picture(lines[0].plan.task)}; {verified_words([*motions.values()])}"
-    head(figure, caption_of_motions(motions), raised(facts))
+    head(figure, caption_of_motions(motions), raised(facts), width)
 
 
 def _figure_of_joints(
@@ -305,7 +309,7 @@ def _figure_of_joints(
     room = figure.add_subplot(lower[len(below)])
     room.axis("off")
     room.legend(*legend_of([*axes, *last]), loc="center left", fontsize=10, frameon=False)
-    _head(figure, lines, title)
+    _head(figure, lines, title, NARROW)
     return figure
 
 

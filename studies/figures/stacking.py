@@ -6,25 +6,27 @@ import copy
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
 from matplotlib.legend import Legend
 from matplotlib.text import Text
+from matplotlib.ticker import AutoLocator
 
 from quietarm.ocp.checks import positive, takes
-from quietarm.studies.figures.axes import broken_into_lines, head, letters_an_inch
+from quietarm.studies.figures.axes import NARROW, broken_into_lines, head, letters_an_inch
 
 MOST_PANELS = 8
 """More, as all quantities of six joints, would be a scroll of many screens."""
-NARROW = 3.85
-"""Width of a stacked figure [inch]: on a phone of 390 pixels its letters of 7 points are 9 high."""
 _PANEL_HIGH = 2.7
 _LINE_HIGH = 0.19
 _AROUND = 0.4
 """Heights of a panel, of a line of a head or a legend, and around all of them [inch]."""
 _BESIDE = 1.2
 """Width that titles and legends leave free for numbers and labels at the left [inch]."""
+_SAMPLE = 0.5
+"""Width of the line beside the words of a legend, with the room around it [inch]."""
 
 
 @takes(figure=Figure)
@@ -69,7 +71,7 @@ def stack(figure: Figure, width: float = NARROW) -> Figure | None:
     title = stacked._suptitle  # pyright: ignore[reportAttributeAccessIssue]
     stacked.set_size_inches(width, 1.0)  # by which the head is broken into lines
     if title is not None and title.get_text():
-        head(stacked, *title.get_label().split("\n", 1))
+        head(stacked, *(title.get_label() or title.get_text()).split("\n", 1))
         lines += title.get_text().count("\n") + 1
     stacked.set_size_inches(width, sum(heights) + _LINE_HIGH * lines + _AROUND)
     return stacked
@@ -89,7 +91,7 @@ def _reading_order(ax: Axes) -> tuple[bool, int, int]:
     place = ax.get_subplotspec()
     if place is None:
         return (True, 0, 0)
-    return (not ax.axison, place.get_topmost_subplotspec().num1, place.num1)
+    return (_is_legend_alone(ax), place.get_topmost_subplotspec().num1, place.num1)
 
 
 def _label_every_panel(panels: Sequence[Axes]) -> None:
@@ -111,18 +113,36 @@ def _label_of(which: str, ax: Axes, panels: Sequence[Axes]) -> str:
 
 def _narrowed(ax: Axes, width: float) -> float:
     """Break the words of a panel into lines that fit; its height [inch]."""
-    if not ax.axison:
+    if _is_legend_alone(ax):
         legend = ax.get_legend()
         lines = _set_narrow(legend, width - _BESIDE) if legend is not None else 1
         return _LINE_HIGH * lines
+    beside = _BESIDE if ax.axison else 0.0
     for side in ("left", "center"):
         if title := ax.get_title(loc=side):
             text = ax.set_title(title, loc=side)
-            text.set_text(broken_into_lines(title, width - _BESIDE, _size_of(text)))
-    for axis, room in ((ax.xaxis, width), (ax.yaxis, _PANEL_HIGH - _AROUND)):
+            text.set_text(broken_into_lines(title, width - beside, _size_of(text)))
+    if not ax.axison:
+        return _height_of_drawing(ax, width)
+    if isinstance(ax.xaxis.get_major_locator(), AutoLocator):
+        ax.locator_params(axis="x", nbins=5)  # whose numbers stay apart
+    # the middle of a panel is right of that of the figure
+    for axis, room in ((ax.xaxis, width - _BESIDE / 2), (ax.yaxis, _PANEL_HIGH - _AROUND)):
         text = axis.label
         text.set_text(broken_into_lines(text.get_text(), room, _size_of(text)))
-    return _PANEL_HIGH
+    return _PANEL_HIGH + _LINE_HIGH * _legend_below(ax, width)
+
+
+def _is_legend_alone(ax: Axes) -> bool:
+    """Whether a legend stands in place of a panel."""
+    return not ax.axison and not ax.has_data()
+
+
+def _height_of_drawing(ax: Axes, width: float) -> float:
+    """Of a drawing to scale that fills the width, with its title [inch]."""
+    across = abs(np.diff(ax.get_xlim())[0])
+    upwards = abs(np.diff(ax.get_ylim())[0])
+    return float(width * upwards / across) + _LINE_HIGH * 2
 
 
 def _size_of(text: Text) -> float:
@@ -130,14 +150,34 @@ def _size_of(text: Text) -> float:
     return float(text.get_fontsize())
 
 
+def _legend_below(ax: Axes, width: float) -> int:
+    """Set a legend that would cover a narrow panel below it; the number of its lines there."""
+    widest = 0.5 * width
+    legend = ax.get_legend()
+    if legend is None or _width_of(legend) < widest:
+        return 0
+    lines = _set_narrow(legend, width - _BESIDE)
+    anew: Any = ax.get_legend()
+    anew.set_loc("upper left")
+    anew.set_bbox_to_anchor((0.0, -0.2))  # below numbers and label of the axis
+    return lines
+
+
+def _width_of(legend: Legend) -> float:
+    """About how wide a legend is [inch]."""
+    texts = [text.get_text() for text in legend.get_texts()]
+    letters = max(len(line) for text in texts for line in text.splitlines())
+    columns: int = legend._ncols  # pyright: ignore[reportAttributeAccessIssue]
+    return columns * (_SAMPLE + letters / letters_an_inch(_size_of(legend.get_texts()[0])))
+
+
 def _set_narrow(legend: Legend, width: float) -> int:
     """Set a legend of a figure, or in place of a panel, anew; its number of lines."""
     texts = [text.get_text() for text in legend.get_texts()]
     size = _size_of(legend.get_texts()[0])
-    sample = 0.5  # inches of the line beside its words, with the room around it
     letters = max(len(line) for text in texts for line in text.splitlines())
-    columns = max(1, int(width / (sample + letters / letters_an_inch(size))))
-    labels = [broken_into_lines(text, width - sample, size) for text in texts]
+    columns = max(1, int(width / (_SAMPLE + letters / letters_an_inch(size))))
+    labels = [broken_into_lines(text, width - _SAMPLE, size) for text in texts]
     title = broken_into_lines(legend.get_title().get_text(), width, size)
     options: dict[str, Any] = {"fontsize": size, "frameon": False, "title": title or None}
     handles: list[Any] = [*legend.legend_handles]

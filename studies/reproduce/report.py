@@ -141,7 +141,7 @@ def _redrawn(result: Reproduction, title: str, case: Case, against_earlier: bool
                 name,
                 of_earlier_search,
             ),
-            Line(earlier, label, RED, ":"),
+            Line(earlier, label, RED, "--"),
         ]
     else:
         lines += [_of_paper(case, 2, two_terms), _of_paper(case, 4, four_terms)]

@@ -10,6 +10,7 @@ from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
 import pytest
+from notebook_files import NOTEBOOKS, narrow_name
 from pages import DOCS, ROOT
 
 nodes = pytest.importorskip("docutils.nodes")
@@ -172,7 +173,8 @@ def test_a_picture_is_as_wide_as_its_letters_need(tmp_path):
 
 
 def framed(body, picture):
-    return pictures._IMAGE.sub(lambda tag: pictures.framed(tag, picture), body)
+    variant = pictures.narrow_variant(picture, picture.parent / "narrow")
+    return pictures._IMAGE.sub(lambda tag: pictures.framed(tag, picture, variant), body)
 
 
 def test_a_picture_opens_in_full_from_a_frame_that_scrolls(tmp_path):
@@ -193,6 +195,18 @@ def test_a_picture_with_a_variant_for_phones_shows_that(tmp_path):
     assert '<source media="(max-width: 34em)" srcset="../_images/a-narrow.png">' in body
     assert "frame" not in body
     assert body.startswith('<a class="picture" href="../_images/a.png"><picture>')
+
+
+def test_a_picture_of_a_notebook_has_its_variant_by_its_content(tmp_path):
+    picture = picture_at(tmp_path, "a.png", 960)
+    folder = tmp_path / "narrow"
+    folder.mkdir()
+    name = narrow_name(NOTEBOOKS / "03_shaping_a_move.ipynb", picture.read_bytes())
+    picture_at(folder, name, 300)
+    body = framed('<img alt="words" src="../_images/a.png"/>', picture)
+    assert f'srcset="../_images/{name}"' in body
+    other = picture_at(tmp_path, "b.png", 900)
+    assert pictures.narrow_variant(other, folder) is None
 
 
 def test_a_picture_without_words_says_what_it_is(tmp_path):
@@ -277,14 +291,39 @@ def test_a_command_that_a_cell_prints_breaks_between_its_words():
     assert whole_words_of(page) == ["--plant-file", "--set", "--target"]
 
 
+def printed_by_cell(*lines):
+    """A page with what a cell prints."""
+    printed = "\n".join(lines)
+    return f'<div class="cell_output docutils"><pre><span></span>{printed}\n</pre></div>'
+
+
 def test_sentences_of_a_cell_go_on_and_columns_stay():
     sentence = "found no motion of 6 terms with residual at most 0 m; try another limit"
     row = "plain cycloid    F1 = 77.1146 mm   F2 = 91.15 mJ   net work = 40.88 mJ"
     of_file = "time_s,angle_rad,speed_rad_s,acceleration_rad_s2,tip_m,torque_Nm,power_W"
-    printed = f"<pre><span></span>{sentence}\n{row}\n{of_file}\n</pre>"
-    page = f'<div class="cell_output docutils">{printed}</div>'
-    assert words.keep_whole(page).count('class="sentence"') == 1
-    assert f'<span class="sentence"><span></span>{sentence}</span>\n{row}' in words.keep_whole(page)
+    page = words.keep_whole(printed_by_cell(sentence, "", row, "", of_file))
+    assert page.count('class="sentence"') == 1
+    assert f'<span class="sentence"><span></span>{sentence}</span>\n\n{row}' in page
+
+
+def test_rows_of_a_table_scroll_together():
+    # the second row has no two spaces, and the third goes on below its column
+    rows = (
+        "from (0.25, -0.3): [ 0.008 -0.157] with  19.15 mJ, bent by  14.4 mm",
+        "from (1.1, 0.9): [1.038 1.032] with 663.94 mJ, bent by 245.6 mm",
+        "                   more steps or another seed may improve it a little",
+    )
+    page = printed_by_cell(*rows)
+    assert words.keep_whole(page) == page
+
+
+def test_a_sentence_that_a_program_broke_is_one_again():
+    first = "plant 'belt-table': torque fails at line 7 of a cell (a symbol is no number);"
+    second = "write def torque(self, joint, W, dW, ddW) that returns one expression"
+    page = words.keep_whole(printed_by_cell("PlainSine:", f"    {first}", f"    {second}"))
+    assert page.count('class="sentence"') == 1
+    assert "</span>PlainSine:\n" in page
+    assert "(a symbol is no number); write def" in page
 
 
 # The search

@@ -1,6 +1,7 @@
 """Notebooks as files: what they show, their folded solutions, and how they are executed anew."""
 
 import base64
+import hashlib
 import math
 import re
 from contextlib import contextmanager
@@ -14,6 +15,8 @@ from nbformat.v4 import new_code_cell, new_notebook
 HERE = str(Path(__file__).parent)
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 PATHS = sorted(NOTEBOOKS.glob("*.ipynb"))
+NARROW = NOTEBOOKS / "narrow"
+"""Where the pictures of notebooks for phones are."""
 
 SOLUTION = re.compile(r"```python\n(?P<code>.*?)```\n+```text\n(?P<shown>.*?)```", re.DOTALL)
 """What a solution computes and what that prints; `refresh.py` writes the second."""
@@ -41,10 +44,12 @@ NOTHING = 1e-5
 
 
 class Executed(NamedTuple):
-    """A notebook after its execution, and what its solutions printed, in order."""
+    """A notebook after its execution, what its solutions printed, and its pictures for phones."""
 
     notebook: nbformat.NotebookNode
     solutions: list[str]
+    narrow: dict[str, bytes]
+    """By the name of the file, which has that of the notebook and of the picture's content."""
 
 
 def read(path):
@@ -121,7 +126,25 @@ def execute(path, folder, client):
             data.pop(WIDGET, None)
             if "text/html" in data:
                 data.pop("text/plain", None)
-    return Executed(notebook, [printed(cell) for cell in extra])
+    return Executed(
+        notebook, [printed(cell) for cell in extra], _pictures_for_phones(notebook, path)
+    )
+
+
+def _pictures_for_phones(notebook, path):
+    """Take the narrow variants of pictures out of a notebook, where `described` has put them."""
+    variants = {}
+    for output in (output for cell in code_cells(notebook) for output in cell.outputs):
+        narrow = output.get("metadata", {}).get("image/png", {}).pop("narrow", "")
+        if narrow:
+            picture = base64.b64decode(output.data["image/png"])
+            variants[narrow_name(path, picture)] = base64.b64decode(narrow)
+    return variants
+
+
+def narrow_name(path, picture):
+    """Of the file for phones of a notebook's picture, in `NARROW`."""
+    return f"{path.stem.partition('_')[0]}-{hashlib.sha256(picture).hexdigest()[:16]}.png"
 
 
 def differences(committed, anew):

@@ -12,7 +12,7 @@ import nbformat
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "helpers"))
 
-from notebook_files import PATHS, execute, kernel, pages, solutions
+from notebook_files import NARROW, PATHS, execute, kernel, pages, solutions
 
 METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
@@ -22,9 +22,10 @@ METADATA = {
 
 def refresh(path):
     with tempfile.TemporaryDirectory() as folder, kernel() as client:
-        notebook, shown = execute(path, folder, client)
+        notebook, shown, narrow = execute(path, folder, client)
         for name in pages(notebook):
             shutil.copyfile(Path(folder, name), path.parent / name)
+    replace_narrow(path, narrow)
     waiting = iter(shown)
     for number, cell in enumerate(notebook.cells, 1):
         for found in solutions(cell):
@@ -36,6 +37,16 @@ def refresh(path):
         cell.metadata = nbformat.from_dict({**folded, **({"tags": tags} if tags else {})})
     notebook.metadata = nbformat.from_dict(METADATA)
     nbformat.write(notebook, path)
+
+
+def replace_narrow(path, narrow):
+    """Write the pictures of a notebook for phones, and remove those that it had before."""
+    NARROW.mkdir(exist_ok=True)
+    for before in NARROW.glob(f"{path.stem.partition('_')[0]}-*.png"):
+        if before.name not in narrow:
+            before.unlink()
+    for name, picture in narrow.items():
+        (NARROW / name).write_bytes(picture)
 
 
 if __name__ == "__main__":

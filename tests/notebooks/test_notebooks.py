@@ -9,12 +9,14 @@ import pytest
 from claims import numbers_of, stated_in, unsupported
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from notebook_files import (
+    NARROW,
     NOTEBOOKS,
     PATHS,
     code_cells,
     differences,
     execute,
     kernel,
+    narrow_name,
     pages,
     pictures,
     printed,
@@ -127,6 +129,13 @@ def test_it_begins_with_its_question_and_ends_with_what_was_seen(path):
         after = PATHS[PATHS.index(path) + 1].name
         number, title, question = TABLE[after]
         assert following == f"**Next:** notebook {number}, [{title}]({after}). {question}"
+
+
+@each_notebook
+def test_its_pictures_have_variants_for_phones(path):
+    names = {narrow_name(path, picture) for picture in pictures(read(path))}
+    files = {file.name for file in NARROW.glob(f"{path.stem.partition('_')[0]}-*.png")}
+    assert files == names, "run python tests/notebooks/refresh.py"
 
 
 @each_notebook

@@ -8,7 +8,7 @@ import pytest
 import wall
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 from notebook_files import PATHS, read
-from slides import OUTPUT_LINES, PROGRAM_LINES, as_slides, split_text
+from slides import OUTPUT_LINES, PROGRAM_LINES, WITHOUT_ITS_WORDS, as_slides, split_text
 
 LEAST_USED = 1 / 3
 """Of a slide's height; less is nearly blank."""
@@ -79,12 +79,37 @@ def test_the_sentence_before_a_list_is_on_its_slide():
 
 def test_a_program_stays_with_what_it_prints():
     equation = new_markdown_cell("## A sum\n\nAdd.\n\n$$x = 1 \\tag{a}$$\n\n**How large is it?**")
-    lines = [f"x += {number}" for number in range(24)]
-    program = new_code_cell("\n".join(lines), outputs=[printed(*map(str, range(8)))])
+    lines = [f"x += {number}" for number in range(18)]
+    program = new_code_cell("\n".join(lines), outputs=[printed(*map(str, range(5)))])
     first, second = contents([equation, program])
     assert text_of(first) == equation.source
     assert text_of(second).startswith("**How large is it?**\nx += 0\n")
-    assert text_of(second).endswith("\n7")
+    assert text_of(second).endswith("\n4")
+
+
+def test_a_short_output_stays_with_a_program_that_fills_the_slide():
+    question = new_markdown_cell("## Many lines\n\n**How many?**")
+    program = new_code_cell("\n".join(["x = 1"] * 30), outputs=[printed("30 lines")])
+    (slide,) = contents([question, program])
+    assert text_of(slide).endswith("30 lines")
+
+
+def test_a_later_sentence_is_shown_where_there_is_room():
+    question = new_markdown_cell("## A question\n\n**Is it 1?**")
+    answer = new_markdown_cell("It is, as the sum shows.")
+    short = contents([question, new_code_cell("1", outputs=[printed("1")]), answer])
+    full = contents([question, new_code_cell("1", outputs=[drawn(500)]), answer])
+    assert "as the sum shows" in text_of(short[0])
+    assert "as the sum shows" not in text_of(full[0])
+
+
+def test_a_page_to_drag_is_alone_below_its_question_without_its_words():
+    question = new_markdown_cell("## A front\n\nDrag it.\n\n**What changes?**")
+    frame = new_output("display_data", {"text/html": '<iframe height="900" src="front.html">'})
+    _, slide = contents([question, new_code_cell("show()", outputs=[frame])])
+    title, page = slide
+    assert title.source == "**What changes?**"
+    assert f'height="{900 - WITHOUT_ITS_WORDS}"' in page.outputs[0].data["text/html"]
 
 
 def test_a_picture_is_not_made_small_by_its_program():

@@ -1,6 +1,7 @@
 """The grammar of pictures: every public figure is drawn in it, and docs/pictures.md states it."""
 
 import itertools
+import json
 import re
 from dataclasses import replace
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 from inks import inks_of, scales_of
 from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from pages import DOCS, ROOT
 
@@ -17,8 +19,8 @@ from quietarm.ocp.front.polish import Gain
 from quietarm.studies.compare import compare_fronts, compare_plans
 from quietarm.studies.export.film import _draw, animate
 from quietarm.studies.figures import Line
+from quietarm.studies.figures.axes import NARROW
 from quietarm.studies.figures.grammar import HEAT, INKS, MEANINGS, OTHERS, look, looks, variants
-from quietarm.studies.figures.stacking import NARROW
 
 GRAMMAR = {ink.lower() for ink in INKS}
 
@@ -130,6 +132,8 @@ def test_every_figure_fits_a_phone_when_it_is_stacked(figures):
             stacked.draw_without_rendering()
             drawn = stacked.get_tightbbox()  # [inch]
             assert drawn.width <= NARROW + 0.05, name
+            assert drawn.x0 >= -0.02, name
+            assert drawn.x1 <= NARROW + 0.02, name
 
 
 def test_titles_stand_left_and_axes_have_units(figures):
@@ -174,12 +178,48 @@ def test_what_a_line_is_decides_its_look(figures, plan, cycloid):
     assert set(colours_by_label(figures["draw_seed_energies"])) <= {orange}
     compared = colours_by_label(figures["motions_figure"])
     assert (compared["plan"], compared["robust plan"], compared["cycloid"]) == (blue, green, grey)
-    assert compared["zv"] in OTHERS
+    assert compared["zv"] == MEANINGS["ZV"].colour
     # a line that brings its own colour has it, and another of the same meaning is told apart
     own = [Line(plan, "first"), Line(plan, "second"), Line(cycloid, "third", "black")]
     first, second, third = colours_by_label(qa.figures.draw_quantity(own, "angle").figure).values()
     assert (first, third) == (blue, "black")
     assert second in OTHERS
+
+
+@pytest.mark.parametrize("shaper", ["zv", "zvd", "ei"])
+def test_a_shaper_has_one_look_in_every_figure(shaper, task, plan):
+    name = shaper.upper()
+    motion = qa.evaluate_coefficients(task, [], profile=qa.shaped_cycloid(task, shaper))
+    judged = compare_plans({"plan": plan}, [shaper], {"frequency": 0.1}, samples=20)
+    errors = evaluate_robustness(motion.candidate, {"frequency": 0.1}, samples=1)
+    figures = [
+        qa.figures.motions_figure(judged, "a move"),
+        qa.figures.draw_robustness({name: errors}, "frequency").figure,
+        qa.motion_figure([Line(plan, "plan"), Line(motion, name)]),
+    ]
+    for figure in figures:
+        lines = {line.get_label().upper(): line for ax in figure.axes for line in ax.get_lines()}
+        assert lines[name].get_color() == MEANINGS[name].colour
+        width = lines[name].get_linewidth()  # by which matplotlib multiplies dashes
+        drawn = Line2D([], [], linestyle=MEANINGS[name].dash, linewidth=width)
+        assert lines[name].get_linestyle() == drawn.get_linestyle()
+        assert lines[name]._dash_pattern == drawn._dash_pattern
+    for notebook in (ROOT / "notebooks").glob("*.ipynb"):  # none is given a colour of its own
+        own = rf'Line\([^)]*{name}[^)]*(RED|BLUE|GREEN|GREY|ORANGE)|"{name}": (RED|BLUE|GREEN)'
+        assert not re.search(own, notebook.read_text(encoding="utf-8")), notebook.name
+
+
+def test_nothing_but_a_limit_is_dotted():
+    dotted = {MEANINGS["limit"].dash, (0, (1, 1))}
+    others = [meant for name, meant in MEANINGS.items() if name != "limit"]
+    others += [*map(look, range(90)), *looks([""] * 30), *variants("search", 30)]
+    assert dotted & {meant.dash for meant in others} == set()
+    for notebook in (ROOT / "notebooks").glob("*.ipynb"):
+        cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+        for cell in cells:
+            for line in cell["source"] if cell["cell_type"] == "code" else []:
+                if re.search(r"""['"]:['"]|dotted""", line) and "title" not in line:
+                    assert re.search("axhline|limit", line), (notebook.name, line)
 
 
 def test_after_arrival_a_motion_is_lighter_and_arrival_a_thin_dashed_line(plan):
@@ -199,6 +239,8 @@ def test_looks_are_told_apart():
     assert [mine.colour for mine in of_meanings[:2]] == ["#0072B2", "#CF7600"]
     assert {mine.colour for mine in of_meanings[2:]} <= {*OTHERS}
     assert len(set(of_meanings)) == 6
+    without = {(mine.colour, mine.dash) for mine in looks([""] * 25)}
+    assert len(without) == 25  # in print, too, where no mark is drawn
     of_seeds = variants("search", 9)
     assert {mine.colour for mine in of_seeds} == {"#CF7600"}
     assert len(set(of_seeds)) == 9
@@ -232,7 +274,7 @@ def linear(colour):
 
 @pytest.mark.parametrize("eye", SEEN)
 def test_meanings_stay_apart_for_colour_blind_readers(eye):
-    meanings = ("plan", "plain cycloid", "robust plan", "search")
+    meanings = ("plan", "plain cycloid", "robust plan", "search", "ZV", "ZVD", "EI")
     for on_page in ("colour", "on_dark"):
         seen = [lab(SEEN[eye] @ linear(getattr(MEANINGS[name], on_page))) for name in meanings]
         distances = [np.linalg.norm(a - b) for a, b in itertools.combinations(seen, 2)]

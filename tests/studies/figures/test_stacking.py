@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import quietarm as qa
-from quietarm.studies.figures.axes import head, legend_below, letter, new_figure
-from quietarm.studies.figures.stacking import MOST_PANELS, NARROW
+from quietarm.studies.figures.axes import NARROW, head, legend_below, letter, new_figure
+from quietarm.studies.figures.stacking import MOST_PANELS
 
 SENTENCE = "This plan takes 0.0237 J and arrives at rest; the plain cycloid leaves 77 mm"
 
@@ -118,3 +118,46 @@ def test_what_cannot_part_stays_together():
 def test_the_width_is_positive(width):
     with pytest.raises(ValueError, match="width"):
         qa.figures.stack(wide(), width)
+
+
+def test_a_drawing_without_axes_fills_the_width_at_its_scale():
+    figure = new_figure(6.4, 3.0)
+    ax = figure.subplots()
+    ax.plot([0, 4], [0, 1])
+    ax.set(aspect="equal", xlim=(0, 4), ylim=(0, 2))
+    ax.axis("off")
+    ax.set_title("The belt stretches, and the table lags behind the motor", loc="left")
+    stacked = qa.figures.stack(figure)
+    stacked.draw_without_rendering()
+    (drawn,) = stacked.axes
+    across, upwards = drawn.get_position().size * stacked.get_size_inches()
+    assert across == pytest.approx(2 * upwards, rel=1e-3)  # 4 by 2
+    assert across > 0.9 * NARROW
+    assert "\n" in drawn.get_title(loc="left")
+
+
+def test_a_title_that_was_set_as_text_is_broken_into_lines_too():
+    figure = new_figure(8.0, 3.0)
+    for ax in figure.subplots(1, 2):
+        ax.plot([0, 1], [0, 1])
+    figure.suptitle(SENTENCE, x=0.01, ha="left")
+    title = qa.figures.stack(figure).get_suptitle()
+    assert title.split() == SENTENCE.split()
+    assert title.count("\n") >= 1
+
+
+def test_a_legend_that_would_cover_its_panel_stands_below_it():
+    figure = new_figure(7.5, 3.6)
+    ax = figure.subplots()
+    ax.plot([0, 1], [0, 1], label="one solution: a point and its shadow price")
+    ax.set(xlabel="residual limit [mm]", ylabel="energy [mJ]")
+    ax.legend(loc="center left")
+    stacked = qa.figures.stack(figure)
+    stacked.draw_without_rendering()
+    (panel,) = stacked.axes
+    assert panel.get_legend().get_window_extent().y1 < panel.xaxis.label.get_window_extent().y0
+    ax.legend(["plan"], loc="center left")  # a short one stays where it was
+    stacked = qa.figures.stack(figure)
+    stacked.draw_without_rendering()
+    (panel,) = stacked.axes
+    assert panel.get_legend().get_window_extent().y0 > panel.get_window_extent().y0
