@@ -35,6 +35,7 @@ extensions = [
     "page_names",
     "readable_pictures",
     "search_snippets",
+    "stacked_tables",
     "whole_words",
 ]
 root_doc = "docs/index"

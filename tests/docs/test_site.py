@@ -40,6 +40,7 @@ glossary = extension("glossary_links")
 names = extension("page_names")
 pictures = extension("readable_pictures")
 snippets = extension("search_snippets")
+stacked = extension("stacked_tables")
 words = extension("whole_words")
 
 
@@ -287,6 +288,50 @@ def test_sentences_of_a_cell_go_on_and_columns_stay():
     assert f'<span class="sentence"><span></span>{sentence}</span>\n{row}' in words.keep_whole(page)
 
 
+# Tables of words
+
+
+def table_of(*rows, right=""):
+    """A table as Sphinx writes it; the first row has its headings."""
+    lines = [
+        "".join(f"<{tag}{right}><p>{words}</p></{tag}>" for words in row)
+        for tag, row in zip(["th", *["td"] * len(rows)], rows)
+    ]
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    return f'<table class="docutils align-default">{body}</table>'
+
+
+CHOICE = ("You have", "You want", 'Take "&amp;" go')
+
+
+def test_a_table_of_words_has_the_heading_of_every_cell_beside_it():
+    row = ("a recording of the machine", "a model, by <b>its swing</b>", "identify")
+    shown = stacked.stack_tables(table_of(CHOICE, row, ("a robot of six joints", "", "plan")))
+    assert shown.startswith('<table class="stacked docutils align-default">')
+    labels = re.findall(r'<td data-label="(.*?)"><p>(.*?)</p>', shown)
+    assert labels[:3] == [
+        ("You have", "a recording of the machine"),
+        ("You want", "a model, by <b>its swing</b>"),
+        ("Take &quot;&amp;&quot; go", "identify"),
+    ]
+    assert [label for label, _ in labels[3:]] == ["You have", "Take &quot;&amp;&quot; go"]
+    assert "<td><p></p></td>" in shown  # an empty cell says nothing
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        table_of(("a", "b"), ("plan", "blue and solid")),  # fits on a phone
+        table_of(("move", "energy"), ("link, 0 to pi/6, in 0.8 s, at rest", "0.0911")),
+        table_of(
+            CHOICE, ("a recording of the machine", "a model", "b"), right=' class="text-right"'
+        ),
+    ],
+)
+def test_short_tables_and_those_of_numbers_stay_side_by_side(table):
+    assert stacked.stack_tables(table) == table
+
+
 # The search
 
 
@@ -511,6 +556,23 @@ def test_tables_and_logs_can_be_read_on_a_phone(phone):
         assert phone.evaluate(BROKEN) == [], name
         assert phone.evaluate(TALL) == [], name
         assert phone.evaluate(UNSAID) == [], name
+
+
+@pytest.mark.slow
+@in_chromium
+@built
+def test_the_columns_of_a_table_of_words_are_seen_on_a_phone_without_scrolling(phone):
+    phone.goto((SITE / "docs" / "choose.html").as_uri())
+    cells = phone.locator("article table.docutils td")
+    assert cells.count() == 30
+    for left, right in cells.evaluate_all(
+        "cells => cells.map(c => [c.getBoundingClientRect().left, c.getBoundingClientRect().right])"
+    ):
+        assert 0 <= left < right <= 390
+    assert "You want" in cells.nth(1).evaluate("cell => getComputedStyle(cell, '::before').content")
+    phone.set_viewport_size({"width": 1400, "height": 900})
+    row = phone.locator("article table.docutils tbody tr").first
+    assert row.evaluate("row => new Set([...row.cells].map(c => c.offsetTop)).size") == 1
 
 
 @pytest.mark.slow
