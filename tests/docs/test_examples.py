@@ -297,7 +297,7 @@ def test_the_first_commands_print_what_the_page_shows_with_the_warnings_that_it_
 @pytest.mark.slow
 def test_the_machine_of_the_page_is_the_one_that_was_recorded(run_python, follow):
     run_python(MACHINE)
-    printed, *_ = [follow(f"machine-{number}")[0] for number in range(5)]
+    printed, _, fastest, *_ = [follow(f"machine-{number}")[0] for number in range(5)]
     (shown,) = blocks("machine", "text")
     of_page, now = (
         [[float(x) for x in re.findall(r"\d+\.\d+", line)] for line in text.splitlines()[:5]]
@@ -308,3 +308,6 @@ def test_the_machine_of_the_page_is_the_one_that_was_recorded(run_python, follow
     (_, low, high), _, (_, least, most), _ = (line[:3] for line in now[1:])
     assert low < 20.1 / (2 * math.pi) < high
     assert least < 0.01 < most
+    duration = float(re.findall(r"duration of the first is ([\d.]+) s", PAGES["machine"])[0])
+    printed_duration = float(re.findall(r"0 to 60 deg in ([\d.]+) s", fastest)[0])
+    assert printed_duration == pytest.approx(duration, rel=0.01)
