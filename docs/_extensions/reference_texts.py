@@ -20,6 +20,8 @@ _COLON = "\ue000"
 """In place of a colon while napoleon reads; of the private use area."""
 _ATTRIBUTES = ("attribute", "data", "property")
 _BEFORE_NAPOLEON, _AFTER_NAPOLEON = 400, 600
+LONGEST = 40
+"""Letters of a constant that a signature shows in place of its name."""
 _DUST = re.compile(r"\d+\.\d{14,}")
 _CONSTANT = re.compile(r"=([A-Z][A-Z_]+)\b")
 _PAGE = re.compile(r"(?<![\w/`])(?:docs/)?(\w+)\.md(?![\w/])")
@@ -77,7 +79,8 @@ def shorten_signature(
     constants = getattr(value, "__globals__", {})
 
     def shown(match: re.Match[str]) -> str:
-        return f"={constants[match[1]]!r}" if match[1] in constants else match[0]
+        constant = repr(constants.get(match[1], match[1]))
+        return f"={constant}" if match[1] in constants and len(constant) <= LONGEST else match[0]
 
     if arguments:
         arguments = _CONSTANT.sub(shown, arguments.replace("<factory>", "..."))
@@ -96,8 +99,8 @@ def mend_words(app: Sphinx, doctree: nodes.document) -> None:
                 without = _DUST.sub(lambda number: f"{float(number[0]):.10g}", text)
                 text.parent.replace(text, nodes.Text(without))
     for text in list(doctree.findall(nodes.Text)):
-        if text == " -- ":  # between a parameter and its meaning
-            text.parent.replace(text, nodes.Text(" \u2013 "))
+        if text.startswith(" -- "):  # between a parameter and its meaning
+            text.parent.replace(text, nodes.Text(f" \u2013 {text[4:]}"))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -17,7 +17,7 @@ from sphinx.application import Sphinx
 _COMMAND = re.compile(r'<div class="highlight-(?:console|sh)\b.*?</pre>', re.DOTALL)
 _TYPED = re.compile(
     r'<div class="highlight-text\b(?=[^>]*>\s*<div class="highlight"><pre>(?:<span></span>)?'
-    r"(?:\.venv|quietarm|git|cd|python3?|py|pipx|uvx?) )"
+    r"(?:\.venv\S+|quietarm|git|cd|python3?|py|pipx|uvx?) )"
 )
 """Commands that no test runs, which have the fence of a text."""
 _PRINTED = re.compile(r'(<div class="cell_output\b.*?<pre>)(.*?)(</pre>)', re.DOTALL)

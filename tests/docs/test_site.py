@@ -12,6 +12,8 @@ from urllib.request import url2pathname
 import pytest
 from pages import DOCS, ROOT
 
+import quietarm as qa
+
 nodes = pytest.importorskip("docutils.nodes")
 pytest.importorskip("sphinx")
 Image = pytest.importorskip("PIL.Image")
@@ -40,6 +42,7 @@ glossary = extension("glossary_links")
 names = extension("page_names")
 pictures = extension("readable_pictures")
 snippets = extension("search_snippets")
+reference = extension("reference_texts")
 stacked = extension("stacked_tables")
 words = extension("whole_words")
 
@@ -286,6 +289,62 @@ def test_sentences_of_a_cell_go_on_and_columns_stay():
     page = f'<div class="cell_output docutils">{printed}</div>'
     assert words.keep_whole(page).count('class="sentence"') == 1
     assert f'<span class="sentence"><span></span>{sentence}</span>\n{row}' in words.keep_whole(page)
+
+
+def test_long_words_of_code_break_behind_an_option_or_a_folder():
+    code = '<code class="literal">{}</code>'
+    option = code.format('<span class="pre">--coefficients="0.003347,-0.1697"</span>')
+    assert words.keep_whole(option) == code.format(
+        '<span class="pre">--coefficients=</span><wbr>'
+        '<span class="pre long">"0.003347,-0.1697"</span>'
+    )
+    path = "tests/ocp/simulation/test_third_opinion.py"
+    broken = words.keep_whole(code.format(f'<span class="pre">{path}</span>'))
+    assert broken.count("<wbr>") == 3
+    assert "simulation/<wbr>test_third_opinion.py</span>" in broken
+    short = code.format('<span class="pre">--output</span>')
+    assert words.keep_whole(short) == short
+
+
+@pytest.mark.parametrize("typed", [".venv/bin/quietarm sweep a.yaml", "git clone ADDRESS"])
+def test_commands_that_no_test_runs_break_as_those_that_one_does(typed):
+    block = (
+        '<div class="highlight-{} notranslate"><div class="highlight"><pre><span></span>{}</pre>'
+    )
+    assert words.keep_whole(block.format("text", typed)) == block.format("sh", typed)
+    printed = block.format("text", "move   single-link, 0 to 30 deg in 0.8 s")
+    assert words.keep_whole(printed) == printed
+
+
+# The reference
+
+
+def test_a_plant_of_the_reference_has_its_parameters_with_units_and_sources():
+    lines = reference.parameters_of(qa.FlexibleBeam)
+    assert lines[:3] == ["", "Parameters", "----------"]
+    meanings = dict(zip(lines[3::2], lines[4::2]))
+    assert "[m]; " in meanings["length : float"]
+    assert meanings["mode_count : int"].strip().startswith("How many")
+    assert "[" not in meanings["zeta : float"]  # it has no unit
+    assert len(meanings) == len(qa.FlexibleBeam.parameter_fields())
+    assert reference.parameters_of(qa.Plan) == []
+
+
+def test_the_reference_shows_values_of_short_constants_and_links_pages():
+    def function(task, objectives=("residual", "energy"), table=()):
+        """Its signature is what autodoc makes of the source."""
+
+    function.__globals__["SHORT_NAMES"] = ("residual", "energy")
+    function.__globals__["LONG_TABLE"] = tuple(range(100))
+    source = "(task, objectives=SHORT_NAMES, table=LONG_TABLE, errors=<factory>)"
+    shown, _ = reference.shorten_signature(None, "function", "", function, {}, source, None)
+    assert shown == "(task, objectives=('residual', 'energy'), table=LONG_TABLE, errors=...)"
+    environment = SimpleNamespace(found_docs={"docs/physics"})
+    lines = ["Unit: m, see docs/physics.md and tests/README.md."]
+    reference.before_napoleon(None, "attribute", "", None, {}, lines)
+    assert ":" not in lines[0]  # napoleon takes no unit for a type
+    reference.after_napoleon(SimpleNamespace(env=environment), "attribute", "", None, {}, lines)
+    assert lines == ["Unit: m, see :doc:`/docs/physics` and tests/README.md."]
 
 
 # Tables of words
