@@ -27,6 +27,8 @@ _LEFT_ALONE = re.compile(
 )
 _BEFORE_ARGUMENTS = '<span class="sig-paren">(</span>'
 """Of a signature: there a name that is wider than a phone goes on in the next line."""
+_NAME_ITSELF = '<span class="sig-name descname">'
+"""Of a signature, behind its package: there a long one goes on in the next line."""
 _LONG = re.compile(r'<span class="pre">([^<]{33,})</span>')
 _HYPHENATED = re.compile(r"(?<![^\s>])[^\s<>]*-[^\s<>]*(?![^<]*>)")
 _UNITS = (
@@ -55,6 +57,7 @@ def keep_whole(body: str) -> str:
     body = _TYPED.sub('<div class="highlight-sh', body)
     body = _COMMAND.sub(lambda block: _HYPHENATED.sub(_as_word, block[0]), body)
     body = body.replace(_BEFORE_ARGUMENTS, f"{_BEFORE_ARGUMENTS}<wbr>")
+    body = body.replace(_NAME_ITSELF, f"<wbr>{_NAME_ITSELF}")
     body = _LONG.sub(_long_word, body)
     body = _PRINTED.sub(lambda block: block[1] + _flowing(block[2]) + block[3], body)
     body = _CELL.sub(_with_room, body)

@@ -291,6 +291,12 @@ def test_sentences_of_a_cell_go_on_and_columns_stay():
     assert f'<span class="sentence"><span></span>{sentence}</span>\n{row}' in words.keep_whole(page)
 
 
+def test_a_signature_breaks_behind_its_package():
+    name = '<span class="sig-name descname">comparison_figure</span>'
+    dt = f'<dt class="sig"><span class="sig-prename">quietarm.studies.figures.</span>{name}</dt>'
+    assert words.keep_whole(dt) == dt.replace(name, f"<wbr>{name}")
+
+
 def test_long_words_of_code_break_behind_an_option_or_a_folder():
     code = '<code class="literal">{}</code>'
     option = code.format('<span class="pre">--coefficients="0.003347,-0.1697"</span>')
