@@ -12,9 +12,12 @@ import shutil
 import sys
 from importlib import import_module
 from pathlib import Path
+from textwrap import indent
+from typing import Any
 
 from docutils import nodes
 from latex2mathml.converter import convert
+from sphinx.pycode import ModuleAnalyzer
 
 from quietarm import __version__
 from quietarm.studies.cli.application import COMMANDS
@@ -34,7 +37,9 @@ extensions = [
     "glossary_links",
     "page_names",
     "readable_pictures",
+    "reference_texts",
     "search_snippets",
+    "stacked_tables",
     "whole_words",
 ]
 root_doc = "docs/index"
@@ -62,6 +67,8 @@ html_math_renderer = "mathml"
 default_role = "code"
 autodoc_member_order = "groupwise"
 autodoc_typehints = "none"
+autodoc_preserve_defaults = True  # as they stand in the source, without addresses
+toc_object_entries_show_parents = "hide"
 napoleon_numpy_docstring, napoleon_google_docstring = True, False
 suppress_warnings = ["ref.python"]  # a shape as (points, 2) looks like a name
 _STUDIES = {
@@ -90,13 +97,21 @@ def _display(self, node):
 
 def _described(package, name, value):
     """What autodoc is asked for a public name."""
+    if value is Any or not callable(value):
+        return _constant(package, name, value)
     if isinstance(value, type):
         kind = "exception" if issubclass(value, BaseException) else "class"
         members = "" if issubclass(value, (BaseException, tuple)) else "   :members:\n"
         return f".. auto{kind}:: quietarm.{package}.{name}\n{members}"
-    if callable(value):
-        return f".. autofunction:: quietarm.{package}.{name}\n"
-    return f".. autodata:: {_home(name)}.{name}\n   :no-value:\n"
+    return f".. autofunction:: quietarm.{package}.{name}\n"
+
+
+def _constant(package, name, value):
+    """A constant by the name with which it is imported: autodoc knows the one of its module."""
+    shown = f"   :value: {value!r}\n" if isinstance(value, (int, float, str)) else ""
+    words = ModuleAnalyzer.for_module(_home(name)).find_attr_docs()["", name]
+    text = indent("\n".join(words), "   ")
+    return f".. data:: quietarm.{package}.{name}\n{shown}\n{text}\n"
 
 
 def _home(name):

@@ -16,6 +16,11 @@ from typing import Any
 from sphinx.application import Sphinx
 
 _COMMAND = re.compile(r'<div class="highlight-(?:console|sh)\b.*?</pre>', re.DOTALL)
+_TYPED = re.compile(
+    r'<div class="highlight-text\b(?=[^>]*>\s*<div class="highlight"><pre>(?:<span></span>)?'
+    r"(?:\.venv\S+|quietarm|git|cd|python3?|py|pipx|uvx?) )"
+)
+"""Commands that no test runs, which have the fence of a text."""
 _PRINTED = re.compile(r'(<div class="cell_output\b.*?<pre>)(.*?)(</pre>)', re.DOTALL)
 _CELL = re.compile(r"<(?P<tag>t[dh])\b(?P<attributes>[^>]*)>(?P<content>.*?)</(?P=tag)>", re.DOTALL)
 _LEFT_ALONE = re.compile(
@@ -23,6 +28,8 @@ _LEFT_ALONE = re.compile(
 )
 _BEFORE_ARGUMENTS = '<span class="sig-paren">(</span>'
 """Of a signature: there a name that is wider than a phone goes on in the next line."""
+_NAME_ITSELF = '<span class="sig-name descname">'
+"""Of a signature, behind its package: there a long one goes on in the next line."""
 _LONG = re.compile(r'<span class="pre">([^<]{33,})</span>')
 _HYPHENATED = re.compile(r"(?<![^\s>])[^\s<>]*-[^\s<>]*(?![^<]*>)")
 _UNITS = (
@@ -33,7 +40,7 @@ _UNITS = (
 _NUMBER = r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?"
 _WITH_UNIT = rf"(?<![\w.^/-]){_NUMBER}[ \n](?:{_UNITS})(?![\w^/])"
 _NAME = r"(?<![^\s(,;\"])-?\w+(?:[-/]\w+)*[-/]\w*[A-Z0-9]\w*(?![\w-])|(?<![^\s(])-\w+(?:/\w+)?"
-_IN_BRACKETS = r"\[[^\[\]\s]+(?: m)?\]"
+_IN_BRACKETS = r"\[[^\[\]\s]+(?: (?:m|s|rad)(?:\^\d)?)*\]"
 _RANGE = rf"(?<![\w.]){_NUMBER} (?:to|of) {_NUMBER}(?![\w.])"
 _OPTION = r"(?<![\w-])--\w[\w-]*(?:=[^\s<>,;)]+)?"
 _WHOLE = re.compile(rf"{_WITH_UNIT}|{_IN_BRACKETS}|{_OPTION}|{_NAME}")
@@ -48,12 +55,24 @@ MOST_LETTERS = 32
 
 def keep_whole(body: str) -> str:
     """A page with every word that must not break in an element of its own."""
+    body = _TYPED.sub('<div class="highlight-sh', body)
     body = _COMMAND.sub(lambda block: _HYPHENATED.sub(_as_word, block[0]), body)
     body = body.replace(_BEFORE_ARGUMENTS, f"{_BEFORE_ARGUMENTS}<wbr>")
-    body = _LONG.sub(r'<span class="pre long">\1</span>', body)
+    body = body.replace(_NAME_ITSELF, f"<wbr>{_NAME_ITSELF}")
+    body = _LONG.sub(_long_word, body)
     body = _PRINTED.sub(lambda block: block[1] + _flowing(block[2]) + block[3], body)
     body = _CELL.sub(_with_room, body)
     return _in_texts(body, lambda text: _WHOLE.sub(_as_word, text))
+
+
+def _long_word(match: re.Match[str]) -> str:
+    """A word of code that is wider than a phone: it breaks behind its option, or a folder."""
+    option, equals, value = match[1].partition("=") if match[1].startswith("--") else ("", "", "")
+    if equals and len(option) <= MOST_LETTERS:
+        kept = f'<span class="pre">{option}=</span><wbr>'
+        return f'{kept}<span class="pre long">{value}</span>'
+    folders = re.sub(r"(?<=[\w.])/(?=\w)", "/<wbr>", match[1])
+    return f'<span class="pre long">{folders}</span>'
 
 
 def _as_word(match: re.Match[str]) -> str:

@@ -41,15 +41,18 @@ class VelocityRule:
             object.__setattr__(self, name, check(name, value))
 
 
-INERTIA_2002 = VelocityRule(1.0, 0.4, 1.0, 0.5, 0.5)  # [1]; needs the number of iterations
-CONSTRICTION = VelocityRule(1.0, 1.0, 0.729, 2.05, 2.05)  # [2]
+INERTIA_2002 = VelocityRule(1.0, 0.4, 1.0, 0.5, 0.5)
+"""Of Parsopoulos and Vrahatis (2002), whose inertia falls; it needs the number of iterations."""
+CONSTRICTION = VelocityRule(1.0, 1.0, 0.729, 2.05, 2.05)
+"""Of Clerc and Kennedy (2002)."""
 PAPER_GROUP = VelocityRule(
     1.0,
     1.0,
     0.73,
     2.05,
     2.05,
-)  # stated elsewhere by the paper's group
+)
+"""As the paper's group states elsewhere."""
 
 
 def clip(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:

@@ -34,7 +34,7 @@ class Beam:
     at : str
         The link.
     length : float
-        [m].
+        From the clamp to the end [m].
     width, height : float, optional
         Size of a rectangular section along the link's y and along its x [m].
     youngs_modulus, density : float, optional

@@ -13,10 +13,15 @@ from itertools import count
 Dash = str | tuple[int, tuple[float, ...]]
 
 BLUE = "#0072B2"
+"""Of a plan."""
 GREY = "#8B939C"
+"""Of the plain cycloid, and of arrival."""
 GREEN = "#009E73"
+"""Of a robust plan."""
 ORANGE = "#CF7600"
+"""Of a search."""
 RED = "#B3203F"
+"""Of what has no meaning of its own, as the first of `OTHERS`."""
 SKY = "#56B4E9"
 INDIGO = "#332288"
 BROWN = "#7A4B1E"

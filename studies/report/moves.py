@@ -113,7 +113,7 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
         (
             "verified",
             f"by CVODES, restarted at every jump: {check.steps} intervals differ by "
-            f"{abs(check.energy_difference) / motion.energy:.0e} in energy",
+            f"{abs(check.energy_difference) / motion.energy:.0e} of the energy",
         ),
         ("time", f"{floor.record.seconds:.2f} s"),
     ]
@@ -184,9 +184,9 @@ def _verified_row(plan: Plan) -> Row:
     """How far the two integrators agree; the word `verified` only where that is near enough."""
     check = plan.verification
     residual = _tip(plan.task, abs(check.residual_difference))
-    differ = f"{check.energy_share:.0e} in energy and {residual}"
+    differ = f"{check.energy_share:.0e} of the energy and {residual}"
     if check.agrees:
-        return "verified", f"by CVODES, which differs by {differ}"
+        return "verified", f"by CVODES, within {differ}"
     remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
     return "not verified", (
         f"the figures are by CVODES; {check.steps} fixed steps differ by {differ} in residual, "

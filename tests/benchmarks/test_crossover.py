@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -10,19 +11,22 @@ import moocore
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.colors import to_hex
+from matplotlib.lines import Line2D
 
 ROOT = Path(__file__).parents[2]
 RESULTS = ROOT / "docs" / "results"
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import crossover  # noqa: E402
-from parts.crossover import moves, packed, page, plan, run  # noqa: E402
+from parts.crossover import moves, packed, page, pictures, plan, run  # noqa: E402
 from parts.crossover.plan import Planned  # noqa: E402
 from parts.crossover.problems import Case, read_moves  # noqa: E402
 from parts.crossover.shared_terms import SharedTerms  # noqa: E402
 from parts.crossover.subset import best_subset  # noqa: E402
 
 import quietarm as qa  # noqa: E402
+from quietarm.studies.figures import grammar  # noqa: E402
 
 recompute = page.recompute_module(RESULTS)
 DRAWN = read_moves(RESULTS / "moves.csv")
@@ -196,6 +200,37 @@ def test_the_page_is_that_of_its_figures():
     assert size < 15e6
     text = (RESULTS / "report.md").read_text()
     assert f"A map from {sum(figures['runs'].values())} runs" in text
+
+
+def test_pictures_say_what_is_seen_in_colours_of_the_grammar():
+    figures = json.loads((RESULTS / "figures.json").read_text())
+    drawn = [
+        pictures.map_figure(figures["map"], page.WAYS, "gradient"),
+        pictures.coefficients_figure(figures["map_rows"]),
+        pictures.budget_figure(figures["map_rows"]),
+        pictures.attained_figure(figures["attained"]),
+        pictures.kinds_figure(figures["kinds"]),
+        pictures.noise_figure(figures["noise"]),
+        pictures.features_figure(figures["prediction"]),
+    ]
+    for figure in drawn:
+        sentence, facts = figure.get_suptitle().split("\n", 1)
+        assert len(sentence.split()) > 8
+        assert facts
+        lines = {to_hex(line.get_color()).upper() for line in figure.findobj(Line2D) if line.axes}
+        of_axes = {"#000000", "#B0B0B0"}
+        assert lines - of_axes <= grammar.INKS
+    # as the tables of the page say
+    assert "21 and 2" in drawn[0].get_suptitle()
+    assert "MOEA/D-DE misses 0.66 and 26 %" in drawn[1].get_suptitle()
+
+
+def test_the_page_and_what_to_take_are_those_of_the_template():
+    figures = json.loads((RESULTS / "figures.json").read_text())
+    of_size = re.compile(r"[\d.]+ MB in all")  # of the folder, which holds this page
+    text = page.page_of(figures, RESULTS)
+    published = (RESULTS / "report.md").read_text()
+    assert of_size.sub("", text) == of_size.sub("", published)
 
 
 @pytest.mark.slow

@@ -13,6 +13,8 @@ import pytest
 from notebook_files import NOTEBOOKS, narrow_name
 from pages import DOCS, ROOT
 
+import quietarm as qa
+
 nodes = pytest.importorskip("docutils.nodes")
 pytest.importorskip("sphinx")
 Image = pytest.importorskip("PIL.Image")
@@ -41,6 +43,8 @@ glossary = extension("glossary_links")
 names = extension("page_names")
 pictures = extension("readable_pictures")
 snippets = extension("search_snippets")
+reference = extension("reference_texts")
+stacked = extension("stacked_tables")
 words = extension("whole_words")
 
 
@@ -326,6 +330,112 @@ def test_a_sentence_that_a_program_broke_is_one_again():
     assert "(a symbol is no number); write def" in page
 
 
+def test_a_signature_breaks_behind_its_package():
+    name = '<span class="sig-name descname">comparison_figure</span>'
+    dt = f'<dt class="sig"><span class="sig-prename">quietarm.studies.figures.</span>{name}</dt>'
+    assert words.keep_whole(dt) == dt.replace(name, f"<wbr>{name}")
+
+
+def test_long_words_of_code_break_behind_an_option_or_a_folder():
+    code = '<code class="literal">{}</code>'
+    option = code.format('<span class="pre">--coefficients="0.003347,-0.1697"</span>')
+    assert words.keep_whole(option) == code.format(
+        '<span class="pre">--coefficients=</span><wbr>'
+        '<span class="pre long">"0.003347,-0.1697"</span>'
+    )
+    path = "tests/ocp/simulation/test_third_opinion.py"
+    broken = words.keep_whole(code.format(f'<span class="pre">{path}</span>'))
+    assert broken.count("<wbr>") == 3
+    assert "simulation/<wbr>test_third_opinion.py</span>" in broken
+    short = code.format('<span class="pre">--output</span>')
+    assert words.keep_whole(short) == short
+
+
+@pytest.mark.parametrize("typed", [".venv/bin/quietarm sweep a.yaml", "git clone ADDRESS"])
+def test_commands_that_no_test_runs_break_as_those_that_one_does(typed):
+    block = (
+        '<div class="highlight-{} notranslate"><div class="highlight"><pre><span></span>{}</pre>'
+    )
+    assert words.keep_whole(block.format("text", typed)) == block.format("sh", typed)
+    printed = block.format("text", "move   single-link, 0 to 30 deg in 0.8 s")
+    assert words.keep_whole(printed) == printed
+
+
+# The reference
+
+
+def test_a_plant_of_the_reference_has_its_parameters_with_units_and_sources():
+    lines = reference.parameters_of(qa.FlexibleBeam)
+    assert lines[:3] == ["", "Parameters", "----------"]
+    meanings = dict(zip(lines[3::2], lines[4::2]))
+    assert "[m]; " in meanings["length : float"]
+    assert meanings["mode_count : int"].strip().startswith("How many")
+    assert "[" not in meanings["zeta : float"]  # it has no unit
+    assert len(meanings) == len(qa.FlexibleBeam.parameter_fields())
+    assert reference.parameters_of(qa.Plan) == []
+
+
+def test_the_reference_shows_values_of_short_constants_and_links_pages():
+    def function(task, objectives=("residual", "energy"), table=()):
+        """Its signature is what autodoc makes of the source."""
+
+    function.__globals__["SHORT_NAMES"] = ("residual", "energy")
+    function.__globals__["LONG_TABLE"] = tuple(range(100))
+    source = "(task, objectives=SHORT_NAMES, table=LONG_TABLE, errors=<factory>)"
+    shown, _ = reference.shorten_signature(None, "function", "", function, {}, source, None)
+    assert shown == "(task, objectives=('residual', 'energy'), table=LONG_TABLE, errors=...)"
+    environment = SimpleNamespace(found_docs={"docs/physics"})
+    lines = ["Unit: m, see docs/physics.md and tests/README.md."]
+    reference.before_napoleon(None, "attribute", "", None, {}, lines)
+    assert ":" not in lines[0]  # napoleon takes no unit for a type
+    reference.after_napoleon(SimpleNamespace(env=environment), "attribute", "", None, {}, lines)
+    assert lines == ["Unit: m, see :doc:`/docs/physics` and tests/README.md."]
+
+
+# Tables of words
+
+
+def table_of(*rows, right=""):
+    """A table as Sphinx writes it; the first row has its headings."""
+    lines = [
+        "".join(f"<{tag}{right}><p>{words}</p></{tag}>" for words in row)
+        for tag, row in zip(["th", *["td"] * len(rows)], rows)
+    ]
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    return f'<table class="docutils align-default">{body}</table>'
+
+
+CHOICE = ("You have", "You want", 'Take "&amp;" go')
+
+
+def test_a_table_of_words_has_the_heading_of_every_cell_beside_it():
+    row = ("a recording of the machine", "a model, by <b>its swing</b>", "identify")
+    shown = stacked.stack_tables(table_of(CHOICE, row, ("a robot of six joints", "", "plan")))
+    assert shown.startswith('<table class="stacked docutils align-default">')
+    labels = re.findall(r'<td data-label="(.*?)"><p>(.*?)</p>', shown)
+    assert labels[:3] == [
+        ("You have", "a recording of the machine"),
+        ("You want", "a model, by <b>its swing</b>"),
+        ("Take &quot;&amp;&quot; go", "identify"),
+    ]
+    assert [label for label, _ in labels[3:]] == ["You have", "Take &quot;&amp;&quot; go"]
+    assert "<td><p></p></td>" in shown  # an empty cell says nothing
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        table_of(("a", "b"), ("plan", "blue and solid")),  # fits on a phone
+        table_of(("move", "energy"), ("link, 0 to pi/6, in 0.8 s, at rest", "0.0911")),
+        table_of(
+            CHOICE, ("a recording of the machine", "a model", "b"), right=' class="text-right"'
+        ),
+    ],
+)
+def test_short_tables_and_those_of_numbers_stay_side_by_side(table):
+    assert stacked.stack_tables(table) == table
+
+
 # The search
 
 
@@ -550,6 +660,23 @@ def test_tables_and_logs_can_be_read_on_a_phone(phone):
         assert phone.evaluate(BROKEN) == [], name
         assert phone.evaluate(TALL) == [], name
         assert phone.evaluate(UNSAID) == [], name
+
+
+@pytest.mark.slow
+@in_chromium
+@built
+def test_the_columns_of_a_table_of_words_are_seen_on_a_phone_without_scrolling(phone):
+    phone.goto((SITE / "docs" / "choose.html").as_uri())
+    cells = phone.locator("article table.docutils td")
+    assert cells.count() == 30
+    for left, right in cells.evaluate_all(
+        "cells => cells.map(c => [c.getBoundingClientRect().left, c.getBoundingClientRect().right])"
+    ):
+        assert 0 <= left < right <= 390
+    assert "You want" in cells.nth(1).evaluate("cell => getComputedStyle(cell, '::before').content")
+    phone.set_viewport_size({"width": 1400, "height": 900})
+    row = phone.locator("article table.docutils tbody tr").first
+    assert row.evaluate("row => new Set([...row.cells].map(c => c.offsetTop)).size") == 1
 
 
 @pytest.mark.slow

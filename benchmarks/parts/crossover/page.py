@@ -17,6 +17,7 @@ from .pictures import WAYS, write_pictures
 from .plan import LADDER
 from .run import plan_table
 from .tables import write_table
+from .verdicts import verdicts
 from .words import short_label, spelled_budget, two_digits, without_noise
 
 BEGIN = "<!-- what to take: benchmarks/crossover.py writes these lines -->"
@@ -130,25 +131,6 @@ def cell_of(cells: Sequence[Mapping[str, Any]], terms: int, budget: int) -> Mapp
 def row_of(rows: Sequence[Mapping[str, Any]], method: str) -> Mapping[str, Any] | None:
     """A method's row."""
     return next((row for row in rows if row["method"] == method), None)
-
-
-def verdicts(cells: Sequence[Mapping[str, Any]], way: str) -> dict[str, Any]:
-    """Of the cells of a map that were run: how many have a verdict, and for whom."""
-    rows = [(cell, cell["ways"][way]) for cell in cells if way in cell["ways"]]
-    compared = [(cell, row) for cell, row in rows if not row["no_front"]]
-    sure = [(cell, row) for cell, row in compared if row["verdict"]]
-    could = [row for _, row in compared if row["enough"]]
-    return {
-        "run": len(rows),
-        "search": [cell for cell, row in sure if row["log_ratio"] < 0],
-        "gradient": [cell for cell, row in sure if row["log_ratio"] > 0],
-        "alike": len(could) - len(sure),
-        "too_few": len(compared) - len(could),
-        "could": len(could),
-        "no_front": [cell for cell, row in rows if row["no_front"]],
-        "moves_nearer": sum(row["moves_nearer"] for _, row in compared),
-        "moves": sum(row["compared"] for _, row in compared),
-    }
 
 
 def p_value(value: float | None) -> str:

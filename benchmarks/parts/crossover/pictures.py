@@ -9,13 +9,16 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import TwoSlopeNorm
+from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from quietarm.studies.figures import stack
+from quietarm.studies.figures import grammar, stack
+from quietarm.studies.figures.axes import TITLE, head
+from quietarm.studies.figures.grammar import Look
 
+from .verdicts import verdicts
 from .words import RANDOM_STARTS, short_label, spelled_budget, two_digits, without_noise
 
 WAYS = (
@@ -31,16 +34,26 @@ VALUES = (
 MOST_DECADES = 1.5
 """A ratio of this many decades has the darkest colour."""
 NORM = TwoSlopeNorm(0.0, -MOST_DECADES, MOST_DECADES)
-DIVERGING = matplotlib.colormaps["RdBu_r"]
-NO_FRONT = "#f3e7b3"
+DIVERGING = LinearSegmentedColormap.from_list(
+    "search or gradient", [grammar.SEARCH.colour, "white", grammar.PLAN.colour]
+)
+"""Of a cell, by who is nearer: as the lines of a search and of the gradient."""
+NO_FRONT = grammar.FAINT
 """Of a cell where the gradient has no front yet on most moves, so that nothing is compared."""
-COLOUR_OF = {
-    "gradient, 50 points": "#1b1b1b", "gradient": "#1b1b1b", "MOEA/D-DE": "#0072b2",
-    "memetic MOEA/D-DE": "#d55e00", "MO-CMA-ES": "#009e73", "GDE3": "#cc79a7",
-    "NSGA-II": "#7f7f00", "differences": "#56b4e9", "differences of 1 % of the box": "#56b4e9",
-}  # fmt: skip
+FURTHER = grammar.looks([""] * 5)
+"""Looks of methods that are neither the gradient nor the nearest search."""
+LOOK_OF: Mapping[str, Look] = {
+    "gradient": grammar.PLAN,
+    **dict(
+        zip(
+            ("gradient, 50 points", "gradient, 10 points", "multistart"),
+            grammar.variants("plan", 3),
+        )
+    ),
+    **dict(zip(("MOEA/D-DE", "MOEA/D-DE, five evaluations"), grammar.variants("search", 2))),
+    **dict(zip(("memetic MOEA/D-DE", "differences", "MO-CMA-ES", "NSGA-II", "GDE3"), FURTHER)),
+}
 """Of the methods that several pictures have."""
-COLOURS = ("#1b1b1b", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7f7f00", "#56b4e9", "#8c510a")
 
 
 def write_pictures(figures: Mapping[str, Any], folder: Path) -> None:
@@ -79,9 +92,15 @@ def new_figure(width: float, height: float) -> Figure:
 def map_figure(
     cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
 ) -> Figure:
-    """Coefficients by budget: blue where a search is nearer, red where its rival is."""
+    """Coefficients by budget: orange where a search is nearer, blue where its rival is."""
     rows = len(ways) // 2
-    figure = new_figure(11.0, 0.7 + 3.15 * rows)
+    figure = new_figure(11.0, 1.1 + 3.15 * rows)
+    head(
+        figure,
+        _counted(cells, ways, rival),
+        f"Per cent of the best known hypervolume that the nearest search misses, and that "
+        f"{_the(rival)} {'misses' if rival == 'gradient' else 'miss'}; medians over moves",
+    )
     axes = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
     terms = sorted({cell["terms"] for cell in cells})
     budgets = sorted({cell["budget"] for cell in cells})
@@ -97,7 +116,7 @@ def map_figure(
             yticks=np.arange(len(budgets)) + 0.5,
             yticklabels=[spelled_budget(budget) for budget in budgets],
         )
-        ax.set_title(title, fontsize=10)
+        ax.set_title(title, **TITLE)
         ax.tick_params(length=0)
     for ax in axes[-1]:
         ax.set_xlabel("coefficients")
@@ -109,11 +128,38 @@ def map_figure(
     return figure
 
 
+def _counted(
+    cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
+) -> str:
+    """On how many cells the rival is nearer, and a search, with a verdict."""
+
+    def nearer(side: str, ending: str) -> int:
+        return sum(len(verdicts(cells, way)[side]) for way, _ in ways if way.endswith(ending))
+
+    panels = 2  # of a row: two ways to compare
+    total = panels * verdicts(cells, ways[0][0])["run"]
+    if rival != "gradient":
+        return (
+            f"{_the(rival).capitalize()} are nearer in {nearer('gradient', '')} of {total} cells, "
+            f"a search in {nearer('search', '')}"
+        )
+    return (
+        f"The gradient is nearer in {nearer('gradient', 'end')} of {total} cells if it runs to its "
+        f"end, a search in {nearer('search', 'end')}; in the search's time in "
+        f"{nearer('gradient', 'time')} and {nearer('search', 'time')}"
+    )
+
+
+def _the(rival: str) -> str:
+    """What a search is compared with, as a subject."""
+    return "the gradient" if rival == "gradient" else rival
+
+
 def draw_cell(ax: Axes, corner: tuple[int, int], row: Mapping[str, Any] | None, rival: str) -> None:
     """What the nearest search lacks and its rival; hatched or dotted without a verdict."""
     if row is None:
-        ax.add_patch(Rectangle(corner, 1, 1, facecolor="#eeeeee", edgecolor="white"))
-        middle(ax, corner, "not run", "#777777")
+        ax.add_patch(Rectangle(corner, 1, 1, facecolor=grammar.PALE, edgecolor="white"))
+        middle(ax, corner, "not run", grammar.INK)
         return
     name = short_label(row["method"]).replace(" of ", "\nof ")
     text = f"{name}\n{two_digits(row['missing'])} %\n{rival}\n"
@@ -125,9 +171,9 @@ def draw_cell(ax: Axes, corner: tuple[int, int], row: Mapping[str, Any] | None, 
     ax.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white"))
     if not row["verdict"]:
         hatch = "////" if row["enough"] else "...."
-        pattern: dict[str, Any] = {"fill": False, "edgecolor": "#999999", "linewidth": 0}
+        pattern: dict[str, Any] = {"fill": False, "edgecolor": grammar.GREY, "linewidth": 0}
         ax.add_patch(Rectangle(corner, 1, 1, hatch=hatch, **pattern))
-    dark = abs(row["log_ratio"]) > 0.6 * MOST_DECADES and row["verdict"]
+    dark = row["log_ratio"] > 0.6 * MOST_DECADES and row["verdict"]
     theirs = f"{two_digits(row['control'])} %"
     middle(ax, corner, text + theirs, "white" if dark else "black", not row["verdict"])
 
@@ -153,21 +199,24 @@ def per_cents(ax: Axes, values: Sequence[float]) -> None:
     ax.yaxis.set_minor_formatter(NullFormatter())
 
 
-def colours_of(names: Sequence[str]) -> dict[str, str]:
-    """The colour of each name: a method's is the same in all pictures, others take what is left."""
-    usual = {name: COLOUR_OF[name] for name in names if name in COLOUR_OF}
-    free = [colour for colour in COLOURS if colour not in usual.values()]
+def looks_of(names: Sequence[str]) -> dict[str, Look]:
+    """The look of each name: a method's is the same in all pictures, others take what is left."""
+    usual = {name: LOOK_OF[name] for name in names if name in LOOK_OF}
+    colours = {look.colour for look in usual.values()}
+    free = [look for look in FURTHER if look.colour not in colours] + FURTHER
     return usual | dict(zip([name for name in names if name not in usual], free))
 
 
 def labelled_lines(ax: Axes, lines: Mapping[str, tuple[Any, Any]], *, log_y: bool = True) -> None:
     """Lines, at most eight, each with its name at its right end, so that none covers another."""
-    colours = colours_of(list(lines))
+    looks = looks_of(list(lines))
     ends = list[tuple[float, str, str, float]]()
     for name, (x, y) in lines.items():
-        colour = colours[name]
-        ax.plot(x, y, color=colour, marker="o", markersize=3)
-        ends.append((float(y[-1]), name, colour, float(x[-1])))
+        look = looks[name]
+        marks = max(1, len(x) // 12)  # among many points
+        ax.plot(x, y, color=look.colour, linestyle=look.dash, marker=look.mark, markersize=4,
+                markevery=marks, linewidth=look.width)  # fmt: skip
+        ends.append((float(y[-1]), name, look.colour, float(x[-1])))
     low, high = ax.get_ylim()
     transform = np.log10 if log_y else np.asarray
     gap = 0.055 * (transform(high) - transform(low))
@@ -187,16 +236,28 @@ def labelled_lines(ax: Axes, lines: Mapping[str, tuple[Any, Any]], *, log_y: boo
 
 def coefficients_figure(rows: Mapping[str, Any]) -> Figure:
     """What methods lack over the number of coefficients, 10,000 candidates."""
-    return _lines_figure(rows["by_terms"], "coefficients")
+    return _lines_figure(rows["by_terms"], "coefficients", "10,000 candidates")
 
 
 def budget_figure(rows: Mapping[str, Any]) -> Figure:
     """What methods lack over the budget, six coefficients."""
-    return _lines_figure(rows["by_budget"], "candidates")
+    return _lines_figure(rows["by_budget"], "candidates", "six coefficients")
 
 
-def _lines_figure(lines: Mapping[str, Any], axis: str) -> Figure:
-    figure = new_figure(9.5, 3.6)
+def _lines_figure(lines: Mapping[str, Any], axis: str, fixed: str) -> Figure:
+    figure = new_figure(9.5, 4.2)
+    between = lines["between"]
+    first, last = (spelled_budget(between["moead-de"]["x"][end]) for end in (0, -1))
+    misses = {
+        name: " and ".join(dict.fromkeys(two_digits(between[name]["y"][end]) for end in (0, -1)))
+        for name in ("moead-de", "epsilon points=50")
+    }
+    head(
+        figure,
+        f"With {first} and {last} {axis} MOEA/D-DE misses {misses['moead-de']} %, the gradient "
+        f"{misses['epsilon points=50']} %, with motions between",
+        f"What fronts lack of the best known hypervolume; medians over moves, {fixed}",
+    )
     for ax, measure, title in zip(
         figure.subplots(1, 2), ("points", "between"), ("50 points each", "with motions between"),
         strict=True,
@@ -214,16 +275,28 @@ def _lines_figure(lines: Mapping[str, Any], axis: str) -> Figure:
         ax.minorticks_off() if axis == "coefficients" else None
         ax.set_xlabel(axis)
         ax.set_ylabel("hypervolume missing [%]")
-        ax.set_title(title, fontsize=10)
+        ax.set_title(title, **TITLE)
     return figure
 
 
 def attained_figure(attained: Mapping[str, Any]) -> Figure:
     """Share of targets attained over processor time."""
-    figure = new_figure(7.5, 4.0)
+    figure = new_figure(7.5, 4.5)
     ax = figure.subplots()
     ax.set_xscale("log")
     ax.set_ylim(0, 1.02)
+    after = 1.0  # second
+    reached = {
+        name: 100 * float(np.interp(after, attained["seconds"], attained["shares"][name]))
+        for name in ("epsilon points=50", "moead-de")
+    }
+    head(
+        figure,
+        f"After a second the gradient has attained {two_digits(reached['epsilon points=50'])} % "
+        f"of the targets, MOEA/D-DE {two_digits(reached['moead-de'])} %",
+        "Targets: 50, 20, 10, 5, 2 and 1 % missing on every move; six coefficients, 10,000 "
+        "candidates",
+    )
     shares = {
         name: values for name, values in attained["shares"].items() if name in attained["drawn"]
     }
@@ -234,10 +307,19 @@ def attained_figure(attained: Mapping[str, Any]) -> Figure:
 
 
 def _over_groups(
-    groups: Mapping[str, Sequence[Mapping[str, Any]]], labels: Mapping[str, str], width: float
+    groups: Mapping[str, Sequence[Mapping[str, Any]]],
+    labels: Mapping[str, str],
+    width: float,
+    sentence: str,
 ) -> Figure:
     """What methods lack in each group: lines of the gradient and of seven others at most."""
-    figure = new_figure(width, 3.6)
+    figure = new_figure(width, 4.1)
+    head(
+        figure,
+        sentence,
+        "What fronts, with motions between, lack of the best known hypervolume; medians over "
+        "moves, six coefficients, 10,000 candidates",
+    )
     ax = figure.subplots()
     missing = {row["method"]: row["missing"] for rows in groups.values() for row in rows}
     names = sorted((name for name in missing if RANDOM_STARTS not in name), key=missing.get)[:7]
@@ -253,21 +335,34 @@ def _over_groups(
     lacks = [value for _, y in series.values() for value in y]
     per_cents(ax, lacks)
     labelled_lines(ax, series)
-    ax.set_xticks(range(len(groups)), [labels[name] for name in groups])
-    ax.set_ylabel("hypervolume missing [%]\nwith motions between")
+    slope = 35  # degrees, so that labels stay apart on a phone
+    names_of_groups = [labels[name] for name in groups]
+    ax.set_xticks(range(len(groups)), names_of_groups, rotation=slope, ha="right")
+    ax.set_ylabel("hypervolume missing [%]")
     return figure
 
 
 def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
     """What methods lack by the kind of energy."""
     words = {
-        "copper": "copper,\nsmooth", "absolute": "|power|", "stages": "in\nstages",
-        "motor-map": "motor's\nmap,\njumps", "integer": "an\ninteger",
+        "copper": "copper, smooth", "absolute": "|power|", "stages": "in stages",
+        "motor-map": "motor's map, jumps", "integer": "an integer",
     }  # fmt: skip
     groups = {kind: kinds[kind] for kind in words if kinds[kind]}
     if "integer" in groups:  # differences keep the number with which they start
         groups["integer"] = [row for row in groups["integer"] if row["method"] != "slsqp"]
-    return _over_groups(groups, words, 8.5) if groups else None
+    if not groups:
+        return None
+    usual, jumping = (
+        next(row for row in kinds[kind] if row["method"] == "moead-de")
+        for kind in ("absolute", "motor-map")
+    )
+    sentence = (
+        f"With |power| MOEA/D-DE misses {two_digits(usual['missing'])} %, the gradient "
+        f"{two_digits(usual['control'])} %; with a map that jumps "
+        f"{two_digits(jumping['missing'])} and {two_digits(jumping['control'])} %"
+    )
+    return _over_groups(groups, words, 8.5, sentence)
 
 
 def noise_figure(noise: Mapping[str, Any]) -> Figure:
@@ -277,7 +372,16 @@ def noise_figure(noise: Mapping[str, Any]) -> Figure:
         for share, compared in noise.items()
         if compared
     }
-    return _over_groups(rows, {"0": "no noise", "0.01": "1 %", "0.05": "5 %"}, 7.0)
+    share, compared = list(rows.items())[-1]
+    misses = {row["method"]: two_digits(row["missing"]) for row in compared}
+    by_differences = [row for row in compared if row["method"].startswith("slsqp")]
+    best = min(by_differences, key=lambda row: row["missing"])
+    sentence = (
+        f"With noise of {100 * float(share):g} % MOEA/D-DE misses {misses['moead-de']} %, "
+        f"differences at best {two_digits(best['missing'])} %"
+    )
+    labels = {"0": "no noise", "0.01": "noise of 1 %", "0.05": "noise of 5 %"}
+    return _over_groups(rows, labels, 7.5, sentence)
 
 
 def features_figure(prediction: Mapping[str, Any]) -> Figure | None:
@@ -292,13 +396,22 @@ def features_figure(prediction: Mapping[str, Any]) -> Figure | None:
         "share of the best basin",
         "share within 1 mm",
     )
-    figure = new_figure(11.0, 3.2)
+    figure = new_figure(11.0, 3.9)
+    ranks = prediction["between"]["correlations"]
+    head(
+        figure,
+        f"How far a search is behind the gradient rises with the coefficients (rank correlation "
+        f"{two_digits(ranks['coefficients'])}), hardly with the basins "
+        f"({two_digits(ranks['best_basin'])})",
+        "A point is a problem; 10,000 candidates, with motions between",
+    )
     for ax, name, label in zip(figure.subplots(1, 4, sharey=True), names, labels, strict=True):
-        for colour, plant in zip(COLOURS, sorted({row["plant"] for row in shown})):
+        for number, plant in enumerate(sorted({row["plant"] for row in shown})):
+            look = grammar.look(number)
             rows = [row for row in shown if row["plant"] == plant]
-            ax.plot([row[name] for row in rows], [row["outcome"] for row in rows], "o",
-                    markersize=4, color=colour, label=plant)  # fmt: skip
-        ax.axhline(0.0, color="grey", linewidth=0.8)
+            ax.plot([row[name] for row in rows], [row["outcome"] for row in rows], look.mark,
+                    markersize=4, color=look.colour, label=plant)  # fmt: skip
+        ax.axhline(0.0, color=grammar.FAINT, linewidth=0.8)
         ax.set_xlabel(label)
         if name in ("coefficients", "condition"):
             ax.set_xscale("log")
