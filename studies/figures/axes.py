@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
-from quietarm.studies.report.words import window_words
+from quietarm.studies.report.words import raised, window_words
 from quietarm.studies.tips import tip_scale
 
 Array = NDArray[np.float64]
@@ -47,7 +47,7 @@ def head(figure: Figure, sentence: str, facts: str = "", width: float | None = N
     The label of the title has both, each in one line.
     """
     size = 11
-    paragraphs = [words for words in (sentence, facts) if words]
+    paragraphs = [raised(words) for words in (sentence, facts) if words]
     if paragraphs:
         width = width or figure.get_figwidth()
         broken = [broken_into_lines(words, width, size) for words in paragraphs]

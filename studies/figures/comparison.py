@@ -30,7 +30,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.grammar import FAINT, FLOOR, PAPER, Look, looks
 from quietarm.studies.figures.marked_points import mark_points
-from quietarm.studies.report.words import raised, title_of_picture
+from quietarm.studies.report.words import title_of_picture
 from quietarm.studies.tips import tip_scale, tip_words
 
 if TYPE_CHECKING:
@@ -82,8 +82,7 @@ def comparison_figure(comparison: Comparison, known: Sequence[KnownPoint] = ()) 
         title="Several seeds: the line is what half of them reach\n"
         "(of two, the better one), the band best to worst" if several else None,
     )  # fmt: skip
-    facts = raised(title_of_picture(comparison.task))
-    head(figure, _caption(comparison), facts)
+    head(figure, _caption(comparison), title_of_picture(comparison.task))
     return figure
 
 

@@ -20,7 +20,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.grammar import BROWN, FAINT, GREY, HEAT, PALE, PINK, PLAN, RED, SKY
 from quietarm.studies.report.captions import caption_of_cells
-from quietarm.studies.report.words import limit_words, moved, raised
+from quietarm.studies.report.words import limit_words, moved
 from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.grid import Axis
 from quietarm.studies.sweep.store import Store
@@ -105,7 +105,7 @@ def fronts_figure(store: Store) -> Figure:
 def _head(figure: Figure, store: Store) -> None:
     """What is seen of a grid: how many cells have a plan, its energies, and what they leave."""
     task = store.definition.grid.task
-    plant = raised(", ".join([moved(task), *limit_words(task)]))
+    plant = ", ".join([moved(task), *limit_words(task)])
     cells = caption_of_cells(store.read("energy"), store.read("residual"), task.plant.tip_unit)
     head(figure, cells, plant)
 

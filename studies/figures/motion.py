@@ -283,7 +283,7 @@ def _head(
         return
     motions = {line.label: line.plan for line in lines}
     facts = f"{title_of_picture(lines[0].plan.task)}; {verified_words([*motions.values()])}"
-    head(figure, caption_of_motions(motions), raised(facts), width)
+    head(figure, caption_of_motions(motions), facts, width)
 
 
 def _figure_of_joints(

@@ -21,7 +21,6 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.grammar import LIMIT, looks
 from quietarm.studies.report.captions import caption_of_judged
-from quietarm.studies.report.words import raised
 from quietarm.studies.tips import tip_scale
 
 if TYPE_CHECKING:
@@ -122,7 +121,7 @@ def motions_figure(motions: Sequence[JudgedMotion], title: str, tip_unit: str = 
     meanings = [motion.meaning for motion in motions if motion.robustness is not None]
     names = list(next(iter(curves.values())).ranges) if curves else []
     caption = caption_of_judged(motions, tip_unit)
-    figure, axes = side_by_side(1 + len(names), caption, raised(title), width=6.0)
+    figure, axes = side_by_side(1 + len(names), caption, title, width=6.0)
     draw_motions(motions, axes[0], tip_unit)
     if any(judged.worst for judged in motions):
         label = residual_label(tip_unit, _window(motions))

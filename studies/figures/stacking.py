@@ -15,7 +15,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import AutoLocator
 
 from quietarm.ocp.checks import positive, takes
-from quietarm.studies.figures.axes import NARROW, broken_into_lines, head, letters_an_inch
+from quietarm.studies.figures.axes import NARROW, TITLE, broken_into_lines, head, letters_an_inch
 
 MOST_PANELS = 8
 """More, as all quantities of six joints, would be a scroll of many screens."""
@@ -120,7 +120,7 @@ def _narrowed(ax: Axes, width: float) -> float:
     beside = _BESIDE if ax.axison else 0.0
     for side in ("left", "center"):
         if title := ax.get_title(loc=side):
-            text = ax.set_title(title, loc=side)
+            text = ax.set_title(title, loc=side, fontsize=TITLE["fontsize"])
             text.set_text(broken_into_lines(title, width - beside, _size_of(text)))
     if not ax.axison:
         return _height_of_drawing(ax, width)

@@ -89,8 +89,8 @@ def verified_words(motions: Sequence[Plan | Floor]) -> str:
         return "by CVODES"
     share = max(check.energy_share for check in checks)
     if all(check.agrees for check in checks):
-        return f"verified by CVODES (energy differs by {share:.0e})"
-    return f"not verified (energy differs by {share:.0e})"
+        return f"verified by CVODES, within {share:.0e} of the energy"
+    return f"not verified: CVODES differs by {share:.0e} of the energy"
 
 
 def caption_of_front(front: Front) -> str:

@@ -25,8 +25,8 @@ def counted(number: int, what: str) -> str:
 
 
 def raised(unit: str) -> str:
-    """A unit as it is drawn, without a formula: rad/s²."""
-    return unit.replace("^2", "²").replace("^3", "³")
+    """A unit as it is drawn, without a formula: rad/s², ±5 %."""
+    return unit.replace("^2", "²").replace("^3", "³").replace("+-", "±")
 
 
 def spread_words(spread: Spread, form: str, unit: str = "") -> str:

@@ -336,7 +336,7 @@ def _content(
     left_out = f"{count} of the front's {count + move.left_out} points. " if move.left_out else ""
     return {
         "label": move.label,
-        "title": raised(move.title).replace("+-", "\u00b1"),
+        "title": raised(move.title),
         "this": _css_name(move.meaning),
         "mark": looks_of_all[0].mark,
         "method": move.method,
