@@ -155,6 +155,8 @@ def draw_comparison(
         [tallest * comparison.best_front[0, 1], *(1.05 * point.energy for point in known)]
     )
     ax.set_ylim(top=min(ax.get_ylim()[1], highest))
+    if comparison.floor is not None:
+        _leave_room_below(ax, comparison.floor)
     name_objectives(ax, tip_unit, comparison.task.residual_window)
     ax.set_title("small residuals" if small else "the whole fronts", **TITLE)
     if small:
@@ -176,6 +178,12 @@ def _draw_floor(ax: Axes, comparison: Comparison, rest: float) -> None:
     words = f"{comparison.floor:.4g} J at rest,\n{abs(share):.2g} % {side}"
     ax.annotate(words, (rest, comparison.floor), (10, -1), textcoords="offset points",
                 color=FLOOR.colour, fontsize=8, va="top")  # fmt: skip
+
+
+def _leave_room_below(ax: Axes, energy: float, share: float = 0.22) -> None:
+    """Let an axis begin so far below an energy that two lines of words have room there."""
+    bottom, top = ax.get_ylim()
+    ax.set_ylim(bottom=min(bottom, (energy - share * top) / (1 - share)))
 
 
 def _caption(comparison: Comparison) -> str:
