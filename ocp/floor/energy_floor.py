@@ -23,7 +23,6 @@ from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.best_of_starts import SAME, Sought, least_peaks, true_peaks, unmet
 from quietarm.ocp.planning.certify import excess_error, tighten
 from quietarm.ocp.planning.plan_move import plan_move
-from quietarm.ocp.planning.too_short import refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.joint_profile import JointPath
@@ -210,7 +209,6 @@ def energy_floor(
     starts = number_of_starts(starts)
     seed = whole("seed", seed, 0)
     tolerance = positive("energy tolerance", energy_tolerance)
-    refuse_too_short(task)
     program = FloorProgram(task, smooth, solver)
     solved = _solve_from_starts(program, _paths(task, starts, seed, solver))
     improved = _refine_each(program, solved)

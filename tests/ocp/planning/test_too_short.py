@@ -8,7 +8,6 @@ from quietarm.models import LinearAxis
 from quietarm.ocp import (
     InfeasibleTaskError,
     PointToPoint,
-    energy_floor,
     epsilon_front,
     plan_move,
     weighted_front,
@@ -26,8 +25,8 @@ def test_a_plan_is_refused_with_the_duration_that_will_do():
         plan_move(AXIS)
 
 
-@pytest.mark.parametrize("find", [epsilon_front, weighted_front, energy_floor])
-def test_fronts_and_floors_are_refused_alike(find):
+@pytest.mark.parametrize("find", [epsilon_front, weighted_front])
+def test_fronts_are_refused_alike(find):
     with pytest.raises(InfeasibleTaskError, match="even a rigid joint takes 2 s"):
         find(AXIS)
 
