@@ -21,7 +21,11 @@ _TYPED = re.compile(
     r"(?:\.venv\S+|quietarm|git|cd|python3?|py|pipx|uvx?) )"
 )
 """Commands that no test runs, which have the fence of a text."""
-_PRINTED = re.compile(r'(<div class="cell_output\b.*?<pre>)(.*?)(</pre>)', re.DOTALL)
+_PRINTED = re.compile(
+    r'(<div class="output [^"]*\bhighlight-[^"]*"><div class="highlight"><pre>)(.*?)(</pre>)',
+    re.DOTALL,
+)
+"""What a cell of a notebook prints, and no code of one."""
 _CELL = re.compile(r"<(?P<tag>t[dh])\b(?P<attributes>[^>]*)>(?P<content>.*?)</(?P=tag)>", re.DOTALL)
 _LEFT_ALONE = re.compile(
     r"<(pre|script|style|svg|math|button|code|td|th)\b.*?</\1>|<[^>]*>", re.DOTALL
@@ -76,8 +80,13 @@ def _long_word(match: re.Match[str]) -> str:
 
 
 def _as_word(match: re.Match[str]) -> str:
-    word = match[0]
-    return f'<span class="word">{word}</span>' if len(word) <= MOST_LETTERS else word
+    """A word in an element of its own; a longer one breaks behind its commas."""
+    if len(match[0]) <= MOST_LETTERS:
+        return f'<span class="word">{match[0]}</span>'
+    parts = re.split(r"(?<=,)", match[0])
+    if len(parts) == 1:
+        return match[0]
+    return "<wbr>".join(f'<span class="word">{part}</span>' for part in parts)
 
 
 def _in_texts(body: str, change: Callable[[str], str]) -> str:
@@ -113,7 +122,12 @@ def _joined(lines: list[str]) -> list[str]:
     full = 70  # letters; programs break at 80 to 90
     joined = lines[:1]
     for before, line in pairwise(lines):
-        if len(_text_of(before)) >= full and _is_indented_as(line, before) and line.strip():
+        if (
+            len(_text_of(before)) >= full
+            and _is_indented_as(line, before)
+            and _is_prose(before)
+            and _is_prose(line)
+        ):
             joined[-1] += f" {line.lstrip()}"
         else:
             joined.append(line)
@@ -137,10 +151,14 @@ def _has_columns(block: str) -> bool:
 def _is_sentence(line: str) -> bool:
     """Whether a line is too long for a phone, and has words."""
     letters_on_a_phone = 40
-    fewest_words = 5  # a row of a file has fewer
-    text = _text_of(line).strip()
     whole = line.count("<span") == line.count("</span>")
-    return whole and len(text) > letters_on_a_phone and len(text.split()) >= fewest_words
+    return whole and len(_text_of(line).strip()) > letters_on_a_phone and _is_prose(line)
+
+
+def _is_prose(line: str) -> bool:
+    """Whether a line has so many words as a row of a file has not."""
+    fewest_words = 5
+    return len(_text_of(line).split()) >= fewest_words
 
 
 def _with_room(cell: re.Match[str]) -> str:

@@ -1,5 +1,6 @@
 """The site: links to the glossary, the search without a server, code that breaks nowhere."""
 
+import html
 import importlib.util
 import re
 import shutil
@@ -9,6 +10,7 @@ from types import SimpleNamespace
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
+import nbformat
 import pytest
 from notebook_files import NOTEBOOKS, narrow_name
 from pages import DOCS, ROOT
@@ -291,14 +293,17 @@ def test_a_cell_has_room_for_its_words():
 
 def test_a_command_that_a_cell_prints_breaks_between_its_words():
     command = "$ quietarm plan --plant-file table.py --set stiffness=6 --target 180deg"
-    page = f'<div class="cell_output docutils"><pre>{command}\n</pre></div>'
-    assert whole_words_of(page) == ["--plant-file", "--set", "--target"]
+    assert whole_words_of(printed_by_cell(command)) == ["--plant-file", "--set", "--target"]
 
 
 def printed_by_cell(*lines):
     """A page with what a cell prints."""
     printed = "\n".join(lines)
-    return f'<div class="cell_output docutils"><pre><span></span>{printed}\n</pre></div>'
+    return (
+        '<div class="cell_output docutils container">\n'
+        '<div class="output stream highlight-myst-ansi notranslate"><div class="highlight">'
+        f"<pre><span></span>{printed}\n</pre></div>\n</div>\n</div>"
+    )
 
 
 def test_sentences_of_a_cell_go_on_and_columns_stay():
@@ -328,6 +333,21 @@ def test_a_sentence_that_a_program_broke_is_one_again():
     assert page.count('class="sentence"') == 1
     assert "</span>PlainSine:\n" in page
     assert "(a symbol is no number); write def" in page
+
+
+def test_rows_of_a_file_stay_rows():
+    header = "time_s,angle_rad,speed_rad_s,acceleration_rad_s2,jerk_rad_s3,tip_m,torque_Nm,power_W"
+    row = "0.01,0.0005,0.12,10.3,-21.5,-0.00012,0.153,0.0181,0.01,0.0005,0.12,10.3,-21.5,-0.0"
+    page = printed_by_cell(header, row, row)
+    assert words.keep_whole(page) == page
+
+
+def test_code_behind_a_picture_stays_as_it_is():
+    # the lines are long, have words, and are indented alike
+    line = "settings = {'limits': 3, 'and': 4, 'words': 5}  # as long as a line of a program may be"
+    picture = '<div class="cell_output docutils container">\n<img src="one.png"></div>'
+    code = f'<div class="cell_input"><div class="highlight"><pre>{line}\n{line}\n</pre></div></div>'
+    assert words.keep_whole(picture + code) == picture + code
 
 
 def test_a_signature_breaks_behind_its_package():
@@ -602,6 +622,23 @@ def phone(page):
     """A page that is opened on a phone."""
     page.set_viewport_size({"width": 390, "height": 844})
     return page
+
+
+def codes_on(page):
+    """The programs of the cells that a page of a notebook shows."""
+    blocks = re.findall(r'<div class="cell_input\b.*?<pre>(.*?)</pre>', page.read_text(), re.DOTALL)
+    return [html.unescape(re.sub(r"<[^>]*>", "", block)).strip() for block in blocks]
+
+
+@pytest.mark.slow
+@built
+@pytest.mark.parametrize("path", sorted(ROOT.glob("notebooks/[0-9]*.ipynb")), ids=lambda p: p.stem)
+def test_the_code_of_a_notebook_stands_on_its_page_as_it_is(path):
+    cells = nbformat.read(path, as_version=4).cells
+    sources = {cell.source.strip() for cell in cells if cell.cell_type == "code"}
+    shown = codes_on(SITE / "notebooks" / f"{path.stem}.html")
+    assert len(shown) > len(sources) / 2
+    assert set(shown) <= sources
 
 
 @pytest.mark.slow
