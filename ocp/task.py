@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import Plant, known_plants
-from quietarm.models.joint_motion import joint_unit
+from quietarm.models.joint_motion import LINEAR, joint_unit
 from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import finite, has_no, instance, positive, several, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
@@ -215,6 +215,22 @@ class PointToPoint:
     def span(self) -> float:
         """Target - start [rad]."""
         return self.target - self.start
+
+    @property
+    def ends(self) -> str:
+        """From where to where in words: "0 to 30 deg", of several joints the places on their path."""
+        if len(self.plant.joint_names) > 1:
+            whole = (self.start, self.target) == (0.0, 1.0)
+            return (
+                "along its path" if whole else f"{self.start:.6g} to {self.target:.6g} of the path"
+            )
+        factor, unit = (1e3, "mm") if self.plant.joint == LINEAR else (math.degrees(1.0), "deg")
+        places = [factor * self.start, factor * self.target]
+        longest = max(map(abs, places))
+        # 0.5236 rad are 30 deg: five figures of the longer of both, and none of rounding errors
+        decimals = 5 - math.ceil(math.log10(longest)) if longest > 0 else 0
+        first, last = (round(place, decimals) + 0.0 for place in places)  # never a negative zero
+        return f"{first:.6g} to {last:.6g} {unit}"
 
     @property
     def move(self) -> tuple[float, float, float]:

@@ -35,8 +35,10 @@ def has_words(table: str) -> bool:
     ]
     beside = [text for row in rows for text in row[1:] if text]
     numbers = sum(bool(_NUMBER.match(text)) for text in beside)
+    sentence = 6  # words
+    of_words = 2 * numbers < len(beside) or any(len(text.split()) >= sentence for text in beside)
     longest = max((sum(map(len, row)) for row in rows), default=0)
-    return longest > SIDE_BY_SIDE and _RIGHT not in table and 2 * numbers < len(beside)
+    return longest > SIDE_BY_SIDE and _RIGHT not in table and of_words
 
 
 def _stacked(table: str) -> str:

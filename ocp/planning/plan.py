@@ -177,13 +177,13 @@ class Plan(MotionAnswer):
         """What a notebook shows."""
         task = self.task
         motion = self.motion
-        residual = "none"
+        residual = "at rest"
         if motion.residual > REST:
             residual = f"{motion.residual:.3g} {task.plant.tip_unit}"
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
         rows = {
             "plant": task.plant.name,
-            "move": f"{task.start:.4g} to {task.target:.4g} rad in {task.duration:.4g} s",
+            "move": f"{task.ends} in {task.duration:g} s",
             "energy F2": f"{motion.energy:.5g} J",
             f"residual vibration F1 within {task.residual_window:.4g} s": residual,
             **self._robust_rows(),

@@ -30,6 +30,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.grammar import FAINT, FLOOR, PAPER, Look, looks
 from quietarm.studies.figures.marked_points import mark_points
+from quietarm.studies.report.methods import with_kind
 from quietarm.studies.report.words import title_of_picture
 from quietarm.studies.tips import tip_scale, tip_words
 
@@ -129,7 +130,8 @@ def draw_comparison(
         shown = _up_to(group.runs[0].between if line else group.median, right)
         draw_front(
             ax, shown[:, 0], shown[:, 1], tip_unit, exact=line, width=1.2 + wider,
-            color=look_of_group.colour, linestyle=look_of_group.dash, label=group.label,
+            color=look_of_group.colour, linestyle=look_of_group.dash,
+            label=with_kind(group.label, group.by_gradient),
         )  # fmt: skip
         if len(group.runs) > 1:
             residuals, best, worst = group.band
@@ -220,7 +222,8 @@ def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
             np.maximum(group.median[:, 0], _left(comparison)) * scale,
             100 * comparison.above_best(group.median), look_of_group.mark,
             color=look_of_group.colour,
-            markersize=3.2 + wider, markeredgewidth=0, label=group.label,
+            markersize=3.2 + wider, markeredgewidth=0,
+            label=with_kind(group.label, group.by_gradient),
         )  # fmt: skip
     ax.set_yscale("symlog", linthresh=0.1, linscale=0.5)
     ax.yaxis.set_major_formatter("{x:g}")

@@ -29,7 +29,7 @@ from quietarm.studies.figures.grammar import PALE, PLAN, RED, Look, looks, varia
 from quietarm.studies.figures.marked_points import mark_points
 from quietarm.studies.figures.surface_figures import draw_parallel, draw_peak
 from quietarm.studies.report.captions import caption_of_fronts, caption_of_polish
-from quietarm.studies.report.methods import is_gradient, label_of
+from quietarm.studies.report.methods import described, is_gradient
 from quietarm.studies.report.words import spread_words, title_of_picture
 from quietarm.studies.tips import tip_scale, tip_words
 
@@ -129,7 +129,7 @@ def _tip_unit(fronts: Sequence[Front]) -> str:
 
 def _names(fronts: Sequence[Front]) -> list[str]:
     """What to call every front: its method where there are several; of several runs the seed."""
-    methods = [label_of(front.record.method) for front in fronts]
+    methods = [described(front.record.method) for front in fronts]
     several = len(set(methods)) > 1
     names = list[str]()
     for i, (front, method) in enumerate(zip(fronts, methods), start=1):
@@ -248,7 +248,7 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     peaks = len(fronts[0].objectives) - len(RESIDUAL_AND_ENERGY)
     parallel = int(peaks > 1)
     panels += parallel
-    facts = f"{label_of(method)}: {title_of_picture(fronts[0].task)}"
+    facts = f"{described(method)}: {title_of_picture(fronts[0].task)}"
     width = 4.2 if panels > 1 else 6.4
     figure, axes = side_by_side(panels, caption_of_fronts(fronts), facts, width)
     if peaks:
@@ -272,7 +272,7 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
 @takes(before=Front)
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """Draw a front before and after polishing, and the energy that this saved point by point."""
-    facts = f"{label_of(polish.front.record.method)}: {title_of_picture(before.task)}"
+    facts = f"{described(polish.front.record.method)}: {title_of_picture(before.task)}"
     figure, (ax, saved) = side_by_side(2, caption_of_polish(polish), facts, width=5.6)
     draw_fronts([before, polish.front], ax, ("before", "after"))
     tip_unit = before.task.plant.tip_unit

@@ -41,6 +41,11 @@ def label_of(method: str, solver: str = "") -> str:
 
 def described(method: str) -> str:
     """A method of fronts with what it is, for who does not know its name: search (NSGA-II)."""
-    kind = "gradient" if is_gradient(method) else "search"
-    name = label_of(method).replace(" (", "; ").removesuffix(")")
+    return with_kind(label_of(method), is_gradient(method))
+
+
+def with_kind(label: str, by_gradient: bool) -> str:
+    """A method's label with what the method is: gradient (epsilon constraint)."""
+    kind = "gradient" if by_gradient else "search"
+    name = label.replace(" (", "; ").replace(")", "")
     return f"{kind} ({name})"

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import ceil, degrees, isfinite, log10
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR, joint_unit
+from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.limits import RESIDUAL
@@ -98,27 +98,7 @@ def move_of(task: PointToPoint) -> str:
     """The move of a task: "0 to 30 deg in 0.8 s"; its energy where that is not the paper's."""
     ringing = ", ringing at the start" if task.initial else ""
     wanted = ", to a state other than rest" if task.final else ""
-    ends = ends_words(task)
-    return ", ".join([f"{ends} in {task.duration:g} s{ringing}{wanted}", *energy_words(task)])
-
-
-def ends_words(task: PointToPoint) -> str:
-    """From where to where: "0 to 30 deg", of several joints the places on their path."""
-    if len(task.plant.joint_names) > 1:
-        whole = (task.start, task.target) == (0.0, 1.0)
-        return "along its path" if whole else f"{task.start:.6g} to {task.target:.6g} of the path"
-    factor, unit = (1e3, "mm") if task.plant.joint == LINEAR else (degrees(1.0), "deg")
-    start = factor * task.start
-    target = factor * task.target
-    longest = max(abs(start), abs(target))
-    # 0.5236 rad are 30 deg: five figures of the longer of both, and none of rounding errors
-    decimals = 5 - ceil(log10(longest)) if longest > 0 else 0
-    return f"{_rounded(start, decimals):.6g} to {_rounded(target, decimals):.6g} {unit}"
-
-
-def _rounded(value: float, decimals: int) -> float:
-    """A value rounded, and never a negative zero."""
-    return round(value, decimals) + 0.0
+    return ", ".join([f"{task.ends} in {task.duration:g} s{ringing}{wanted}", *energy_words(task)])
 
 
 def unit_of_way(plant: Plant) -> str:

@@ -16,6 +16,7 @@ from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients, task_difference
 from quietarm.ocp.window import EQ_11
 from quietarm.studies.figures import KnownPoint
+from quietarm.studies.report.words import counted
 
 _PLANTS = {plant.name: plant for plant in (SingleLinkManipulator(), ArmOnFlexibleLink())}
 _OF_PLANT = {
@@ -125,7 +126,7 @@ def paper_points(task: PointToPoint, terms: Collection[int]) -> list[KnownPoint]
     points = list[KnownPoint]()
     for number in sorted(printed.keys() & set(terms)):
         plan = paper_plan(printed[number].condition, number)
-        name = f"paper, N = {number}"
+        name = f"the paper's best ({counted(number, 'term')})"
         points.append(
             KnownPoint(f"{name}: energy as printed", None, printed[number].energy)
             if plan is None

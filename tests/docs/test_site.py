@@ -237,6 +237,16 @@ def test_words_of_commands_stay_whole():
     )  # fmt: skip
 
 
+def test_a_long_list_in_a_command_breaks_behind_its_commas():
+    kinds = ["zvd", "ruckig", "zv-ruckig", "zvd-ruckig", "ei-ruckig", "toppra-and-more"]
+    page = (
+        f'<div class="highlight-console"><pre>compare --baselines {",".join(kinds)}\n</pre></div>'
+    )
+    shown = words.keep_whole(page)
+    parts = "<wbr>".join(f'<span class="word">{kind},</span>' for kind in kinds[:-1])
+    assert f'{parts}<wbr><span class="word">{kinds[-1]}</span>' in shown
+
+
 def test_a_long_word_of_code_may_break():
     short = '<code><span class="pre">--acceleration-limit</span></code>'
     long = f'<code><span class="pre">{"a" * 40}</span></code>'

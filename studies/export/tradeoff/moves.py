@@ -21,7 +21,7 @@ from quietarm.ocp.objectives import refuse_peaks
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.studies.figures.comparison import KnownPoint
 from quietarm.studies.report.methods import described, is_gradient
-from quietarm.studies.report.words import counted, title_of_picture
+from quietarm.studies.report.words import title_of_picture
 from quietarm.studies.reproduce.paper import paper_points
 
 MOST_MOTIONS = 60
@@ -157,7 +157,7 @@ def _move_of(group: Answers) -> Move:
     meaning = _plan_of(front.task)
     beside += [Beside(name, "plan", (_place(plan),), meaning) for name, plan in plans.items()]
     known = paper_points(front.task, [front.profile.size])
-    beside += [_beside_known(point, front.profile.size) for point in known]
+    beside += [_beside_known(point) for point in known]
     return Move(
         label=label,
         task=front.task,
@@ -214,11 +214,8 @@ def _beside_front(front: Front) -> Beside:
     return Beside(described(method), "search", places, "search")
 
 
-def _beside_known(point: KnownPoint, terms: int) -> Beside:
-    words = f"the paper's best ({counted(terms, 'term')})"
-    if point.residual is None:
-        words += ": energy as printed"
-    return Beside(words, "known", ((point.residual, point.energy),), "paper")
+def _beside_known(point: KnownPoint) -> Beside:
+    return Beside(point.label, "known", ((point.residual, point.energy),), "paper")
 
 
 def _plan_of(task: PointToPoint) -> str:

@@ -26,7 +26,7 @@ def test_a_notebook_shows_plans_and_fronts_as_tables():
     plan = qa.plan_move(TASK, starts=1)
     shown = plan._repr_html_()
     assert f"<td>{plan.energy:.5g} J</td>" in shown
-    assert "<td>none</td>" in shown  # at rest
+    assert "<td>at rest</td>" in shown  # at rest
     front = qa.epsilon_front(TASK, bound=0.2, points=3)
     assert front._repr_html_().count("<tr>") == 1 + len(front.points)
     assert all("residual" in point.shadow_prices for point in front.points[:-1])

@@ -52,11 +52,13 @@ def drawn(axis, label):
 def test_the_picture_holds_the_fronts_as_staircases(comparison):
     picture = comparison_figure(comparison)
     whole, still, gaps, _ = picture.axes
-    stairs = drawn(whole, "epsilon constraint")
+    stairs = drawn(whole, "gradient (epsilon constraint)")
     np.testing.assert_allclose(stairs[:3], [[0, 0.8], [4, 0.5], [8, 0.4]])
-    (line,) = [line for line in whole.get_lines() if line.get_label() == "epsilon constraint"]
+    (line,) = [
+        line for line in whole.get_lines() if line.get_label() == "gradient (epsilon constraint)"
+    ]
     assert line.get_drawstyle() == "steps-post"
-    np.testing.assert_allclose(drawn(whole, "NSGA-II")[[0, 1]], [[1, 0.96], [5, 0.76]])
+    np.testing.assert_allclose(drawn(whole, "search (NSGA-II)")[[0, 1]], [[1, 0.96], [5, 0.76]])
     (band,) = whole.collections
     heights = band.get_paths()[0].vertices[:, 1]
     assert (heights.min(), heights.max()) == (0.75, 0.97)
@@ -72,7 +74,7 @@ def test_the_picture_holds_floor_and_papers_points(front_of):
     assert point.energy == pytest.approx(0.1492, rel=1e-3)
     for axis in comparison_figure(replace(compare(fronts), floor=0.09), [point]).axes[:2]:
         np.testing.assert_allclose(
-            drawn(axis, "paper, N = 6"), [[point.residual * 1e3, 0.1492]], rtol=1e-3
+            drawn(axis, "the paper's best (6 terms)"), [[point.residual * 1e3, 0.1492]], rtol=1e-3
         )
         ((residual, energy),) = drawn(axis, "best without parametrisation, at rest")
         # where it is, at rest: on the left edge of both panels, and its figures stand beside it

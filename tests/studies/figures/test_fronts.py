@@ -42,8 +42,8 @@ def test_of_one_front_the_knee_is_named_and_what_failed_is_counted(front_of):
     front = front_of(points, "epsilon", seed=None, failures=(failed,), gaps=((2e-3, 6e-3),))
     (panel,) = front_figure([front]).axes
     assert legend(panel) == [
-        "no weight reaches these", "epsilon constraint", "1 not found", "stillest: 0.9 J at rest",
-        "cheapest: 0.3 J at 9 mm", "knee: 0.4 J at 1 mm", "1 mm: 0.4 J"
+        "no weight reaches these", "gradient (epsilon constraint)", "1 not found",
+        "stillest: 0.9 J at rest", "cheapest: 0.3 J at 9 mm", "knee: 0.4 J at 1 mm", "1 mm: 0.4 J"
     ]  # fmt: skip
     assert (
         front_figure([front])
@@ -67,7 +67,7 @@ def test_gaps_and_failures_of_all_fronts_are_named_once(front_of):
     front = front_of(
         [(1, 0.4), (9, 0.3)], "weighted", seed=None, failures=(failed,), gaps=((2e-3, 6e-3),)
     )
-    alone = ["no weight reaches these", "weighted sum", "1 not found"]
+    alone = ["no weight reaches these", "gradient (weighted sum)", "1 not found"]
     assert legend(draw_fronts([front])) == alone
     assert legend(front_figure([front]).axes[0])[:3] == alone
     both = ["no weight reaches these", "front 1", "front 2", "2 not found"]

@@ -173,8 +173,8 @@ def test_what_a_line_is_decides_its_look(figures, plan, cycloid):
     assert colours_by_label(qa.motion_figure(plan)) == {"plain cycloid": grey, "this plan": blue}
     (panel,) = figures["draw_fronts"].axes
     fronts = {line.get_label(): line for line in panel.get_lines()}
-    assert fronts["epsilon constraint"].get_color() == blue
-    assert fronts["NSGA-II, seed 0"].get_color() == orange
+    assert fronts["gradient (epsilon constraint)"].get_color() == blue
+    assert fronts["search (NSGA-II), seed 0"].get_color() == orange
     assert set(colours_by_label(figures["draw_seed_energies"])) <= {orange}
     compared = colours_by_label(figures["motions_figure"])
     assert (compared["plan"], compared["robust plan"], compared["cycloid"]) == (blue, green, grey)

@@ -58,7 +58,10 @@ def test_a_task_is_a_condition_within_rounding_and_at_rest_alone():
     ringing = replace(task, initial=ModalState((0.005,), (0.0,)))
     assert condition_of(ringing) is None
     assert paper_points(ringing, {2, 4, 6}) == []
-    assert [point.label for point in paper_points(task, {2, 6})] == ["paper, N = 2", "paper, N = 6"]
+    assert [point.label for point in paper_points(task, {2, 6})] == [
+        "the paper's best (2 terms)",
+        "the paper's best (6 terms)",
+    ]
 
 
 def test_every_system_stands_on_every_condition_with_its_worst_case(reproduction):
