@@ -218,7 +218,7 @@ class PointToPoint:
 
     @property
     def ends(self) -> str:
-        """From where to where in words: "0 to 30 deg", of several joints the places on their path."""
+        """From where to where in words: "0 to 30 deg", of several joints places on their path."""
         if len(self.plant.joint_names) > 1:
             whole = (self.start, self.target) == (0.0, 1.0)
             return (
