@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from textwrap import fill
 from typing import Any, Literal
@@ -23,6 +24,13 @@ NARROW = 3.85
 """Width of a figure for a phone [inch]: at 390 pixels its letters of 7 points are 9 high."""
 TITLE: dict[str, Any] = {"loc": "left", "fontsize": 10}
 """How the title of a panel is set."""
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+"""Where no line ends."""
+_BEFORE_UNIT = re.compile(
+    r"(?<=\d) (?=(?:%|[nm\u00b5]?J|[cm]?m|m?s|m?rad|deg|k?Hz|k?g|k?N|[km]?W)(?![a-z]))"
+    r"|(?<=\dN) (?=m\b)|(?<=\d N) (?=m\b)"
+)
+"""The space between a number and its unit, and within newton metres."""
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -59,7 +67,14 @@ def head(figure: Figure, sentence: str, facts: str = "", width: float | None = N
 
 def broken_into_lines(words: str, width: float, size: float) -> str:
     """Words in lines that fit into a width [inch] in letters of a size [points]."""
-    return fill(words, max(1, int(letters_an_inch(size) * width)))
+    return in_lines(words, max(1, int(letters_an_inch(size) * width)))
+
+
+def in_lines(words: str, letters: int) -> str:
+    """Words in lines of at most so many letters; none ends between a number and its unit."""
+    together = _BEFORE_UNIT.sub(_NO_BREAK, words)
+    lines = [fill(line, letters) for line in together.splitlines()]
+    return "\n".join(lines).replace(_NO_BREAK, " ")
 
 
 def letters_an_inch(size: float) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import cycle
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +20,7 @@ from quietarm.studies.figures.axes import (
     axes_or_new,
     draw_front,
     head,
+    in_lines,
     legend_of,
     letter,
     logarithmic,
@@ -78,7 +78,7 @@ def comparison_figure(comparison: Comparison, known: Sequence[KnownPoint] = ()) 
     several = any(len(group.runs) > 1 for group in comparison.groups)
     handles, labels = legend_of(axes)
     axes[3].legend(
-        handles, [fill(label, 48) for label in labels], loc="center left", frameon=False,
+        handles, [in_lines(label, 48) for label in labels], loc="center left", frameon=False,
         fontsize=10, alignment="left",
         title="Several seeds: the line is what half of them reach\n"
         "(of two, the better one), the band best to worst" if several else None,

@@ -91,7 +91,7 @@ Motions = Sequence[Line] | Plan | Floor
 def draw_quantity(
     motions: Motions, quantity: str, ax: Axes | None = None, *, curve: int | None = None
 ) -> Axes:
-    """Draw one quantity of motions against time, with its limits and the moment of arrival.
+    """Draw one quantity of motions against time, with its limits until the arrival.
 
     Parameters
     ----------
@@ -137,12 +137,14 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
             label = line.label + of
             drawn.append(values)
             _draw_curve(ax, line, values, style, label)
-    for duration in {line.plan.task.duration for line in lines}:
+    durations = {line.plan.task.duration for line in lines}
+    for duration in durations:
         draw_arrival(ax, duration)
     for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn), curve)):
         label = "_" if k else "limit"  # once in the legend
-        ax.axhline(level, color=LIMIT.colour, linewidth=LIMIT.width, linestyle=LIMIT.dash,
-                   label=label)  # fmt: skip
+        # a limit holds on the way, not for what comes after it
+        ax.plot([0.0, max(durations)], [level, level], color=LIMIT.colour, linewidth=LIMIT.width,
+                linestyle=LIMIT.dash, label=label)  # fmt: skip
     if _cut_off_pulses(ax, lines, quantity, curve):
         title += ", pulses cut off"
     ax.set_title(title, **TITLE)

@@ -15,7 +15,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from quietarm.studies.figures import grammar, stack
-from quietarm.studies.figures.axes import TITLE, head
+from quietarm.studies.figures.axes import NARROW, TITLE, broken_into_lines, head
 from quietarm.studies.figures.grammar import Look
 
 from .verdicts import verdicts
@@ -69,19 +69,22 @@ def write_pictures(figures: Mapping[str, Any], folder: Path) -> None:
     }
     if any(figures["noise"].values()):
         drawn["noise.png"] = noise_figure(figures["noise"])
+    for_phones = {
+        "map.png": narrow_map_figure(figures["map"], WAYS, "gradient"),
+        "values.png": narrow_map_figure(figures["map"], VALUES, "differences"),
+    }
     for name, figure in drawn.items():
         if figure is not None:
-            _save(figure, folder / name)
+            _save(figure, folder / name, for_phones.get(name) or stack(figure))
 
 
-def _save(figure: Figure, path: Path) -> None:
-    """Write a picture, and beside it the one for phones, where its panels can be stacked."""
+def _save(figure: Figure, path: Path, for_phones: Figure | None) -> None:
+    """Write a picture, and beside it the one for phones."""
     without_versions = {"Software": ""}
     figure.savefig(path, dpi=110, metadata=without_versions)
-    stacked = stack(figure)
-    if stacked is not None:
+    if for_phones is not None:
         narrow = path.with_name(f"{path.stem}-narrow.png")
-        stacked.savefig(narrow, dpi=150, metadata=without_versions)
+        for_phones.savefig(narrow, dpi=150, metadata=without_versions)
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -95,12 +98,7 @@ def map_figure(
     """Coefficients by budget: orange where a search is nearer, blue where its rival is."""
     rows = len(ways) // 2
     figure = new_figure(11.0, 1.1 + 3.15 * rows)
-    head(
-        figure,
-        _counted(cells, ways, rival),
-        f"Per cent of the best known hypervolume that the nearest search misses, and that "
-        f"{_the(rival)} {'misses' if rival == 'gradient' else 'miss'}; medians over moves",
-    )
+    _head_of_map(figure, cells, ways, rival)
     axes = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
     terms = sorted({cell["terms"] for cell in cells})
     budgets = sorted({cell["budget"] for cell in cells})
@@ -122,10 +120,61 @@ def map_figure(
         ax.set_xlabel("coefficients")
     for ax in axes[:, 0]:
         ax.set_ylabel("candidates")
-    scale = matplotlib.cm.ScalarMappable(NORM, DIVERGING)
-    bar = figure.colorbar(scale, ax=axes, shrink=0.6, ticks=[-1, 0, 1])
+    bar = figure.colorbar(_scale_of_map(), ax=axes, shrink=0.6, ticks=[-1, 0, 1])
     bar.ax.set_yticklabels(["search misses a tenth", "alike", "search misses tenfold"], fontsize=8)
     return figure
+
+
+def narrow_map_figure(
+    cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
+) -> Figure:
+    """The same for a phone: panels below each other, budget by coefficients in wider cells."""
+    figure = new_figure(NARROW, 2.2 + 4.1 * len(ways))
+    _head_of_map(figure, cells, ways, rival)
+    axes = figure.subplots(len(ways), 1, squeeze=False)[:, 0]
+    terms = sorted({cell["terms"] for cell in cells})
+    budgets = sorted({cell["budget"] for cell in cells})
+    for ax, (way, title) in zip(axes, ways, strict=True):
+        for cell in cells:
+            corner = (budgets.index(cell["budget"]), terms.index(cell["terms"]))
+            draw_cell(ax, corner, cell["ways"].get(way), rival, wide=True)
+        ax.set(
+            xlim=(0, len(budgets)),
+            ylim=(len(terms), 0),  # few coefficients above
+            xticks=np.arange(len(budgets)) + 0.5,
+            xticklabels=[spelled_budget(budget) for budget in budgets],
+            yticks=np.arange(len(terms)) + 0.5,
+            yticklabels=terms,
+            xlabel="candidates",
+            ylabel="coefficients",
+        )
+        title_of_panel = ax.set_title(title, **TITLE)
+        title_of_panel.set_text(broken_into_lines(title, NARROW - 0.6, TITLE["fontsize"]))
+        ax.tick_params(length=0)
+    bar = figure.colorbar(
+        _scale_of_map(), ax=list(axes), location="bottom", ticks=[-1, 0, 1], fraction=0.02,
+        aspect=25, pad=0.01,
+    )  # fmt: skip
+    words = ["search misses\na tenth", "alike", "search misses\ntenfold"]
+    bar.ax.set_xticklabels(words, fontsize=8)
+    return figure
+
+
+def _head_of_map(
+    figure: Figure, cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
+) -> None:
+    """Who is nearer in how many cells, and what the cells say."""
+    head(
+        figure,
+        _counted(cells, ways, rival),
+        f"Per cent of the best known hypervolume that the nearest search misses, and that "
+        f"{_the(rival)} {'misses' if rival == 'gradient' else 'miss'}; medians over moves",
+    )
+
+
+def _scale_of_map() -> matplotlib.cm.ScalarMappable:
+    """The scale of the cells' colours."""
+    return matplotlib.cm.ScalarMappable(NORM, DIVERGING)
 
 
 def _counted(
@@ -155,13 +204,23 @@ def _the(rival: str) -> str:
     return "the gradient" if rival == "gradient" else rival
 
 
-def draw_cell(ax: Axes, corner: tuple[int, int], row: Mapping[str, Any] | None, rival: str) -> None:
-    """What the nearest search lacks and its rival; hatched or dotted without a verdict."""
+def draw_cell(
+    ax: Axes,
+    corner: tuple[int, int],
+    row: Mapping[str, Any] | None,
+    rival: str,
+    wide: bool = False,
+) -> None:
+    """What the nearest search lacks and its rival; hatched or dotted without a verdict.
+
+    In a wide cell the search's name is in one line.
+    """
     if row is None:
         ax.add_patch(Rectangle(corner, 1, 1, facecolor=grammar.PALE, edgecolor="white"))
         middle(ax, corner, "not run", grammar.INK)
         return
-    name = short_label(row["method"]).replace(" of ", "\nof ")
+    name = short_label(row["method"])
+    name = name if wide else name.replace(" of ", "\nof ")
     text = f"{name}\n{two_digits(row['missing'])} %\n{rival}\n"
     if row["no_front"]:
         ax.add_patch(Rectangle(corner, 1, 1, facecolor=NO_FRONT, edgecolor="white"))

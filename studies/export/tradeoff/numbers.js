@@ -70,4 +70,4 @@ const timeAxis = (end, about) => {
   return { ...axis, high: end, ticks: axis.ticks.filter(([value]) => value <= end * (1 + 1e-9)) };
 };
 // Words in which no line ends between a number and its unit.
-const unbroken = (text) => text.replace(/ = /g, "\u00a0=\u00a0").replace(/(\d) (?=(?:%|[nm\u00b5]?J|mm|[ms]|rad|deg|Hz|kg|k?N|W)(?![a-z]))/g, "$1\u00a0");
+const unbroken = (text) => text.replace(/ = /g, "\u00a0=\u00a0").replace(/(\d) (?=(?:%|[nm\u00b5]?J|mm|[ms]|rad|deg|Hz|kg|k?N|W)(?![a-z]))/g, "$1\u00a0").replace(/(\d\u00a0N) m(?![a-z])/g, "$1\u00a0m");

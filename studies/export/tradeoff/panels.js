@@ -61,7 +61,8 @@ const drawPanel = (panel, quantity) => {
   draw(svg, "line", { x1: box.x(duration), x2: box.x(duration), y1: box.top, y2: box.bottom, stroke: "var(--arrival)", "stroke-dasharray": "4 3" });
   const arrival = draw(svg, "text", { x: Math.min(box.x(duration), box.right - 42), y: box.top - 5, "font-size": 11 }, "arrival");
   draw(svg, "line", { x1: box.left, x2: box.right, y1: box.y(0), y2: box.y(0), stroke: "var(--soft)", "stroke-opacity": 0.5 });
-  for (const level of limits) draw(svg, "line", { ...DOTTED, x1: box.left, x2: box.right, y1: box.y(level), y2: box.y(level) });
+  // a limit holds on the way, not for what comes after it
+  for (const level of limits) draw(svg, "line", { ...DOTTED, x1: box.left, x2: box.x(duration), y1: box.y(level), y2: box.y(level) });
   if (limits.length) nameLimit(svg, box, arrival);
   panel.placeOf = (value, k) => [box.x(times[k]), box.y(value)];
   const curve = (colour, wide) => [1, AFTER].map((seen) => draw(svg, "path", { ...ROUND, stroke: colour, "stroke-width": wide, "stroke-opacity": seen }));

@@ -9,9 +9,12 @@ import numpy as np
 
 from quietarm.models.joint_motion import joint_label, joint_unit
 from quietarm.ocp import Plan, PointToPoint
+from quietarm.ocp.limits import Limit
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import REST
 from quietarm.studies.export.tradeoff.moves import Choice, Move
 from quietarm.studies.figures.meaning import is_plain_cycloid
+from quietarm.studies.figures.motion import heading, scale_of
 from quietarm.studies.report.report import percents
 from quietarm.studies.tips import tip_scale
 
@@ -74,7 +77,7 @@ def figure_names(task: PointToPoint) -> list[str]:
     return [
         f"residual vibration F1 [{unit}]",
         "energy F2 [J]",
-        f"peak {torque} [{joint_unit('N m', plant.joint)}]",
+        f"peak {torque}, moving [{joint_unit('N m', plant.joint)}]",
         "peak power [W]",
         f"peak tip displacement, moving [{unit}]",
     ]
@@ -155,12 +158,36 @@ def _against_cycloid(move: Move, choice: Choice) -> str:
         does = f"is off that by up to {_residual(cycloid)}"
     if cycloid.residual < REST:
         does = f"arrives {_residual(cycloid)}, too"
+    broken = _broken_by_cycloid(move, choice.plan.task)
     if not _buys_stillness(choice, cycloid):
-        return f"{arrives} and takes {takes}, {than} the plain cycloid, which {does}."
+        return f"{arrives} and takes {takes}, {than} the plain cycloid, which {does}.{broken}"
     bought = "a still arrival" if choice.residual < REST else "a stiller arrival"
     return (
         f"{arrives}. That takes {takes}, {than} the plain cycloid, and buys {bought}: the cycloid "
-        f"{does}."
+        f"{does}.{broken}"
+    )
+
+
+def _broken_by_cycloid(move: Move, task: PointToPoint) -> str:
+    """The limits of a task that the plain cycloid breaks, in a sentence."""
+    peaks = {limit: limit.peak_of(move.cycloid.motion) for limit in task.limits}
+    words = [
+        _beyond(limit, peak, task.plant.tip_unit)
+        for limit, peak in peaks.items()
+        if not limit.keeps(peak, OVERRUN)
+    ]
+    return f" The cycloid would reach {' and '.join(words)}." if words else ""
+
+
+def _beyond(limit: Limit, peak: float, tip_unit: str) -> str:
+    """A peak beyond its limit: "0.363 N m of torque, beyond the limit of 0.15 N m"."""
+    if not limit.is_peak:
+        return f"{_digits(peak / limit.size)} times its {limit.label} limit"
+    scale = scale_of(limit.name, tip_unit)
+    unit = heading(limit.name, limit.quantity.joint, tip_unit).partition(" [")[2].removesuffix("]")
+    return (
+        f"{_digits(scale * peak)} {unit} of {limit.label}, beyond the limit of "
+        f"{scale * limit.size:g} {unit}"
     )
 
 

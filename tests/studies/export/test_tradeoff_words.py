@@ -198,6 +198,33 @@ def test_a_limit_of_a_linear_axis_is_a_force():
     assert move["panels"]["torque"]["title"] == "Drive force"
 
 
+@pytest.mark.parametrize(
+    ("limit", "words"),
+    [
+        # docs/start.md: the plain cycloid's peak torque is 0.3628 N m
+        ({"torque_limit": 0.15}, "0.363 N m of torque, beyond the limit of 0.15 N m"),
+        # its acceleration is 2 pi times the angle over the duration squared: 5.140 rad/s^2
+        (
+            {"acceleration_limit": 4.0},
+            "5.14 rad/s\u00b2 of acceleration, beyond the limit of 4 rad/s\u00b2",
+        ),
+        # the least torque, -0.3628 N m, over a bound of -0.2 N m
+        ({"torque_limit": (-0.2, 0.15)}, "1.81 times its torque limit"),
+    ],
+)
+def test_of_a_cycloid_that_breaks_a_limit_the_sentence_says_so(task, limit, words):
+    plan = evaluate_coefficients(replace(task, **limit), [0.01, -0.17])
+    (move,) = trade_off(plan).moves
+    assert move["points"][0]["sentence"].endswith(f" The cycloid would reach {words}.")
+
+
+def test_where_the_cycloid_keeps_the_limits_nothing_is_said_of_them(task):
+    plan = evaluate_coefficients(replace(task, torque_limit=0.4), [0.01, -0.17])
+    (move,) = trade_off(plan).moves
+    assert move["points"][0]["sentence"].endswith("leaves it swinging by up to 77.1 mm.")
+    assert "peak joint torque, moving [N m]" in move["figure_names"]
+
+
 def test_the_plain_cycloid_itself_is_compared_with_none(cycloid, plan):
     (move,) = trade_off(cycloid).moves
     assert move["points"][0]["sentence"] == (

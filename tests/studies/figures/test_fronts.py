@@ -103,5 +103,5 @@ def test_the_energy_of_each_seed_is_drawn_over_its_quartiles(fronts):
     # of 0.25, 0.375, 0.5 and one that never arrives
     np.testing.assert_array_equal(median.get_ydata(), 0.4375)
     assert (
-        panel.get_title("left") == "energy at 1 mm: 0.4375 J\n0.25 to 0.5 J, 3 of 4 seeds reach it"
+        panel.get_title("left") == "energy at 1 mm: 0.4375 J (0.25 to 0.5 J)\n3 of 4 seeds reach it"
     )

@@ -147,3 +147,11 @@ def test_limits_are_lines_where_a_motion_comes_near_them(task, limit, shown):
     assert {name: at for name, at in found.items() if at} == {
         name: pytest.approx(at) for name, at in shown.items()
     }
+
+
+def test_a_limit_is_drawn_until_the_arrival(task):
+    # what holds the joint of a swinging link may be more than the limit of the move
+    motion = evaluate_coefficients(dataclasses.replace(task, torque_limit=0.3), [])
+    drawn = draw_quantity([Line(motion, "cycloid")], "torque").get_lines()
+    dotted = [list(line.get_xdata()) for line in drawn if line.get_linestyle() == ":"]
+    assert dotted == [[0.0, task.duration]] * 2

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import quietarm as qa
-from quietarm.studies.figures.axes import NARROW, head, legend_below, letter, new_figure
+from quietarm.studies.figures.axes import NARROW, head, in_lines, legend_below, letter, new_figure
 from quietarm.studies.figures.stacking import MOST_PANELS
 
 SENTENCE = "This plan takes 0.0237 J and arrives at rest; the plain cycloid leaves 77 mm"
@@ -144,6 +144,23 @@ def test_a_title_that_was_set_as_text_is_broken_into_lines_too():
     title = qa.figures.stack(figure).get_suptitle()
     assert title.split() == SENTENCE.split()
     assert title.count("\n") >= 1
+
+
+@pytest.mark.parametrize(
+    "words", ["leaves 123 mm", "off by \u00b15 %", "takes 36.7 mJ", "a torque of 0.36 N m",
+              "in 0.8 s", "0.12 \u00b5J", "1.5 rad/s", "30 deg", "2.5 m/s\u00b2"],
+)  # fmt: skip
+def test_no_line_ends_between_a_number_and_its_unit(words):
+    number = next(word for word in words.split() if word[-1].isdigit())
+    together = words[words.index(number) :]
+    for letters in range(len(together), len(words) + 1):
+        lines = in_lines(words, letters).splitlines()
+        assert any(together in line for line in lines)
+        assert " ".join(lines) == words
+
+
+def test_lines_stay_lines():
+    assert in_lines("energy: 0.0438 J\n5 of 5 seeds", 30) == "energy: 0.0438 J\n5 of 5 seeds"
 
 
 def test_a_legend_that_would_cover_its_panel_stands_below_it():
