@@ -249,7 +249,8 @@ def _facts(explored: Explored) -> str:
 def _key(explored: Explored) -> str:
     """What the colours and lines are that can be seen now."""
     colour = "Green" if explored.task.ranges else "Blue"
-    words = [f"{colour}: this motion, a ring beside the front"]
+    ring = "a dark ring on the front" if explored.front else "a ring where its front will be"
+    words = [f"{colour}: this motion, {ring}"]
     if is_plain_cycloid(explored.plan):
         words[0] += "; it still is the plain cycloid"
     else:

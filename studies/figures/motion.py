@@ -259,8 +259,8 @@ def motion_figure(
     spare = axes[count:]
     for quantity, ax in zip(quantities, panels):
         draw_quantity(lines, quantity, ax).tick_params(labelbottom=True)
-    for ax in panels[:-columns]:  # another stands below it
-        ax.set_xlabel("")
+    for ax in panels[:-columns]:  # another stands below it, which says what is dashed
+        ax.set_xlabel("time [s]")
     if count > 1:
         letter(panels)
     for ax in spare:
