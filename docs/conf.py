@@ -161,10 +161,16 @@ def _as_code(app, ctx, lines):
             lines[k : k + 1] = [lines[k][2:], "", ".. code-block:: text", ""]
 
 
-def _defaults_as_typed(app, ctx, lines):
-    """Show defaults without quotes, and none where click's mark says that there is none."""
+def _options_as_typed(app, ctx, lines):
+    """Show defaults without quotes, none where click's mark says so, and addresses as code."""
     shown = [line for line in lines if "Sentinel.UNSET" not in line]
-    lines[:] = [re.sub(r"(:default: ``)'(.*)'``", r"\1\2``", line) for line in shown]
+    typed = [re.sub(r"(:default: ``)'(.*)'``", r"\1\2``", line) for line in shown]
+    lines[:] = [re.sub(r"tcp://\w+:\d+", r"``\g<0>``", line) for line in typed]
+
+
+def _no_arguments(app, ctx, lines):
+    """Leave arguments to the line of usage: click has no words about them."""
+    lines.clear()
 
 
 def _write_front(app):
@@ -192,4 +198,5 @@ def setup(app):
     app.connect("builder-inited", _write_front)
     app.connect("source-read", _fill)
     app.connect("sphinx-click-process-description", _as_code)
-    app.connect("sphinx-click-process-options", _defaults_as_typed)
+    app.connect("sphinx-click-process-options", _options_as_typed)
+    app.connect("sphinx-click-process-arguments", _no_arguments)
