@@ -39,6 +39,7 @@ from PIL import Image
 
 import quietarm as qa
 from quietarm.studies.cli import main
+from quietarm.studies.figures.axes import NARROW, TITLE, head, legend_below, new_figure
 
 DOCS = Path(__file__).parent
 IMAGES = DOCS / "images"
@@ -130,18 +131,41 @@ def made_by_command(command: Command, name: str, quick: bool) -> Picture:
             main([*shlex.split(line)[1:], "--quiet", *(_quicker(line) if quick else [])])
         figure = figures[-1] if figures else figure
     assert figure is not None
-    return _picture_of(figure, Path(OF_COMMAND.get(name, name)), quick)
+    return _picture_of(figure, name, Path(OF_COMMAND.get(name, name)), quick)
 
 
-def _picture_of(figure: Figure, path: Path, quick: bool) -> Picture:
-    """A file, what its figure shows, and the figure for a phone."""
-    stacked = None if quick or path.suffix == ".gif" else qa.figures.stack(figure)
+def _picture_of(figure: Figure, name: str, path: Path, quick: bool) -> Picture:
+    """A picture's file, what its figure shows, and the figure for a phone."""
     narrow = None
+    stacked = None
+    if not quick and path.suffix != ".gif":
+        stacked = FOR_PHONES.get(name, qa.figures.stack)(figure)
     if stacked is not None:
         content = io.BytesIO()
         stacked.savefig(content, format="png", dpi=150)
         narrow = content.getvalue()
     return Picture(path.read_bytes(), shown_by(figure), narrow)
+
+
+def torques_of_joints(whole: Figure) -> Figure:
+    """Of the saved plan's joints the torques alone, below each other, with the head of the whole."""
+    plan = qa.Plan.load("move.json")
+    names = plan.task.plant.joint_names
+    figure = new_figure(NARROW, 2.0 + 1.7 * len(names))
+    axes = list(figure.subplots(len(names), 1))
+    for joint, (name, ax) in enumerate(zip(names, axes)):
+        title = qa.figures.draw_quantity(plan, "torque", ax, curve=joint).get_title(loc="left")
+        ax.set_title(f"{title}, {name}", **TITLE)
+    for ax in axes[:-1]:
+        ax.set_xlabel("")
+    title_of_whole = whole._suptitle  # pyright: ignore[reportAttributeAccessIssue]
+    head(figure, *title_of_whole.get_label().split("\n"))
+    legend_below(figure, axes, 2, 9)
+    return figure
+
+
+FOR_PHONES: Mapping[str, Callable[[Figure], Figure | None]] = {"robot.png": torques_of_joints}
+"""Pictures with too many panels for a phone, and what is drawn there of them."""
 
 
 def _quicker(line: str) -> list[str]:
@@ -163,7 +187,7 @@ def made_by_python(block: str, name: str, quick: bool) -> Picture:
     """Run a block of Python in the folder where one stands."""
     with drawn_figures() as figures:
         exec(compile(block, name, "exec"), {"__name__": "__main__"})
-    return _picture_of(figures[-1], Path(name), quick)
+    return _picture_of(figures[-1], name, Path(name), quick)
 
 
 @contextmanager
@@ -223,7 +247,7 @@ def fronts_compared(quick: bool) -> Picture:
     comparison = replace(compare_fronts(fronts), floor=qa.energy_floor(task).energy)
     figure = comparison_figure(comparison, paper_points(task, {6}))
     figure.savefig("front.png", dpi=150)
-    return _picture_of(figure, Path("front.png"), quick)
+    return _picture_of(figure, "front.png", Path("front.png"), quick)
 
 
 @contextmanager
@@ -251,7 +275,7 @@ def page_of_sliders(quick: bool) -> Picture:
     assert process.stdout is not None
     try:
         address = process.stdout.readline().strip()
-        with a_page(1400, 900, reduced_motion="reduce") as page:
+        with a_page(1040, 900, reduced_motion="reduce", device_scale_factor=2) as page:
             page.goto(address)
             figures = page.locator(".figures .bk-clearfix")
             expect(figures).to_contain_text("0 to 30 deg")
@@ -269,12 +293,23 @@ def page_of_sliders(quick: bool) -> Picture:
                 "[...Bokeh.documents[0]._all_models.values()]"
                 ".map(model => model.title?.text ?? model.axis_label).filter(Boolean)"
             )
-            picture = page.screenshot(full_page=True)
+            picture = _with_dots(page.screenshot(full_page=True), 192)
+            narrow = None if quick else _first_sections(page)
     finally:
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=240)
     shown: Shown = {"words": masked([*words, *map(str, titles)]), "lines": [], "areas": []}
-    return Picture(picture, shown)
+    return Picture(picture, shown, narrow)
+
+
+def _first_sections(page: Any) -> bytes:
+    """The page of explore on a phone: the arm, what plans it, and how far its tip swings."""
+    page.set_viewport_size({"width": 370, "height": 1200})  # the words at its end cover nothing
+    page.wait_for_timeout(1300)
+    last = page.locator(".deflection").bounding_box()
+    around = 8
+    clip = {"x": 0, "y": 0, "width": 370, "height": last["y"] + last["height"] + around}
+    return _with_dots(page.screenshot(clip=clip), 192)
 
 
 def page_to_drag(quick: bool) -> Picture:

@@ -18,9 +18,9 @@ from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.checks import instance, takes, unknown
 from quietarm.ocp.limits import QUANTITIES, Shares, unit_of
 from quietarm.studies.figures.axes import (
-    NARROW,
     TITLE,
     axes_or_new,
+    broken_into_lines,
     head,
     legend_below,
     legend_of,
@@ -37,6 +37,11 @@ Array = NDArray[np.float64]
 _SHOWN = 0.99
 _ABOVE = 1.15
 """A panel with short pulses ends at this multiple of the 99 % quantile over time."""
+_PANEL_OF_JOINT = 1.9
+_NUMBERS = 0.45
+_BESIDE_JOINTS = 0.7
+"""Width of a panel of a joint, of its numbers and beside all panels [inch]: of five quantities the picture is 10.2
+inches wide, at which its letters of 9 points are 9 pixels high in a page of 736."""
 _LABELS = {
     "angle": ("joint angle", "rad"),
     "power": ("power", "W"),
@@ -297,7 +302,7 @@ def _figure_of_joints(
     of_joints = [name for name in quantities if name == "angle" or QUANTITIES[name].of_joints]
     others = [name for name in quantities if name not in of_joints]
     below = [(name, curve) for name in others for curve in range(len(curves(lines[0].plan, name)))]
-    figure = new_figure(0.8 + 3.2 * max(len(of_joints), 2), 3.2 + 1.3 * len(names))
+    figure = new_figure(_BESIDE_JOINTS + _PANEL_OF_JOINT * max(len(of_joints), 3), 3.2 + len(names))
     grid = figure.add_gridspec(2, 1, height_ratios=(len(names), 1.7))
     upper = grid[0].subgridspec(len(names), max(len(of_joints), 1))
     axes = _panels_of_joints(figure, upper, lines, of_joints) if of_joints else []
@@ -311,7 +316,7 @@ def _figure_of_joints(
     room = figure.add_subplot(lower[len(below)])
     room.axis("off")
     room.legend(*legend_of([*axes, *last]), loc="center left", fontsize=10, frameon=False)
-    _head(figure, lines, title, NARROW)
+    _head(figure, lines, title)
     return figure
 
 
@@ -324,6 +329,9 @@ def _panels_of_joints(
     for joint, (name, row) in enumerate(zip(names, panels)):
         for quantity, ax in zip(quantities, row):
             _draw(lines, quantity, axes_or_new(ax), joint)
+            title = ax.get_title(loc="left")
+            ax.set_title(broken_into_lines(title, _PANEL_OF_JOINT - _NUMBERS, 10), **TITLE)
+            ax.set_xlabel(ax.get_xlabel().replace("  ", "\n"))
             if joint:
                 ax.set_title("", loc="left")
             if joint < len(names) - 1:
