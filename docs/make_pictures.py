@@ -148,7 +148,7 @@ def _picture_of(figure: Figure, name: str, path: Path, quick: bool) -> Picture:
 
 
 def torques_of_joints(whole: Figure) -> Figure:
-    """Of the saved plan's joints the torques alone, below each other, with the head of the whole."""
+    """The torques of the saved plan's joints, below each other, with the head of the whole."""
     plan = qa.Plan.load("move.json")
     names = plan.task.plant.joint_names
     figure = new_figure(NARROW, 2.0 + 1.7 * len(names))

@@ -40,8 +40,8 @@ _ABOVE = 1.15
 _PANEL_OF_JOINT = 1.9
 _NUMBERS = 0.45
 _BESIDE_JOINTS = 0.7
-"""Width of a panel of a joint, of its numbers and beside all panels [inch]: of five quantities the picture is 10.2
-inches wide, at which its letters of 9 points are 9 pixels high in a page of 736."""
+"""Width of a panel of a joint, of its numbers and beside all panels [inch]: of five quantities
+the picture is 10.2 inches wide; in a page of 736 pixels its letters of 9 points are 9 high."""
 _LABELS = {
     "angle": ("joint angle", "rad"),
     "power": ("power", "W"),

@@ -460,6 +460,11 @@ def test_front_and_arm_are_in_sight_together_on_a_phone(opened, fronts):
         # without a scroll, and the arm is above the finger
         assert 0 < scene["y"] < scene["y"] + scene["height"] < front["y"]
         assert front["y"] + front["height"] < PHONE["viewport"]["height"]
+        # below 272 pixels of the site's first page the ring is within 800
+        ring = page.locator("#handle .ring").bounding_box()
+        above = page.locator("#invitation").bounding_box()["y"]
+        assert ring["y"] + ring["height"] - above < 800 - 272
+        assert not page.locator(".keys").is_visible()
         # a browser with its bars shows 664 of 844 pixels
         assert front["y"] + front["height"] - scene["y"] < 600
 
