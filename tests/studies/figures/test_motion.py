@@ -7,8 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
+from several_joints import TwoLinks
 
-from quietarm.ocp import Uncertainty, evaluate_coefficients
+from quietarm.ocp import PointToPoint, Uncertainty, evaluate_coefficients
 from quietarm.studies.figures import QUANTITIES_DRAWN, Line, draw_quantity, motion_figure
 from quietarm.studies.report.words import move_of
 
@@ -155,3 +157,18 @@ def test_a_limit_is_drawn_until_the_arrival(task):
     drawn = draw_quantity([Line(motion, "cycloid")], "torque").get_lines()
     dotted = [list(line.get_xdata()) for line in drawn if line.get_linestyle() == ":"]
     assert dotted == [[0.0, task.duration]] * 2
+
+
+def test_the_titles_of_joints_side_by_side_stay_apart_and_the_head_is_as_wide_as_all():
+    plan = evaluate_coefficients(PointToPoint(TwoLinks(), 1.0, 0.8), [0.01, -0.1])
+    figure = motion_figure(plan)
+    figure.draw_without_rendering()
+    titles = {axis.get_title(loc="left") for axis in figure.axes} - {""}
+    texts = [text for text in figure.findobj(Text) if text.get_text() in titles]
+    drawn = [text.get_window_extent() for text in texts]
+    assert len(drawn) >= 4
+    assert not any(
+        one.overlaps(two) for place, one in enumerate(drawn) for two in drawn[place + 1 :]
+    )
+    sentence = figure.get_suptitle().split("\n")[0]
+    assert len(sentence) > 60  # in one line, where a phone has room for 46 letters
