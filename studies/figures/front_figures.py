@@ -209,9 +209,9 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
         figures = f": {spread.median:.4g} J"
     if np.isfinite(spread.upper):
         ax.axhspan(spread.lower, spread.upper, alpha=0.2, color=colour)
-        quartiles = f" ({spread.lower:.4g} to {spread.upper:.4g} J)"
-    words = f"{spread.count} of {spread.seeds} seeds reach it"
-    ax.set_title(f"energy at {level}{figures}{quartiles}\n{words}", **TITLE)
+        quartiles = f"({spread.lower:.4g} to {spread.upper:.4g} J), "
+    words = f"{spread.count} of {spread.seeds} seeds"
+    ax.set_title(f"energy at {level}{figures}\n{quartiles}{words}", **TITLE)
     ax.set_xlabel(f"seed (x: never within {level})")
     ax.set_ylabel("energy F2 [J]")
     if len(fronts) <= 2 * _MOST_NAMED:

@@ -102,6 +102,4 @@ def test_the_energy_of_each_seed_is_drawn_over_its_quartiles(fronts):
     assert [line.get_ydata()[0] for line in seeds[:3]] == [0.25, 0.5, 0.375]
     # of 0.25, 0.375, 0.5 and one that never arrives
     np.testing.assert_array_equal(median.get_ydata(), 0.4375)
-    assert (
-        panel.get_title("left") == "energy at 1 mm: 0.4375 J (0.25 to 0.5 J)\n3 of 4 seeds reach it"
-    )
+    assert panel.get_title("left") == "energy at 1 mm: 0.4375 J\n(0.25 to 0.5 J), 3 of 4 seeds"
