@@ -22,6 +22,5 @@ def refuse_too_short(task: PointToPoint) -> None:
     names = [limit.label for limit in task.limits if limit.name in _OF_A_RIGID_JOINT]
     raise InfeasibleTaskError(
         f"{task.duration:g} s is too short: within the limits of {', '.join(names)} even a rigid "
-        f"joint takes {least:.4g} s",
-        "give a longer duration or wider limits",
+        f"joint takes {least:.4g} s; give a longer duration or wider limits"
     )

@@ -48,16 +48,15 @@ def axes_or_new(ax: Axes | None) -> Axes:
     return ax
 
 
-def head(figure: Figure, sentence: str, facts: str = "", width: float | None = None) -> None:
+def head(figure: Figure, sentence: str, facts: str = "") -> None:
     """Set what is seen, and below it of what, at the left above a figure.
 
-    Its lines are as wide as the figure, or of a width [inch] where a phone shows only a part of it.
     The label of the title has both, each in one line.
     """
     size = 11
     paragraphs = [raised(words) for words in (sentence, facts) if words]
     if paragraphs:
-        width = width or figure.get_figwidth()
+        width = figure.get_figwidth()
         broken = [broken_into_lines(words, width, size) for words in paragraphs]
         figure.suptitle(
             "\n".join(broken), x=0.01, ha="left", fontsize=size, linespacing=1.35,

@@ -281,16 +281,14 @@ def motion_figure(
     return figure
 
 
-def _head(
-    figure: Figure, lines: Sequence[Line], title: str | None, width: float | None = None
-) -> None:
+def _head(figure: Figure, lines: Sequence[Line], title: str | None) -> None:
     """Set a picture's title: by default what the motions take and leave, and of which move."""
     if title is not None:
-        head(figure, title, width=width)
+        head(figure, title)
         return
     motions = {line.label: line.plan for line in lines}
     facts = f"{title_of_picture(lines[0].plan.task)}; {verified_words([*motions.values()])}"
-    head(figure, caption_of_motions(motions), facts, width)
+    head(figure, caption_of_motions(motions), facts)
 
 
 def _figure_of_joints(

@@ -19,7 +19,6 @@ from quietarm.ocp import (
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.ocp.simulation.mesh import default_steps
-from quietarm.studies.figures.comparison import KnownPoint
 from quietarm.studies.report.methods import described, is_gradient
 from quietarm.studies.report.words import title_of_picture
 from quietarm.studies.reproduce.paper import paper_points
@@ -157,7 +156,9 @@ def _move_of(group: Answers) -> Move:
     meaning = _plan_of(front.task)
     beside += [Beside(name, "plan", (_place(plan),), meaning) for name, plan in plans.items()]
     known = paper_points(front.task, [front.profile.size])
-    beside += [_beside_known(point) for point in known]
+    beside += [
+        Beside(point.label, "known", ((point.residual, point.energy),), "paper") for point in known
+    ]
     return Move(
         label=label,
         task=front.task,
@@ -212,10 +213,6 @@ def _beside_front(front: Front) -> Beside:
     if is_gradient(method):
         return Beside(described(method), "gradient", places, _plan_of(front.task))
     return Beside(described(method), "search", places, "search")
-
-
-def _beside_known(point: KnownPoint) -> Beside:
-    return Beside(point.label, "known", ((point.residual, point.energy),), "paper")
 
 
 def _plan_of(task: PointToPoint) -> str:

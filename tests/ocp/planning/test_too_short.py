@@ -25,6 +25,11 @@ def test_a_plan_is_refused_with_the_duration_that_will_do():
         plan_move(AXIS)
 
 
+def test_within_a_box_too_it_is_refused_with_a_remedy():
+    with pytest.raises(InfeasibleTaskError, match=r"give a longer duration or wider limits$"):
+        plan_move(AXIS, bound=0.2)
+
+
 @pytest.mark.parametrize("find", [epsilon_front, weighted_front])
 def test_fronts_are_refused_alike(find):
     with pytest.raises(InfeasibleTaskError, match="even a rigid joint takes 2 s"):
