@@ -27,14 +27,12 @@ def spell_method(typed: str) -> str:
 
 
 def problems_of(
-    names_or_files: Sequence[str],
-    objectives: tuple[str, ...] | None = None,
-    folder: Path | None = None,
+    names_or_files: Sequence[str], objectives: tuple[str, ...] | None = None
 ) -> list[NamedProblem]:
     """Problems by name, or by the file of a front; `all` are those with two objectives.
 
-    With other objectives than its own a problem has another name, and a reference front by the
-    gradient: that of the folder, if it is there.
+    With other objectives than its own a problem has another name, and no reference front yet:
+    `with_references` finds it.
     """
     problems = list[NamedProblem]()
     for name in names_or_files:
@@ -45,36 +43,53 @@ def problems_of(
         else:
             problems.append(NamedProblem.of_front(Path(name).stem, Front.load(name)))
     if objectives is not None:
-        problems = [_with_objectives(problem, objectives, folder) for problem in problems]
+        problems = [_with_objectives(problem, objectives) for problem in problems]
     names = [problem.name for problem in problems]
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"the problem {name} is given twice; give it once")
-    for problem in problems:
-        problem.reference()  # refuses a single motion
     return problems
 
 
-def _with_objectives(
-    problem: NamedProblem, objectives: tuple[str, ...], folder: Path | None
-) -> NamedProblem:
-    """A problem with these objectives, and its reference front."""
+def with_references(
+    problems: Sequence[NamedProblem], folder: Path | None = None
+) -> list[NamedProblem]:
+    """Give every problem a reference front: its own, that of the folder, or a new one.
+
+    A new front takes seconds, by the gradient: it is found once, not in every worker. ValueError
+    where the reference is a single motion.
+    """
+    referenced = list[NamedProblem]()
+    for problem in problems:
+        if problem.reference_front is None and not problem.named:
+            front = _front_in(folder, problem) or problem.front()
+            problem = replace(problem, reference_front=front)
+        problem.reference()  # refuses a single motion
+        referenced.append(problem)
+    return referenced
+
+
+def _front_in(folder: Path | None, problem: NamedProblem) -> Front | None:
+    """The reference front of a problem that a folder holds, if it is of this problem."""
+    if folder is None or not _reference_path(folder, problem).exists():
+        return None
+    front = Front.load(_reference_path(folder, problem))
+    fits = (front.task, front.objectives) == (problem.task, problem.objectives)
+    return front if fits else None
+
+
+def _with_objectives(problem: NamedProblem, objectives: tuple[str, ...]) -> NamedProblem:
+    """A problem with these objectives, without a reference front if they are not its own."""
     if problem.objectives == objectives:
         return problem
     peaks = [name.replace("_", "-") for name in objectives[len(RESIDUAL_AND_ENERGY) :]]
-    renamed = replace(
+    return replace(
         problem,
         name="-".join([problem.name, *(peaks or ["two-objectives"])]),
         objectives=objectives,
         peak_limits=(),
         reference_front=None,
     )
-    path = None if folder is None else _reference_path(folder, renamed)
-    if path is not None and path.exists():
-        front = Front.load(path)
-        if (front.task, front.objectives) == (renamed.task, objectives):
-            return replace(renamed, reference_front=front)
-    return replace(renamed, reference_front=renamed.front())  # found once, not in every worker
 
 
 def _reference_path(folder: Path, problem: NamedProblem) -> Path:

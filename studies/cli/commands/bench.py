@@ -89,6 +89,7 @@ def bench(given: Given) -> None:
         jobs_of,
         problems_of,
         spell_method,
+        with_references,
         write_references,
     )
     from quietarm.studies.bench.results import Results, imported_runs
@@ -99,11 +100,12 @@ def bench(given: Given) -> None:
     methods = list(map(spell_method, given.methods))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
     objectives = given.objectives if given.typed("objectives") else None
-    problems = problems_of(given.problems, objectives, given.output)
+    problems = problems_of(given.problems, objectives)
     noise = given.pick("noise", "reevaluate")
-    jobs, left_out = jobs_of(
-        problems, methods, given.runs, given.evaluations, given.seed, settings, **noise
-    )
+    asked = methods, given.runs, given.evaluations, given.seed, settings
+    jobs_of(problems, *asked, **noise)  # refuses before a reference front takes its seconds
+    problems = with_references(problems, given.output)
+    jobs, left_out = jobs_of(problems, *asked, **noise)
     candidates = sum(job.budget or 0 for job in jobs)
     refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     runs, unreadable = load_runs(given.imported)

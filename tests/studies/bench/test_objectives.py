@@ -10,7 +10,7 @@ from quietarm.metaheuristics import Job, NamedProblem, problem_of, run_jobs
 from quietarm.metaheuristics.run_files import is_sealed
 from quietarm.metaheuristics.score import filled, objectives
 from quietarm.ocp import epsilon_front
-from quietarm.studies.bench.planned_jobs import jobs_of, problems_of
+from quietarm.studies.bench.planned_jobs import jobs_of, problems_of, with_references
 from quietarm.studies.bench.results import Results
 from quietarm.studies.compare import compare_fronts
 from quietarm.studies.compare.front_report import fronts_report
@@ -71,7 +71,7 @@ def test_noise_stands_in_the_name_of_a_method_and_of_its_file(runs):
 
 @pytest.mark.slow
 def test_a_named_problem_with_peaks_has_a_reference_and_another_name(tmp_path):
-    (with_torque,) = problems_of([NAME], THREE, tmp_path)
+    (with_torque,) = with_references(problems_of([NAME], THREE), tmp_path)
     assert (with_torque.name, with_torque.objectives) == (f"{NAME}-peak-torque", THREE)
     assert with_torque.front().objectives == THREE
     (same,) = problems_of([NAME], ("residual", "energy"))
