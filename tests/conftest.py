@@ -3,6 +3,7 @@
 import gc
 import os
 import signal
+from collections import Counter
 
 import pytest
 from hypothesis import Phase, settings
@@ -39,6 +40,20 @@ def pytest_collection_finish():
     """Look no more at what collecting has made, whenever garbage is looked for."""
     gc.freeze()
     gc.enable()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Mark the later cases of a test that is `slow_after` some: the first ones find its faults."""
+    cases = Counter()
+    for item in items:
+        kept = item.get_closest_marker("slow_after")
+        if kept is None:
+            continue
+        test = (item.fspath, item.originalname)
+        cases[test] += 1
+        if cases[test] > kept.args[0]:
+            item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,8 @@
 
 A mutant is one module with one operator or number changed, by cosmic-ray's operators. Each runs in
 a process of its own, which sees the changed source in place of the file: nothing is written. The
-tests run until the first one fails; a mutant that all of them pass has survived, and is printed.
+quick tests run until the first one fails; a mutant that all of them pass has survived, and is
+printed.
 """
 
 from __future__ import annotations
@@ -164,7 +165,7 @@ def tested(module: str, source: str) -> int:
     sys.meta_path.insert(0, _Changed(module, source))
     os.chdir(ROOT)
     quiet = ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # hypothesis is here already
-    options = ["-x", "-q", "-n0", "-p", "no:cacheprovider", "--hypothesis-profile=mutation", *quiet]
+    options = ["-x", "-q", "-n0", "-m", "not slow", "-p", "no:cacheprovider", "--hypothesis-profile=mutation", *quiet]
     return int(pytest.main([*options, *(f"tests/{name}" for name in TESTS[module])]))
 
 

@@ -55,6 +55,7 @@ def test_what_is_installed_stands_under_one_name():
         ).is_file()
 
 
+@pytest.mark.slow
 def test_a_script_works_beside_files_of_the_packages_names(tmp_path):
     for name in PACKAGES[1:]:
         (tmp_path / f"{name}.py").write_text(f"mine = {name!r}\n")
@@ -130,6 +131,7 @@ MACHINE += ["C:" + "\\", "file:" + "//"]
 UNSAFE = ["pickle." + "load", "cPickle", "joblib." + "load", "allow_pickle" + "=True"]
 
 
+@pytest.mark.slow
 def test_no_file_holds_a_path_of_one_machine_or_loads_a_pickle(files):
     assert len(files) > 50  # the listing is there
     for path in {*files} - {Path(__file__)}:

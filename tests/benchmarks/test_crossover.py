@@ -86,6 +86,7 @@ def test_the_crossing_has_every_cell_on_every_move(planned):
     assert len(cells) == 6 * 2 * 18
 
 
+@pytest.mark.slow
 def test_a_new_machine_goes_on_from_the_tables_alone(tmp_path, planned):
     shutil.copy(RESULTS / "moves.csv", tmp_path)
     done = planned[:3]
@@ -97,6 +98,7 @@ def test_a_new_machine_goes_on_from_the_tables_alone(tmp_path, planned):
     assert run.missing_of(tmp_path) == planned[3:]
 
 
+@pytest.mark.slow
 def test_parts_share_the_plan(tmp_path, planned):
     shutil.copy(RESULTS / "moves.csv", tmp_path)
     parts = [run.missing_of(tmp_path, (number, 3)) for number in (1, 2, 3)]
@@ -202,6 +204,7 @@ def test_the_page_is_that_of_its_figures():
     assert f"A map from {sum(figures['runs'].values())} runs" in text
 
 
+@pytest.mark.slow
 def test_pictures_say_what_is_seen_in_colours_of_the_grammar():
     figures = json.loads((RESULTS / "figures.json").read_text())
     drawn = [

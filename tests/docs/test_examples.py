@@ -78,6 +78,7 @@ def test_the_short_example_plans_saves_and_draws(tmp_path, monkeypatch):
     assert Path("move.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_the_command_prints_what_the_page_shows(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (line,) = COMMAND_BLOCKS[STARTED]
@@ -98,12 +99,14 @@ def test_the_example_in_python_plans_saves_and_exports(run_python):
     assert len(Path("move.csv").read_text().splitlines()) == 1 + 401  # 0.8 s at 500 Hz
 
 
+@pytest.mark.slow
 def test_the_example_with_an_energy_of_ones_own_plans():
     label, energy = started("-W", "error", "-c", ENERGY).split()
     assert label == "recovering:0.6+copper:0.12"
     assert 0.349 < float(energy) < 0.349 + 0.0212  # of copper loss alone, with positive power
 
 
+@pytest.mark.slow
 def test_the_examples_of_fronts_find_and_save_them(run_python):
     printed, front = run_python(SEARCH_OF_PYMOO), Front.load("sms-emoa.json")
     assert printed == f"SMSEMOA {len(front.points)} {front.cheapest(10e-3).energy}\n"
@@ -113,6 +116,7 @@ def test_the_examples_of_fronts_find_and_save_them(run_python):
     assert len(front.points) == 20
 
 
+@pytest.mark.slow
 def test_the_example_of_four_objectives_has_the_peaks_beside_them(run_python):
     printed = run_python(FOUR_OBJECTIVES)
     least = [float(number) for number in printed[: printed.index("]")].strip("[ ").split()]
@@ -122,6 +126,7 @@ def test_the_example_of_four_objectives_has_the_peaks_beside_them(run_python):
     assert printed.strip().endswith("]")
 
 
+@pytest.mark.slow
 def test_the_examples_of_robustness_say_what_is_left(run_python):
     low, high, residual = map(float, re.sub(r"[(),]", "", run_python(ROBUSTNESS)).split())
     assert -0.1 < low < 0 < high < 0.1  # docs/physics.md, 'Robustness': a few per cent
@@ -134,11 +139,13 @@ def test_the_examples_of_robustness_say_what_is_left(run_python):
     assert 0.02 < float(energy) < 0.03
 
 
+@pytest.mark.slow
 def test_the_example_of_a_picture_draws_it(run_python):
     assert run_python(PICTURE) == ""
     assert Path("mine.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_the_example_counts_the_modes_that_a_move_needs(run_python):
     left = [float(each) for each in re.findall(r"with \d: ([0-9.]+) mm", run_python(COUNTS))]
     # the page: one mode leaves 1.24 mm, two leave 0.0003 mm
@@ -146,6 +153,7 @@ def test_the_example_counts_the_modes_that_a_move_needs(run_python):
     assert max(left[1:]) < 1e-3
 
 
+@pytest.mark.slow
 def test_the_examples_whose_amplitude_is_an_angle_say_it_in_the_unit_of_the_tip(run_python):
     twist, way = re.findall(r"up to ([0-9.]+) (rad|m)", run_python(ANGLES))
     assert [unit for _, unit in (twist, way)] == ["rad", "m"]
@@ -163,6 +171,7 @@ def test_first_lines_and_a_profile_of_your_own_plan_a_move(run_python):
     assert 0.0165 < float(energy) < 0.0912  # the floor's, and the plain cycloid's, of docs/moves.md
 
 
+@pytest.mark.slow
 def test_plain_casadi_finds_what_the_page_says(run_python):
     assert run_python(PLAIN) == PLAIN_PRINTS
     task = PointToPoint(SingleLinkManipulator(), math.pi / 2, 1.0, torque_limit=0.3)
@@ -184,6 +193,7 @@ def robot_files(tmp_path):
     (tmp_path / "ur5_robot.urdf").write_bytes(urdf_of("ur5_robot.urdf").read_bytes())
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("robot_files")
 def test_the_example_of_a_robot_plans_through_its_waypoints(run_python):
     energy, residual, sag = re.fullmatch(

@@ -40,6 +40,7 @@ def one_by_one(candidates):
 few = st.integers(0, 6).map(float)  # with ties
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(few, few), min_size=1, max_size=30), st.integers(1, 7))
 def test_what_enters_is_what_nothing_earlier_dominates_whatever_is_asked_at_once(rows, size):
     candidates = np.array(rows)
@@ -83,6 +84,7 @@ def test_marks_hold_effort_and_figures_follow_from_the_entries():
     assert final_share_of_box(dataclasses.replace(front, history=())) == 0.0
 
 
+@pytest.mark.slow
 def test_an_indicator_that_is_added_is_known_on_the_way_of_runs_that_are_stored(tmp_path):
     jobs = [Job(NAME, "nsga2", seed, 300, {"population": 20}) for seed in range(3)]
     results = Results.of_jobs(run_jobs(jobs, tmp_path))

@@ -30,6 +30,7 @@ def test_the_canonical_text_is_that_of_json_with_sorted_names_and_whole_numbers(
     assert canonical == json.dumps(with_whole_numbers(document), sort_keys=True)
 
 
+@pytest.mark.slow
 @given(DOCUMENTS)
 def test_the_indented_text_has_every_entry_in_order_and_every_digit(document):
     indented = texts_of(document).indented

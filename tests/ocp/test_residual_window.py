@@ -169,6 +169,7 @@ def test_a_second_tells_105_mm_of_a_crane_that_leaves_146():
     assert second.residual == pytest.approx(0.105, abs=6e-4)
 
 
+@pytest.mark.slow
 def test_the_points_of_a_front_are_what_they_leave():
     # limits are kept within a thousandth, and 1e-7 of the 0.97 m that the plain cycloid leaves
     told, left = [1e-4, 1e-3, 5e-3, 0.158], [0.32e-3, 3.2e-3, 16.1e-3, 0.511]

@@ -85,6 +85,7 @@ def test_a_wrong_entry_is_named(saved, place, value, word):
     assert word in refusal(saved)
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(
     "profile",
     [qa.JointSpline((0.2, 0.4, 0.6, 0.8)), CycloidGaussians(2), CycloidNetwork(2)],

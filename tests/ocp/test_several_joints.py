@@ -104,6 +104,7 @@ def test_a_gantry_takes_the_energy_of_both_carriages(gantry):
     assert np.abs(states[:2, -1]).max() < 1e-6
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("solver", [qa.Sqp(), qa.Ipopt()], ids=["sqp", "ipopt"])
 @pytest.mark.parametrize(
     "energy", [PositivePower(), qa.CopperLoss(3.0)], ids=["positive", "copper"]
@@ -120,10 +121,12 @@ def test_every_energy_sums_over_the_joints(solver, energy):
     assert plan.energy == pytest.approx(taken, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_both_solvers_agree(links):
     assert qa.plan_move(LINKS, solver=qa.Ipopt()).energy == pytest.approx(links.energy, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_limits_hold_for_each_joint_by_its_name(links):
     free = [float(np.abs(torque).max()) for torque in links.trajectory.sample.torques]
     assert free[0] > 36.0

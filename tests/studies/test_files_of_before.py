@@ -167,6 +167,7 @@ def test_a_machine_and_a_grid_load(old):
     assert plan.residual < 2e-4  # between four cells that arrive at rest
 
 
+@pytest.mark.slow
 def test_runs_load_by_their_checksums_and_their_figures_are_computed(old, of_these_versions):
     jobs = jobs_of(old)
     fronts = finished_jobs(jobs, "bench")
@@ -189,6 +190,7 @@ def test_runs_load_by_their_checksums_and_their_figures_are_computed(old, of_the
     assert np.isfinite(table["missing"]).all()
 
 
+@pytest.mark.slow_after(1)
 def test_runs_without_a_checksum_are_evaluated_again(old, of_these_versions):
     jobs = jobs_of(old)
     for job, front in finished_jobs(jobs, "bench").items():

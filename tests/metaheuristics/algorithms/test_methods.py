@@ -15,6 +15,7 @@ IN_TURN = list(zip(SEARCHES, itertools.cycle([SIXTH, HALF])))
 KEEPS_LIMITS = [name for name, preset in PRESETS.items() if preset.keeps_limits]
 
 
+@pytest.mark.slow_after(2)
 @pytest.mark.parametrize(("name", "task"), IN_TURN)
 def test_the_seed_decides_about_the_front(name, task):
     one, same, other = (search(task, algorithm=name, seed=seed, **SMALL) for seed in (2, 2, 3))

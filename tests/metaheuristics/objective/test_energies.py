@@ -19,6 +19,7 @@ def energy(request):
     return request.param
 
 
+@pytest.mark.slow_after(2)
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
 def test_a_population_spends_what_cvodes_finds(tasks, name, energy):
     task, bound = tasks[name]
@@ -30,6 +31,7 @@ def test_a_population_spends_what_cvodes_finds(tasks, name, energy):
     assert search_evaluator(task, profile)(X).energy[:, 0] == pytest.approx(expected, rel=3e-3)
 
 
+@pytest.mark.slow_after(1)
 def test_a_search_states_what_cvodes_finds(tasks, energy):
     task = replace(tasks["single link"][0], energy=energy)
     front = qa.search(task, algorithm="nsga2", bound=0.2, population=20, generations=10)

@@ -17,6 +17,7 @@ LIMITS = tuple(QUANTITIES)
 # -- the same quantities as the rollout --
 
 
+@pytest.mark.slow_after(7)
 @PLANTS
 @pytest.mark.parametrize(
     "profile", [PROFILE, CycloidGaussians(3), CycloidNetwork(3), CycloidSpline(5)]
@@ -38,6 +39,7 @@ def test_energy_and_residual_are_those_of_the_rollout_at_the_same_steps(tasks, n
 # -- limits --
 
 
+@pytest.mark.slow_after(2)
 @PLANTS
 def test_violations_are_the_rollouts_peaks_over_the_limits(tasks, name):
     task, bound = tasks[name]

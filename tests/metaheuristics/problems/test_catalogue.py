@@ -24,6 +24,7 @@ def least_energies(front, residuals):
     return np.array([front.cheapest(residual).energy for residual in residuals])
 
 
+@pytest.mark.slow_after(9)
 @NAMES
 def test_a_problem_has_its_exact_fronts_in_files_of_its_own(name):
     problem = problem_of(name)
@@ -92,6 +93,7 @@ def test_pymoo_has_the_exact_front_and_set():
     assert G.shape[1] == 2
 
 
+@pytest.mark.slow
 def test_the_third_objective_is_the_peak_torque():
     problem = problem_of(THIRD)
     X, F = problem.optimum()
@@ -109,6 +111,7 @@ def test_the_third_objective_is_the_peak_torque():
     assert energies[0] > 1.2 * energies[-1]
 
 
+@pytest.mark.slow
 def test_the_robust_residual_is_the_largest_of_three_plants():
     problem = problem_of(ROBUST)
     (front,) = problem.fronts()

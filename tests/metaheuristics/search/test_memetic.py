@@ -43,6 +43,7 @@ def test_steps_of_the_gradient_count_and_lead_to_rest():
     assert stillest[0] < 1e-5 < stillest[1]
 
 
+@pytest.mark.slow
 def test_the_gradient_keeps_limits():
     front = found("memetic", LIMITED, 900, **SMALL)
     assert front.history[-1].gradients > 0
@@ -67,6 +68,7 @@ def test_points_are_spread_evenly_from_end_to_end():
     assert spread(F[:1], 5).tolist() == [0]
 
 
+@pytest.mark.slow
 def test_slsqp_uses_its_budget_and_comes_near_the_front():
     front = found("slsqp", evaluations=1000)
     assert front.record.evaluations == 1000
@@ -77,6 +79,7 @@ def test_slsqp_uses_its_budget_and_comes_near_the_front():
     assert by_generations.record.evaluations == 100  # a generation is a candidate
 
 
+@pytest.mark.slow
 def test_the_motion_of_a_larger_limit_is_a_better_start_than_a_random_one():
     def hypervolume(continuation, seed):
         front = search(
@@ -97,6 +100,7 @@ def test_the_motion_of_a_larger_limit_is_a_better_start_than_a_random_one():
     assert np.median(continued) > np.median(random) + 0.05
 
 
+@pytest.mark.slow
 def test_slsqp_keeps_limits():
     front = found("slsqp", LIMITED, 500)
     assert front.points
@@ -136,6 +140,7 @@ def test_candidates_for_derivatives_use_up_a_budget():
     assert function.front("mine").record.evaluations == 10
 
 
+@pytest.mark.slow
 def test_a_candidate_counts_once_for_all_scenarios_of_an_uncertain_task():
     robust = problem_of("single-link-30deg-0.8s-robust")
     last = found("memetic", robust, **SMALL).history[-1]

@@ -32,6 +32,7 @@ OF_TWO = [name for name in PRESETS if PRESETS[name].residual_and_energy]
 OF_ANY = [name for name in PRESETS if name not in OF_TWO and not PRESETS[name].needs]
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("name", OF_ANY)
 def test_every_method_searches_three_objectives_and_its_seed_decides(name):
     one, same = (qa.search(SIXTH, PROFILE, algorithm=name, seed=2, **SMALL) for _ in range(2))
@@ -98,6 +99,7 @@ def test_directions_are_as_many_as_individuals(number):
 few = st.integers(0, 4).map(float)  # with ties
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(few, few, few), min_size=1, max_size=25), st.integers(1, 7))
 def test_what_enters_is_what_nothing_earlier_dominates(rows, size):
     candidates = np.array(rows)

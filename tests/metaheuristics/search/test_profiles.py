@@ -22,6 +22,7 @@ PROFILES = {
 }
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("method", ["vepso", "nsga2"])
 @pytest.mark.parametrize(("kind", "name"), [*zip(PROFILES, TASKS, strict=True)])
 def test_a_search_stays_in_the_profiles_box_and_finds_what_it_says(kind, method, name):

@@ -37,6 +37,7 @@ def assert_reaches(front, energy):
     assert motion.residual <= PAPERS_RESIDUAL[front.record.method] * (1 + 1e-3)
 
 
+@pytest.mark.slow
 def test_vepso_reaches_the_papers_energy_with_the_papers_settings():
     task, energy = VEPSO_HARD
     front = search(task, algorithm="vepso", bound=PAPER_BOX[task.plant.name])
@@ -44,6 +45,7 @@ def test_vepso_reaches_the_papers_energy_with_the_papers_settings():
     assert_reaches(front, energy)
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(("task", "energy"), ARM_ROWS)
 def test_nsga2_reaches_the_papers_energy_with_a_sixteenth_of_its_budget(task, energy):
     front = less_searched("nsga2", task)
@@ -103,6 +105,7 @@ def _least_energies(front, points):
     return np.array(energies)
 
 
+@pytest.mark.slow
 def test_no_search_dominates_the_gradient(case, searched):
     _, _, front = case
     for other in searched:

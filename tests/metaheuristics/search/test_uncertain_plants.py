@@ -24,6 +24,7 @@ def searched(task):
     return search(task, algorithm="nsga2", bound=0.5, population=20, generations=4)
 
 
+@pytest.mark.slow
 def test_residuals_are_those_of_the_worst_sample_by_cvodes(searched, task):
     for point in (searched.smallest_residual(), searched.cheapest()):
         alone = [

@@ -156,6 +156,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow
 def test_a_method_at_fault_is_a_failed_run_with_its_reason_and_the_rest_goes_on(tmp_path):
     jobs = [*(Job(NAME, method, 0, BUDGET) for method in FAULTS), Job(NAME, called, 0, BUDGET)]
     with pytest.raises(LostJobsError) as caught:

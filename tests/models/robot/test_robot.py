@@ -234,6 +234,7 @@ def test_a_robots_content_is_plain():
     assert json.loads(json.dumps(asdict(ur5_with_bar())))["beam"]["length"] == 0.8
 
 
+@pytest.mark.slow
 def test_modes_that_the_path_excites_are_followed():
     """Of a robot with a bar on a pedestal: those of the bar and of the pedestal, none faster."""
     robot = dataclasses.replace(
@@ -250,6 +251,7 @@ def test_modes_that_the_path_excites_are_followed():
         dataclasses.replace(robot, modes="all")
 
 
+@pytest.mark.slow
 def test_what_a_left_out_mode_leaves_is_what_the_cycloid_leaves():
     """The bound, undamped and at the worst phase, is above what a plain cycloid leaves alone."""
     robot = dataclasses.replace(ur5_with_bar(), modes=1)
@@ -278,6 +280,7 @@ def _chain(count, kind):
     return f'<robot name="chain">{links}{joints}</robot>'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("urdf", "words"), [
     (_chain(30_000, "fixed"), "has 30000 links; give at most 1000"),
     (_chain(200, "revolute"), "has 199 joints that move; give at most 100, others as fixed ones"),

@@ -38,6 +38,7 @@ def _values(tables, table):
     return function(BETWEEN[None]).full().T.reshape(len(BETWEEN), *entries.shape)
 
 
+@pytest.mark.slow
 def test_tables_are_the_equations_between_their_nodes(path):
     """Within 1e-9 of the largest value of each coefficient, or of what matters beside it."""
     robot = ur5_with_bar()
@@ -117,6 +118,7 @@ def test_frequency_of_the_table_is_that_of_the_robot():
     assert tables.frequencies == pytest.approx(robot.frequencies((START + END) / 2), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_more_modes_and_a_base_that_rocks():
     """Its equations, too, are those of a plant: stable, passive, at rest with the path."""
     robot = dataclasses.replace(ur5_with_bar(), base=Base((2e4, 2e4), (5.0, 5.0), 0.5), modes=4)

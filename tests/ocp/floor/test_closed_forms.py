@@ -32,6 +32,7 @@ def _friction_floor(inertia, c, span, duration):
     return A * (span / (t1 + inertia / c * (1 - x))) ** 2
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("smooth", [False, True])
 def test_a_rigid_joint_with_friction_has_its_closed_form(smooth):
     plant = rigid()
@@ -55,6 +56,7 @@ def test_a_rigid_joint_with_limited_acceleration_has_its_closed_form():
     assert floor.motion.peak_acceleration <= limit * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_the_floor_of_an_uncertain_task_is_that_of_the_nominal_plant():
     # a robust plan has no residual limit to go by: nothing bends this plant
     uncertain = qa.PointToPoint(rigid(), 1.0, 1.0, uncertainty=qa.Uncertainty({"alpha1": 0.1}))

@@ -58,6 +58,7 @@ def test_every_point_has_the_figures_of_the_independent_integrator(case):
         assert np.abs(point.coefficients).max() <= bound
 
 
+@pytest.mark.slow
 def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     # One term has nothing left to arrive at rest with: two conditions, one coefficient.
     task, profile = CASES["arm"][0], qa.CycloidPolynomial(1)
@@ -70,6 +71,7 @@ def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     assert len(front.points) > 2
 
 
+@pytest.mark.slow
 def test_there_is_a_point_at_every_residual_that_is_asked_for():
     task, bound = CASES["arm"]
     at, told = (1e-4, 1e-3 / 3, 5e-3, 1.0), []  # at 1 m there is no front

@@ -33,6 +33,7 @@ def polish(rough):
     return qa.polish_front(rough)
 
 
+@pytest.mark.slow
 def test_every_point_keeps_its_residual_and_costs_no_more(rough, polish):
     assert len(polish.gains) == len(rough.points)
     for point, gain in zip(rough.points, polish.gains, strict=True):
@@ -55,6 +56,7 @@ def test_the_points_land_on_the_front(polish):
     assert np.all(polish.front.energies > np.array(cheapest) - 1.01 * step)
 
 
+@pytest.mark.slow
 def test_a_polished_front_says_by_what_it_was_found_and_polished():
     found = qa.epsilon_front(TASK, PROFILE, bound=BOUND, points=3, solver=qa.Ipopt())
     polished = qa.polish_front(found).front

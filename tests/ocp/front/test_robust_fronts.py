@@ -27,6 +27,7 @@ FRONTS = {
 }
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("name", FRONTS)
 def test_a_points_residual_is_the_largest_over_the_scenarios(task, name):
     front = FRONTS[name](task)

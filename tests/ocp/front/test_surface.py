@@ -43,6 +43,7 @@ def lattice():
     return function(rows)[0]
 
 
+@pytest.mark.slow
 def test_no_motion_of_a_lattice_of_coefficients_dominates_a_point(front, lattice):
     # within what the nodes of 96 steps miss of a peak, 1 %
     for values in front.objective_values:
@@ -78,6 +79,7 @@ def test_a_point_has_the_figures_of_its_motion_and_the_file_keeps_them(front, tm
     assert len((tmp_path / "front.csv").read_text().splitlines()) == len(front.points) + 1
 
 
+@pytest.mark.slow
 def test_it_has_the_ends_of_every_objective(front):
     curve = epsilon_front(SIXTH, TWO_TERMS, bound=0.2, points=2)
     assert front.cheapest().energy == pytest.approx(curve.cheapest().energy, rel=1e-4)
@@ -88,6 +90,7 @@ def test_it_has_the_ends_of_every_objective(front):
         epsilon_front(limited, TWO_TERMS, bound=0.2, points=2)
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_task_holds_on_the_surface():
     limited = dataclasses.replace(SIXTH, torque_limit=0.15)
     inside = epsilon_front(limited, TWO_TERMS, bound=0.2, points=16, objectives=THREE)
@@ -106,6 +109,7 @@ def test_both_solvers_find_the_same_surface():
     np.testing.assert_allclose(by_sqp.max(axis=0), by_ipopt.max(axis=0), rtol=1e-3, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_four_objectives_and_polishing():
     searched = qa.search(
         SIXTH,

@@ -32,6 +32,7 @@ def _scaled(front, others):
     ])  # fmt: skip
 
 
+@pytest.mark.slow
 def test_gaps_are_where_the_front_is_above_its_chord():
     # In a gap, the points by residual limit lie above the straight line between its ends.
     task, bound = CASES["single link"]
@@ -45,6 +46,7 @@ def test_gaps_are_where_the_front_is_above_its_chord():
     assert np.all(whole.energies[inside] > chord[inside])
 
 
+@pytest.mark.slow
 def test_given_weights_are_used():
     task, bound = CASES["arm"]
     front = qa.weighted_front(task, bound=bound, weights=[(1, 1), (1, 3), (0, 1), (2, 0)], starts=1)

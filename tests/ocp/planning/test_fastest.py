@@ -51,6 +51,7 @@ def fastest():
     return fastest_move(LINK, SIX)
 
 
+@pytest.mark.slow
 def test_along_a_profile_the_plan_keeps_its_limits_and_a_shorter_one_fails(fastest):
     plan = fastest.plan
     assert plan.residual < 1e-8
@@ -74,6 +75,7 @@ def test_what_has_no_shortest_duration_is_refused():
         fastest_move(replace(LINK, torque_limit=None, acceleration_limit=7e-7))
 
 
+@pytest.mark.slow
 def test_a_move_that_cruises_is_within_the_linear_programs_time_and_no_slower_than_zv():
     # the axis swings at 12 Hz: its linear program needs no longer than a rigid joint, 2 s
     fastest = fastest_move(AXIS)
@@ -87,6 +89,7 @@ def test_a_move_that_cruises_is_within_the_linear_programs_time_and_no_slower_th
     assert fastest.duration / 1.01 <= duration < fastest.duration
 
 
+@pytest.mark.slow
 def test_a_plan_on_a_spline_is_saved_and_loaded(tmp_path):
     plan = fastest_move(CRANE).plan
     plan.save(tmp_path / "plan.json")
@@ -206,6 +209,7 @@ def test_with_errors_it_arrives_still_within_a_limit_that_does_not_grow():
     assert 0.995 * fastest.duration <= narrower.duration <= 0.744  # the bound is 2.0.0.dev0's
 
 
+@pytest.mark.slow
 def test_a_line_of_torque_over_speed_is_kept():
     task = replace(LINK, torque_limit=None, torque_speed=((0.15, 2.0), (0.05, 6.0)))
     fastest = fastest_move(task)
@@ -213,6 +217,7 @@ def test_a_line_of_torque_over_speed_is_kept():
     assert fastest.duration <= 0.64  # by bisection with 12 terms
 
 
+@pytest.mark.slow
 def test_between_the_last_knots_a_torque_limit_is_kept_as_well():
     # sampled by CVODES at 20000 even times: 0.3 % was passed for a tenth of a millisecond
     plan = fastest_move(LINK).plan

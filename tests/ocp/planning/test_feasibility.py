@@ -45,6 +45,7 @@ def refused(tasks):
     return of
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("case", CASES)
 def test_what_the_error_offers_is_feasible(refused, tasks, case):
     name, terms, limits, settings = CASES[case]

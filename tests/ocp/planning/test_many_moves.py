@@ -18,6 +18,7 @@ def moves(request, plants):
     return [qa.PointToPoint(plant, 0.5 + 0.2 * k, one) for k, one in enumerate(DURATIONS)]
 
 
+@pytest.mark.slow_after(1)
 def test_moves_at_rest_are_planned_as_alone(moves):
     found = qa.plan_moves(moves, bound=0.3)
     assert found.tasks == tuple(moves)
@@ -33,6 +34,7 @@ def test_moves_at_rest_are_planned_as_alone(moves):
         assert np.abs(coefficients).max() <= 0.3 * (1 + 1e-7)
 
 
+@pytest.mark.slow_after(1)
 def test_moves_with_limits_are_certified_by_cvodes(moves):
     limited = [replace(task, speed_limit=4.0) for task in moves]
     found = qa.plan_moves(limited, qa.CycloidPolynomial(6), residual_limit=1e-3)
@@ -53,6 +55,7 @@ def test_a_move_without_a_plan_does_not_stop_the_others(plants):
     assert np.isnan([found.energy[1], found.residual[1], *found.coefficients[1]]).all()
 
 
+@pytest.mark.slow_after(1)
 def test_a_move_that_cvodes_does_not_confirm_has_a_status_and_no_figures(moves, monkeypatch):
     def refuse(problems, *others):
         targets = [problem.transcription.task.target for problem in problems]

@@ -35,6 +35,7 @@ def _third_opinion(task, name, a):
     return ThirdOpinion(name, list(a), *task.move, task.initial_state)
 
 
+@pytest.mark.slow_after(2)
 def test_a_move_that_begins_ringing_arrives_still_and_scipy_agrees(ringing, name):
     plan = qa.plan_move(ringing, SIX, starts=1)
     still = max(1e-8, 1e-7 * qa.Candidate.of_profile(ringing, qa.CycloidPolynomial(0), []).residual)
@@ -71,6 +72,7 @@ def test_errors_of_the_plant_begin_in_the_same_state(ringing):
     assert figures.energy[-1] == pytest.approx(exact.energy, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_both_solvers_fronts_and_the_floor_begin_in_the_same_state(tasks):
     task = _back(tasks["single link"])
     profile, settings = qa.CycloidPolynomial(4), {"bound": 0.3, "starts": 1}
@@ -136,6 +138,7 @@ def test_what_rings_adds_to_what_a_move_leaves_on_a_linear_link():
     assert kept == pytest.approx(own, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_a_deflection_held_before_the_move_saves_energy(tasks):
     # As Abe (2024) says: bent back before the start, the structure gives its work to the joint.
     task = replace(tasks["single link"], acceleration_limit=40.0)

@@ -62,6 +62,7 @@ def test_ipopt_finds_the_same(task, plan):
     assert other.energy == pytest.approx(plan.energy, rel=1e-2)
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("error", [1e-4, 0.05, 0.1])
 def test_by_default_it_leaves_no_more_than_the_plain_plan_in_the_worst_case(task, error):
     task = replace(task, uncertainty=qa.Uncertainty({"frequency": error}))
@@ -74,6 +75,7 @@ def test_by_default_it_leaves_no_more_than_the_plain_plan_in_the_worst_case(task
     assert leaves[1] <= plan.residual_limit * (1 + 1e-3) <= 0.05 * bent * (1 + 2e-3)
 
 
+@pytest.mark.slow
 def test_where_the_default_is_out_of_reach_the_limit_is_near_the_least_worst_case(task):
     one_term = qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2)
     limit = one_term.residual_limit
@@ -82,6 +84,7 @@ def test_where_the_default_is_out_of_reach_the_limit_is_near_the_least_worst_cas
         qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2, residual_limit=0.9 * limit)
 
 
+@pytest.mark.slow
 def test_a_limit_that_does_not_hold_is_refused_with_what_is_left(task, monkeypatch):
     # without rounds and tightening nothing holds between the scenarios
     monkeypatch.setattr(plan_along, "_ROUNDS", 0)

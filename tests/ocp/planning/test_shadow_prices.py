@@ -22,6 +22,7 @@ def test_the_price_of_the_residual_is_the_slope_of_the_least_energy(tmp_path):
     assert qa.Plan.load(tmp_path / "plan.json").shadow_prices == plan.shadow_prices
 
 
+@pytest.mark.slow
 def test_a_notebook_shows_plans_and_fronts_as_tables():
     plan = qa.plan_move(TASK, starts=1)
     shown = plan._repr_html_()

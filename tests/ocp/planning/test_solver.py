@@ -52,6 +52,7 @@ def test_all_limits_at_once_are_kept(tasks, solved):
     assert plan.energy > free.energy
 
 
+@pytest.mark.slow
 def test_too_few_steps_are_doubled_until_the_integrators_agree(tasks, solved):
     settings = {"starts": 2, "residual_limit": 1e-6}
     plan = qa.plan_move(tasks["single link"], qa.CycloidPolynomial(4), steps=3, **settings)

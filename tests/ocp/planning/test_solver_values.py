@@ -73,6 +73,7 @@ VERBS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("verb", VERBS)
 def test_every_solve_of_a_verb_has_the_options_that_were_given(solvers, verb):
     VERBS[verb](OWN)

@@ -20,6 +20,7 @@ RIGID = 1.5 / 1.0 + 1.0 / 2.0
 AXIS = PointToPoint(LinearAxis(), 1.5, 0.9 * RIGID, speed_limit=1.0, acceleration_limit=2.0)
 
 
+@pytest.mark.slow
 def test_a_plan_is_refused_with_the_duration_that_will_do():
     with pytest.raises(InfeasibleTaskError, match=r"1\.8 s is too short: .* \S+ s will do$"):
         plan_move(AXIS)

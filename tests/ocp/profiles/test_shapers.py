@@ -107,6 +107,7 @@ def test_what_is_left_by_two_shapers_is_the_product(shaper, first, second):
         assert left(both, *mode) == pytest.approx(left(one, *mode) * left(other, *mode), abs=1e-9)
 
 
+@pytest.mark.slow_after(1)
 @names
 @settings(max_examples=20)
 @given(pairs=modes, share=st.floats(LEAST_SHARE, 0.9), fraction=st.floats(0, 1))

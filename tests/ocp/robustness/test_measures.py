@@ -40,6 +40,7 @@ def evaluated(request, plans):
     return plan, ranges, of_plan(plan, ranges, samples=150, seed=4)
 
 
+@pytest.mark.slow_after(1)
 def test_samples_are_what_cvodes_finds_one_by_one(evaluated):
     plan, ranges, found = evaluated
     scale = found.samples.residual.max()

@@ -23,6 +23,7 @@ def on_another(plan, **errors):
     return evaluate_coefficients(task, plan.coefficients, profile=plan.profile)
 
 
+@pytest.mark.slow
 def test_a_small_error_does_what_the_derivatives_say(plan):
     of = {one.parameter: one for one in plan.sensitivities}
     for name in ("omega", "zeta", "alpha1", "beta2"):

@@ -60,6 +60,7 @@ def by_differences(function, output, a):
     return np.transpose([(up - down) / (2 * WIDTH) for up, down in ends])
 
 
+@pytest.mark.slow_after(5)
 @pytest.mark.parametrize("case", CASES, ids=" ".join)
 @given(numbers=st.lists(st.floats(-1, 1), min_size=MOST, max_size=MOST))
 @example(numbers=[0.0] * MOST)  # the plain cycloid
@@ -75,6 +76,7 @@ def test_derivatives_are_finite_and_those_of_differences(case, numbers):
     assert gradient.ravel() == pytest.approx(jacobian[0], rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.slow_after(13)
 @pytest.mark.parametrize("case", CASES, ids=" ".join)
 def test_second_derivatives_are_those_of_differences(case):
     """Where no two zeros of the power meet, at which the curvature has no bound."""

@@ -113,6 +113,7 @@ def test_what_is_no_table_of_coefficients_is_refused(tasks, coefficients, words)
         Evaluator(tasks["arm"], PROFILE, 40)(coefficients)
 
 
+@pytest.mark.slow
 def test_a_free_motion_has_no_fixed_steps(tasks):
     floor = qa.energy_floor(tasks["single link"], starts=1)
     with pytest.raises(ValueError, match="has no profile"):

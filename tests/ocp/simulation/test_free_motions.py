@@ -25,6 +25,7 @@ def free(request):
     return FreeMotion(COARSE, [150.0, 2.0, -14.0, 0.5], np.zeros(4))
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
 def test_figures_are_those_of_scipy(tasks, free, name):
     task = tasks[name]

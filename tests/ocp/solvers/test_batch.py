@@ -46,6 +46,7 @@ def _derivatives(made, candidates, width=0.0, weights=None):
     return made.derivatives(*candidates, np.full(rows, width), weights)
 
 
+@pytest.mark.slow_after(4)
 @pytest.mark.parametrize("errors", [{}, ERRORS], ids=["as assumed", "with errors"])
 def test_figures_are_those_of_the_rollout(task, errors):
     profile, steps = qa.CycloidPolynomial(4), 40

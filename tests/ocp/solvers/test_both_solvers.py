@@ -55,6 +55,7 @@ def link_and_arm(tasks, transcribe):
     }
 
 
+@pytest.mark.slow_after(2)
 @pytest.mark.parametrize("name", ["single link", "arm"])
 @pytest.mark.parametrize("what", ["rest", "residual", "box", "torque", "peak"])
 def test_both_solvers_agree(link_and_arm, name, what):
@@ -83,6 +84,7 @@ def test_both_solvers_agree(link_and_arm, name, what):
         assert ipopt.shadow_prices[quantity] == pytest.approx(price, rel=1e-3)
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(
     ("given", "name"),
     [({"acceleration_limit": (-60.0, 35.0)}, "acceleration"),

@@ -93,6 +93,7 @@ def _expected(symbols, expressions, candidate, width):
     return [part.full() for part in function.call([candidate, width])]
 
 
+@pytest.mark.slow_after(4)
 @pytest.mark.parametrize(("name", "width"), [("sharp", 0.0), ("rounded", 0.3)])
 def test_values_and_first_derivatives(case, candidate, name, width):
     made, symbols = case

@@ -22,6 +22,7 @@ from quietarm.studies.bench.planned_jobs import problems_of, write_references
 from quietarm.studies.bench.results import Results
 
 
+@pytest.mark.slow
 def test_measures_are_moocores_from_the_files_alone(fronts):
     reference = problem_of(NAME).fronts()[0]
     best = np.c_[reference.residuals, reference.energies]
@@ -43,6 +44,7 @@ def test_measures_are_moocores_from_the_files_alone(fronts):
 LONG = ["arm-on-flexible-link-90deg-0.8s-12-terms", "single-link-30deg-0.8s-20-terms"]
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("name", [*LONG, "dual-link-90deg-0.9s"])
 def test_random_candidates_are_within_the_accuracy_stated(name):
     problem = problem_of(name)
@@ -101,6 +103,7 @@ def test_what_a_recorded_run_compiles_is_no_part_of_its_time():
         assert (built > 0) == (rows < 105)
 
 
+@pytest.mark.slow
 def test_the_command_counts_imports_and_refuses_them_before_it_runs(call, tmp_path, fronts):
     front = next(iter(fronts.values()))
     longer = replace(front.task, duration=0.9)
@@ -128,6 +131,7 @@ def test_the_command_counts_imports_and_refuses_them_before_it_runs(call, tmp_pa
     assert not (tmp_path / "out2").exists()
 
 
+@pytest.mark.slow
 def test_a_folder_of_imports_leaves_runs_of_other_problems_out_and_names_them(call, tmp_path):
     rng = np.random.default_rng(0)
     for name, seed in ((NAME, 0), (OTHERS[0], 1)):
@@ -150,6 +154,7 @@ def test_a_folder_of_imports_leaves_runs_of_other_problems_out_and_names_them(ca
     assert not (tmp_path / "out2").exists()
 
 
+@pytest.mark.slow
 def test_an_imported_run_that_evaluates_the_reference_front_is_named(call, tmp_path):
     problem = problem_of(NAME)
     coefficients, _ = problem.optimum()
@@ -175,6 +180,7 @@ def test_an_imported_run_that_evaluates_the_reference_front_is_named(call, tmp_p
     assert "5 of the runs have no checksum of the bench" in report
 
 
+@pytest.mark.slow
 def test_a_smaller_bench_leaves_the_report_of_a_larger_one(call, tmp_path):
     line = f"bench {NAME} --evaluations 100 --quiet --output {tmp_path}"
     assert call(f"{line} --methods random,gde3 --runs 2")[0] == 0
@@ -228,6 +234,7 @@ def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
     assert table["method"].iloc[-1] == "random search"
 
 
+@pytest.mark.slow
 def test_a_folder_of_runs_with_a_broken_file_imports_the_rest_and_names_it(call, tmp_path):
     recorded = problem_of(NAME).recorded()
     recorded(np.random.default_rng(0).uniform(recorded.lower, recorded.upper, (50, 2)))

@@ -47,6 +47,7 @@ def runs(problem, tmp_path_factory):
     return done
 
 
+@pytest.mark.slow
 def test_every_run_has_all_objectives_and_is_measured_by_them(runs, problem):
     for job, front in runs.items():
         assert front.objectives == THREE
@@ -81,6 +82,7 @@ def test_a_named_problem_with_peaks_has_a_reference_and_another_name(tmp_path):
     assert words == ["epsilon has no noise: its gradient is that of the model"]
 
 
+@pytest.mark.slow
 def test_the_torque_problem_is_measured_by_its_six_fronts_together():
     problem = problem_of("single-link-30deg-0.8s-torque")
     X, F = problem.optimum()
@@ -108,6 +110,7 @@ def test_fronts_of_the_same_objectives_are_compared_and_others_refused(runs, tmp
         compare_fronts([fronts[0], plain], ["searched", "plain"])
 
 
+@pytest.mark.slow
 def test_pictures_have_a_peak_as_colour_and_an_axis_for_each_objective(runs, problem):
     fronts = list(runs.values())
     ax = draw_peak(fronts[:2])

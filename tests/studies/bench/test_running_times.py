@@ -31,6 +31,7 @@ def results(tmp_path_factory):
     return Results.of_jobs(run_jobs(jobs, tmp_path_factory.mktemp("runs")))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["histories.csv", "histories.csv.gz"])
 def test_all_expected_running_times_follow_from_the_file_of_histories(results, tmp_path, name):
     results.write_histories(tmp_path / name)

@@ -30,6 +30,7 @@ from quietarm.studies.bench.statistics import (
 )
 
 
+@pytest.mark.slow
 def test_tests_are_exact_and_no_verdict_is_given_without_power(fronts):
     searches = {job: front for job, front in fronts.items() if job.method != "epsilon"}
     results = Results.of_jobs(searches)
@@ -195,6 +196,7 @@ print(brief_report(results).markdown(), bench_report(results, "line").markdown()
 """
 
 
+@pytest.mark.slow
 def test_a_report_does_not_depend_on_the_order_of_sets(fronts, tmp_path):
     """Seven methods with the same medians: their order is that of the table under any seed."""
     next(front for job, front in fronts.items() if job.method == "nsga2").save(tmp_path / "f.json")
@@ -224,6 +226,7 @@ def test_problems_of_one_move_count_once():
     assert len(moves_of(sixteen)) == 7
 
 
+@pytest.mark.slow
 def test_a_tool_with_many_runs_on_one_problem_leaves_the_others_ranked(fronts):
     names = [NAME, OTHERS[0], "dual-link-90deg-0.9s"]
     done = [(job.label, front) for job, front in fronts.items()]

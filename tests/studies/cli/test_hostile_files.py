@@ -81,6 +81,7 @@ TABLE = f"evaluate {MOVE} --coefficients"
 RECORDING = "identify FILE flexible-beam --tip none"
 
 
+@pytest.mark.slow
 def test_what_asks_for_too_much_is_refused_with_the_bound(call, files):
     for line, words in {
         f"{TABLE} numbered.csv": "there is no column for coefficient 1; give all",
@@ -128,6 +129,7 @@ def test_what_never_ends_is_not_read(call, endless, name):
     assert name in err
 
 
+@pytest.mark.slow
 def test_a_name_of_a_file_is_cut_and_gives_the_terminal_no_orders(call, files):
     _, _, err = call("identify name.csv flexible-beam --tip top")
     assert "nnn ... nnn" in err

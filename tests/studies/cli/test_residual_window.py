@@ -22,6 +22,7 @@ WITHIN = "within 20 s"  # two periods of 0.6283 rad/s
 EXACTLY = 4 * math.pi / 0.6283
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(
     "line",
     [
@@ -94,6 +95,7 @@ def test_plans_of_before_are_compared_with_one_of_today_within_the_longest(done,
         compare_plans({"today": today, "before": Plan.load("before.json")})
 
 
+@pytest.mark.slow
 def test_fronts_of_two_windows_are_told_apart_with_what_to_do(call, done, folder):
     for name, window in (("before", "--residual-window 1"), ("today", "")):
         done(f"front {CRANE} --terms 2 --points 3 --starts 1 --output {name}.json {window}")
@@ -123,6 +125,7 @@ def test_a_grid_has_one_window_the_longest_of_its_cells():
     assert replace(MoveGrid(task, ()).task, plant=LinearAxis()).residual_window == 1.0
 
 
+@pytest.mark.slow
 def test_a_sweep_has_it_in_its_dataset_and_one_of_before_goes_on_with_its_own(call, done, folder):
     line = "sweep linear-axis --set omega1=0.6283,3.0 --target 1 --duration 20 --terms 2 --quiet"
     done(f"{line} --residual-window 1 --output moves.zarr")

@@ -35,6 +35,7 @@ def found(judged):
     return {one.name: one for one in judged}
 
 
+@pytest.mark.slow
 def test_each_motion_has_its_worst_case_within_the_errors_of_the_plans(found):
     assert list(found) == ["plan", "robust", *BASELINES]
     for one in found.values():
@@ -111,6 +112,7 @@ NO_RUCKIG = {
 }
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(("task", "why"), NO_RUCKIG.values(), ids=NO_RUCKIG)
 def test_a_baseline_without_a_row_of_figures_says_why_and_what_to_do(task, why):
     judged = compare_plans({}, ["all"], task=task)

@@ -40,6 +40,7 @@ def test_it_begins_with_the_papers_first_move_and_what_is_set_is_evaluated(begun
     assert now.change({"deflection_limit": None}).task.limits == ()
 
 
+@pytest.mark.slow
 def test_fields_that_are_set_within_a_moment_are_one_change(begun):
     document = Document()
     Page(document, begun, menu(LINK))
@@ -141,6 +142,7 @@ def test_a_plan_and_a_front_are_opened_with_what_they_were_asked_for(tmp_path):
     assert opened.plan.coefficients == front.points[0].coefficients
 
 
+@pytest.mark.slow
 def test_moves_of_a_sweep_are_looked_up_within_its_grid(tmp_path):
     place = tmp_path / "moves.zarr"
     axes = "--target 20deg:50deg:10deg --set omega=9,10,11,12"

@@ -47,6 +47,7 @@ def status(port, path, headers):
     return answer
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("host", ["localhost:PORT", "127.0.0.1:PORT", "[::1]:PORT", "LocalHost"])
 def test_it_answers_to_this_machines_names(port, host):
     assert status(port, "/static/js/bokeh.min.js", {"Host": host}) == 200
@@ -71,6 +72,7 @@ def test_another_page_of_this_browser_opens_no_socket(port):
         assert status(port, "/ws", {"Host": "localhost:PORT", "Origin": origin, **SOCKET}) == 403
 
 
+@pytest.mark.slow
 def test_a_hundred_requests_at_once_do_not_stop_it(port):
     with ThreadPoolExecutor(100) as visitors:
         hosts = [{"Host": "localhost"}] * 100

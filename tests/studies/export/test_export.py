@@ -50,6 +50,7 @@ def plan():
     return plan_along(CycloidPolynomial(6))
 
 
+@pytest.mark.slow_after(2)
 @needs_compiler
 @pytest.mark.parametrize("profile", PROFILES.values(), ids=PROFILES)
 def test_c_gives_the_joints_motion_at_any_time(profile, tmp_path):

@@ -18,6 +18,7 @@ from quietarm.studies.figures.structure import structures_of
 SMALL = "--width 240 --rate 4 --quiet"
 
 
+@pytest.mark.slow
 def test_frames_differ_while_the_structure_moves_and_where_it_does(plan, cycloid, tmp_path):
     film = animate([Line(cycloid, "plain cycloid"), Line(plan, "plan")], width=240, rate=10)
     film.save(tmp_path / "film.gif")
@@ -77,6 +78,7 @@ def test_a_film_of_a_slow_swing_has_the_whole_move_and_ends_where_it_has_too_man
     assert (whole.frames, whole.end) == (361, pytest.approx(36.0))
 
 
+@pytest.mark.slow
 def test_moves_of_different_durations_share_a_clock(plan, task):
     longer = evaluate_coefficients(PointToPoint(ArmOnFlexibleLink(), 0.5, 1.4), [])
     floor = energy_floor(task, starts=1, energy_tolerance=0.5)
@@ -103,6 +105,7 @@ def test_plans_of_different_plants_and_durations_become_a_gif(done, folder, plan
     assert out == f"9 frames, 2.2 s, {kilobytes:.0f} kB\nwrote move.gif\n"
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("count", [1, 2, 3, 6])
 def test_letters_are_read_on_a_phone_and_panels_say_what_they_show(plan, cycloid, count, tmp_path):
     lines = [Line(plan, "plan"), *[Line(cycloid, "plain cycloid")] * (count - 1)]

@@ -144,6 +144,7 @@ def test_names_end_no_script_and_stand_as_they_are(front, folder, done):
     assert move["label"] == "</script>.json"
 
 
+@pytest.mark.slow
 def test_of_ten_thousand_points_there_are_sixty_with_both_ends(front):
     residuals, energies = np.linspace(0.0, 0.04, 10_000), np.linspace(0.045, 0.018, 10_000)
     coefficients = front.points[1].coefficients
@@ -188,6 +189,7 @@ def refused_here(call, folder):
     return Refused()
 
 
+@pytest.mark.slow
 def test_fronts_of_a_move_lie_beside_each_other_and_other_moves_are_chosen(front, poor, plan):
     arm = evaluate_coefficients(PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), [])
     limited = replace(plan, task=replace(plan.task, torque_limit=5.0))

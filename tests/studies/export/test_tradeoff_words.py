@@ -52,6 +52,7 @@ def four_digits(value):
     return pytest.approx(value, rel=6e-4)
 
 
+@pytest.mark.slow_after(3)
 @pytest.mark.parametrize("name", TASKS)
 def test_every_figure_of_several_plans_is_the_motions_own(name):
     task = TASKS[name]()
@@ -88,6 +89,7 @@ def test_every_figure_of_several_plans_is_the_motions_own(name):
     assert move["panels"]["torque"]["names"] == (list(joints) if len(joints) > 1 else [""])
 
 
+@pytest.mark.slow
 def test_of_several_joints_a_limit_is_drawn_with_its_own(tmp_path):
     plant = ur5_with_bar().along(straight())
     limit = {"elbow_joint": 25.0}
@@ -109,6 +111,7 @@ def points_of(front, **changes):
     return move["points"]
 
 
+@pytest.mark.slow
 def test_at_both_ends_and_between_a_sentence_says_what_is_saved(front):
     first, *between, last = points_of(front)
     stillest = front.points[0].energy

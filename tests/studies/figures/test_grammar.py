@@ -102,6 +102,7 @@ def figures(task, plan, robust, seeds, gradient, surface, machine):
     }
 
 
+@pytest.mark.slow
 def test_every_public_figure_is_drawn_in_the_colours_of_the_grammar(figures):
     public = {name for name in qa.figures.__all__ if re.match("draw_|.*_figure$", name)}
     assert set(figures) - {"a film"} == public
@@ -125,6 +126,7 @@ def test_letters_are_as_high_as_the_site_counts_on(figures):
         assert all(float(size) >= 7 for size in sizes), notebook.name
 
 
+@pytest.mark.slow
 def test_every_figure_fits_a_phone_when_it_is_stacked(figures):
     for name, figure in figures.items():
         stacked = None if name == "a film" else qa.figures.stack(figure)
@@ -186,6 +188,7 @@ def test_what_a_line_is_decides_its_look(figures, plan, cycloid):
     assert second in OTHERS
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("shaper", ["zv", "zvd", "ei"])
 def test_a_shaper_has_one_look_in_every_figure(shaper, task, plan):
     name = shaper.upper()

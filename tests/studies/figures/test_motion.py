@@ -159,6 +159,7 @@ def test_a_limit_is_drawn_until_the_arrival(task):
     assert dotted == [[0.0, task.duration]] * 2
 
 
+@pytest.mark.slow
 def test_the_titles_of_joints_side_by_side_stay_apart_and_the_head_is_as_wide_as_all():
     plan = evaluate_coefficients(PointToPoint(TwoLinks(), 1.0, 0.8), [0.01, -0.1])
     figure = motion_figure(plan)

@@ -55,6 +55,7 @@ def test_the_figure_stays_as_it_is():
     assert [legend.get_texts()[0].get_text() for legend in figure.legends] == ["plan"]
 
 
+@pytest.mark.slow
 def test_words_keep_their_size_and_fit():
     stacked = qa.figures.stack(wide())
     stacked.draw_without_rendering()
@@ -93,6 +94,7 @@ def test_a_legend_in_place_of_a_panel_comes_last():
     assert of_legend.height < 0.3 * max(place.height for place in places)
 
 
+@pytest.mark.slow
 def test_each_scale_of_colours_stays_beside_its_panel():
     figure = new_figure(8.0, 4.0)
     for ax in figure.subplots(1, 2, sharey=True):

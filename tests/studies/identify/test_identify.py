@@ -72,6 +72,7 @@ def test_a_push_tells_frequency_and_damping_and_not_how_the_machine_varies():
         _ = found.errors
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("trend", [0.0, 5.0])
 def test_ring_downs_are_found_between_pushes_rests_and_drift(trend):
     t = np.arange(0, 15, 0.005)
@@ -128,6 +129,7 @@ def test_a_simulation_without_noise_is_identified_exactly():
     assert 0 < found.errors["omega"] < 1e-5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("tip", "cause"),
     [
@@ -209,6 +211,7 @@ def test_a_swing_is_found_where_the_joint_rests_in_silence():
     assert found.parts[0].hub == "moves"
 
 
+@pytest.mark.slow
 def test_a_rest_of_nothing_but_noise_has_no_swing():
     t = np.arange(0, 8, 0.01)
     angle = np.clip(4 * (t - 1.2), 0, 1)  # at rest for four periods before its move
@@ -263,6 +266,7 @@ def test_a_ring_down_begins_after_the_move():
     assert holds(found, 3.2)
 
 
+@pytest.mark.slow
 def test_the_push_of_the_joint_shows_while_it_moves(moved):
     angle, tip = moved.joint[:, 0], noisy(moved.tips[:, 0], 0.01)
     assumed = qa.SingleLinkManipulator(phi=2.0)
@@ -443,6 +447,7 @@ def test_a_steady_swing_is_no_well_damped_one():
         beam(qa.Recording(t, tip=noisy(decay(t, zeta=-0.001), 0.01)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("friction", "angle", "share"), [(0.0, 1.2, 0.911), (0.001, 1.0, 0.942), (0.0, 0.6, 0.978)]
 )
@@ -468,6 +473,7 @@ def test_a_frequency_that_does_not_change_has_the_interval_of_its_fit():
     assert found.estimates[0].error < 1e-3
 
 
+@pytest.mark.slow
 def test_parts_are_judged_by_themselves_however_many_there_are():
     t = np.arange(0, 8, 0.004)
     driven = qa.Recording(t, tip=noisy(decay(t, zeta=-0.01), 0.01), name="driven")
@@ -547,6 +553,7 @@ def two_modes(t, first, second, zeta, share, phase=0.4):
     return np.where(t < 1, 0.0, louder + 20 * share * other)
 
 
+@pytest.mark.slow_after(2)
 @pytest.mark.parametrize(
     ("second", "share", "zeta"),
     [(3.4, 0.9, 0.004), (3.25, 0.8, 0.003), (3.4, 0.2, 0.006), (2.6, 0.9, 0.01), (4.3, 0.9, 0.01)],
@@ -569,6 +576,7 @@ def test_two_close_modes_are_one_ring_down_whose_intervals_hold_both(second, sha
         _ = found.errors
 
 
+@pytest.mark.slow
 def test_two_pushes_of_close_modes_are_two_ring_downs():
     t = np.arange(0, 50, 0.005)
     first = two_modes(t, 3.2, 3.5, 0.006, 0.8)
@@ -577,6 +585,7 @@ def test_two_pushes_of_close_modes_are_two_ring_downs():
     assert [part.cause for part in found.parts] == ["close", "close"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("drift", "noise", "zeta"),
     [(3e-4, 0.05, 0.001), (1e-3, 0.05, 0.002), (0.01, 0.02, 0.002), (0.2, 0.01, 0.003)],
@@ -600,6 +609,7 @@ COURSES = {
 }
 
 
+@pytest.mark.slow_after(3)
 @pytest.mark.parametrize(
     ("count", "course"), [(4, "line"), (5, "warms up"), (10, "line"), (10, "comes loose")]
 )
@@ -649,6 +659,7 @@ def test_a_machine_that_varies_at_random_does_not_drift(seed):
     assert found.warnings == ()
 
 
+@pytest.mark.slow
 def test_the_first_frequency_of_a_pendulum_is_inside_the_interval():
     # 0.97 Hz at small amplitudes; from 1.2 rad on the period is that of the elliptic integral
     found = beam(pendulum(0.97, 0.002, 0.0, 1.2, 119))

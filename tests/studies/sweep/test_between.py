@@ -44,6 +44,7 @@ def _standing_there(folder, monkeypatch):
     monkeypatch.chdir(folder)
 
 
+@pytest.mark.slow
 def test_a_cell_is_what_it_was_and_between_it_is_as_still_as_stated():
     library = MoveLibrary("moves.zarr")
     cell = library.coefficients(target=math.radians(30), duration=0.9)

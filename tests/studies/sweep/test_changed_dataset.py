@@ -100,6 +100,7 @@ def test_a_changed_question_is_told(copied, value, place):
         Store(copied).check()
 
 
+@pytest.mark.slow_after(2)
 @pytest.mark.parametrize("text", ["[]", "5", "no JSON", "[" * 100_000, 7, None])
 def test_an_attribute_of_another_kind_is_told_or_found_anew(copied, text):
     known = MoveLibrary(copied).between()
@@ -148,6 +149,7 @@ def _with(document, place, value):
     return {**document, place[0]: _with(document[place[0]], place[1:], value)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [".", "coefficients", "target"])
 def test_any_entry_of_a_description_may_be_anything(copied, caplog, call, name):
     path = copied / name / "zarr.json"
@@ -166,6 +168,7 @@ def test_any_entry_of_a_description_may_be_anything(copied, caplog, call, name):
     assert not caplog.records  # what zarr does at once elsewhere says nothing either
 
 
+@pytest.mark.slow
 def test_nothing_is_said_of_what_zarr_leaves_unfinished(copied):
     path = copied / "coefficients" / "zarr.json"
     description = json.loads(path.read_text())

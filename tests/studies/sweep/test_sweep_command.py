@@ -47,6 +47,7 @@ def test_one_axis_is_shown_as_a_table_and_too_short_a_move_says_so(done, folder)
     assert float(long[1]) < float(short[1])
 
 
+@pytest.mark.slow
 def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, done, folder):
     out = done(FEW + " --output few.png")
     assert "4 of 4 have a plan" in out
@@ -79,6 +80,7 @@ def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, done,
         qa.sweep(task, axes={"omga": [9.0, 10.0]}, path=folder / "other.zarr")
 
 
+@pytest.mark.slow
 def test_parameters_are_axes_and_what_cannot_be_has_a_reason(done, folder):
     out = done(
         "sweep flexible-beam --set tip_mass=0,200g --target 60deg --duration 0.5,1 --quiet "

@@ -34,6 +34,7 @@ def test_least_crowded_thins_a_cluster_without_a_hole():
     assert least_crowded(F, 52).tolist() == list(range(52))
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=60)
 @given(data=st.data(), n_obj=st.integers(1, 4), size=st.sampled_from([None, 2, 5]))
 def test_archive_is_feasible_finite_and_mutually_non_dominated(data, n_obj, size):

@@ -30,6 +30,7 @@ def quality(F, true):
     return moocore.igd(F, ref=true), hypervolumes[0] / hypervolumes[1]
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(
     ("name", "iterations", "rule", "boundary", "largest_igd", "smallest_hv"),
     [

@@ -28,6 +28,7 @@ def loaded(line, folder):
     return set(ran.stderr.split())
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("line", ["--help", "front --help", "search --help"])
 def test_help_loads_no_more_than_it_needs(tmp_path, line):
     found = loaded(line, tmp_path)

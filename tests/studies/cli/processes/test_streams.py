@@ -17,6 +17,7 @@ def run(line, closed):
     )  # fmt: skip
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("closed", [">&-", ">&- 2>&-", "<&- >&- 2>&-"])
 def test_a_file_is_written_whatever_is_closed(folder, plan, closed):
     plan.save("plan.json")
@@ -44,6 +45,7 @@ def test_words_go_nowhere_where_standard_output_is_closed(folder, plan, line):
 ONE_MOVE = f"{MOVE} --terms 2"
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(
     "line",
     [

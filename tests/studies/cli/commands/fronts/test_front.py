@@ -45,6 +45,7 @@ def test_an_epsilon_front_is_shown_and_written(call):
     assert err.splitlines()[-1] == "9 of 9 points"  # 0.1, 1 and 5 mm as well
 
 
+@pytest.mark.slow
 def test_a_weighted_front_takes_the_weights_that_are_typed(done):
     line = f"front {MOVE} --method weighted --weights 1:1 --weights 1:3 --quiet --output f.json"
     out = done(line)
@@ -52,6 +53,7 @@ def test_a_weighted_front_takes_the_weights_that_are_typed(done):
     assert out.startswith("weighted: 4 points, ")  # the ends and one for each weight
 
 
+@pytest.mark.slow
 def test_the_other_solver_checks_the_front(done):
     out = done(f"front {MOVE} --points 4 --bound 0.5 --check --quiet --output f.json")
     assert Front.load("f.json").record.settings["solver"] == "sqp"
@@ -74,6 +76,7 @@ def rough():
     return replace(found, profile=CycloidPolynomial(4), points=points).restated(method="nsga2")
 
 
+@pytest.mark.slow
 def test_a_front_is_polished_shown_and_written(call, rough):
     rough.save("rough.json")
     expected = polish_front(rough)

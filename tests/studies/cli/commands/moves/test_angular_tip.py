@@ -81,6 +81,7 @@ def test_a_move_of_it_has_rad_on_the_screen_and_in_files(done, folder):
     assert f"residual {plan.residual:.3g} rad" in Path("move.h").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("drive")
 def test_a_limit_of_its_residual_is_an_angle(done, refused):
     out = done(f"plan {MOVE} --terms 4 --starts 1 --residual-limit 1deg --output plan.json --quiet")
@@ -91,6 +92,7 @@ def test_a_limit_of_its_residual_is_an_angle(done, refused):
     assert "'1mm' is not an angle; give radians (0.5), 30deg" in said
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("drive")
 def test_plans_and_fronts_are_compared_in_rad(done):
     done(f"plan {MOVE} --terms 4 --starts 1 --output plan.json --quiet")
@@ -110,6 +112,7 @@ def test_plans_and_fronts_are_compared_in_rad(done):
         front.cheapest(0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("drive")
 def test_a_residual_in_rad_has_its_window(done):
     window = "--residual-window 3s --quiet"

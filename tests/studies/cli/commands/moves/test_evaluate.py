@@ -89,6 +89,7 @@ def evaluate(run, name, more=""):
     return run(f"evaluate {MOVE} --coefficients {name} --output f.json --quiet {more}")
 
 
+@pytest.mark.slow
 def test_a_table_with_right_figures_becomes_a_front(done):
     rows = np.column_stack([X, CLAIMS])[::-1].tolist()
     written("swarm.csv", table(["a_1", "a_2", "residual_m", "energy_J"], rows))
@@ -156,6 +157,7 @@ FILES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow_after(4)
 @pytest.mark.parametrize("name", FILES)
 def test_tables_of_many_kinds(done, name):
     content, words = FILES[name]
@@ -202,6 +204,7 @@ def test_a_table_without_a_motion_that_keeps_the_limits(call):
     assert (code, "their figures overflow" in err) == (1, True)
 
 
+@pytest.mark.slow
 def test_a_fronts_own_table_is_right_within_the_window_that_it_states(done):
     line = "single-link --target 30deg --duration 0.8"
     done(f"front {line} --points 6 --residual-window 1.0 --output front.csv --quiet")

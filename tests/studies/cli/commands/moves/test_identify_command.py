@@ -49,6 +49,7 @@ def test_pushes_make_a_machine_that_is_planned_for(push, done, refused):
     assert "of the swing predicted over five periods, at least" in out
 
 
+@pytest.mark.slow
 def test_another_tip_mass_keeps_the_measured_frequency_and_says_so(push, call, refused):
     call(f"{PUSH.replace('push.csv', 'push.csv again0.csv')} --output arm.json")
     beam = Identified.load(push / "arm.json").plant
@@ -103,6 +104,7 @@ def same(done, line):
     assert zeta.value == pytest.approx(ZETA, rel=0.1)
 
 
+@pytest.mark.slow
 def test_arrays_and_german_texts_tell_the_same(push, done):
     np.save(push / "push.npy", np.column_stack([TIME, TIP]))
     savemat(push / "push.mat", {"t": TIME, "w": TIP, "rate": 200.0})
@@ -127,6 +129,7 @@ def test_a_swing_that_no_arm_has_is_asked_about(push, refused):
     assert "Hz, as no arm does" in refused("identify slow.csv flexible-beam --tip tip_mm")
 
 
+@pytest.mark.slow
 def test_one_column_for_two_signals_and_degrees_called_radians_are_told(push, call, refused):
     said = refused("identify push.csv flexible-beam --tip tip_mm --angle 1")
     assert "column tip_mm is given for two signals; give each a column of its own" in said
@@ -188,6 +191,7 @@ RECORDERS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow_after(6)
 @pytest.mark.parametrize("name", RECORDERS)
 def test_files_of_recorders_tell_the_same(push, done, name):
     header, form, columns, options = RECORDERS[name]
@@ -206,6 +210,7 @@ def test_the_count_of_rows_below_a_query_is_no_row(push, done, footer):
     same(done, f"identify query.txt flexible-beam {options}")
 
 
+@pytest.mark.slow
 def test_signals_of_a_simulink_structure_go_by_their_labels(push, done, refused):
     signals = np.array([(TIP[:, None], "tip_mm"), (0 * TIP, "theta")],
                        dtype=[("values", object), ("label", object)])  # fmt: skip
@@ -216,6 +221,7 @@ def test_signals_of_a_simulink_structure_go_by_their_labels(push, done, refused)
     assert "by number from 0, are Scope.time, Scope.tip_mm, Scope.theta" in said
 
 
+@pytest.mark.slow
 def test_columns_of_a_matrix_are_listed_by_name_in_every_message(push, refused):
     savemat(push / "matrix.mat", {"X": np.stack([0 * TIME, TIP], axis=1)})
     for tip in ("w", "X:2"):  # no such column; no time
@@ -235,6 +241,7 @@ def test_output_has_a_short_name(push, done):
     assert Identified.load("short.json") == Identified.load("long.json")
 
 
+@pytest.mark.slow
 def test_words_tell_from_which_amplitude_on_a_swing_is_fitted(push, done):
     t = np.arange(0, 60, 0.01)
     size = 20 * np.exp(-0.05 * t)

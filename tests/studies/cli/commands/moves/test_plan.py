@@ -51,6 +51,7 @@ def test_the_motion_without_a_parametrisation_takes_less(done):
     assert Path("f.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_a_robust_plan_keeps_its_limit_in_the_worst_case(done):
     out = done(f"plan {MOVE} --error frequency=4% --starts 1 --output p.json --quiet")
     found = Plan.load("p.json")
@@ -60,6 +61,7 @@ def test_a_robust_plan_keeps_its_limit_in_the_worst_case(done):
     assert f"{1e3 * found.worst.residual:.3g} mm with frequency {error:+.3g} %" in out
 
 
+@pytest.mark.slow
 def test_an_energy_that_is_not_the_papers_is_named(done):
     line = "single-link --target 30deg --duration 0.8 --energy positive+copper:0.12 --quiet"
     energies = {}
@@ -119,6 +121,7 @@ def test_the_force_of_a_linear_drive_falls_with_speed(done, typed):
     assert limit.peak_of(plan.motion) == pytest.approx(shares.max(), rel=1e-3)
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(
     ("limits", "warned"),
     [
@@ -135,6 +138,7 @@ def test_a_jerk_that_would_surprise_a_drive_is_told(done, limits, warned):
     assert warned in jerk
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(("limit", "warned"), [("", True), ("57", True), ("1.5", False)])
 def test_a_limit_far_off_does_not_silence_the_warning_of_high_acceleration(call, limit, warned):
     given = f"--torque-limit {limit}" if limit else ""
