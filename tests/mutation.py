@@ -165,7 +165,8 @@ def tested(module: str, source: str) -> int:
     sys.meta_path.insert(0, _Changed(module, source))
     os.chdir(ROOT)
     quiet = ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # hypothesis is here already
-    options = ["-x", "-q", "-n0", "-m", "not slow", "-p", "no:cacheprovider", "--hypothesis-profile=mutation", *quiet]
+    options = ["-x", "-q", "-n0", "-m", "not slow", "-p", "no:cacheprovider", *quiet]
+    options.append("--hypothesis-profile=mutation")
     return int(pytest.main([*options, *(f"tests/{name}" for name in TESTS[module])]))
 
 
