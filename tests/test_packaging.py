@@ -8,7 +8,6 @@ from importlib import import_module, metadata
 from itertools import chain
 from pathlib import Path
 
-import jedi
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
@@ -89,8 +88,10 @@ def vars_of(module_name: str) -> dict[str, object]:
     return {name: getattr(module, name) for name in dir(module)}
 
 
+@pytest.mark.slow
 def test_an_editor_finds_and_completes_names(tmp_path):
     """From a project of its own, by what is installed."""
+    jedi = pytest.importorskip("jedi")
     environment = jedi.InterpreterEnvironment()
     project = jedi.Project(tmp_path)
 

@@ -7,9 +7,11 @@ springs' angles follow by LSODA. It tells what a motion leaves, and what it take
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 
-import mujoco
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
+
+mujoco = pytest.importorskip("mujoco")
 
 GRAVITY = (0.0, 0.0, -9.80665)
 # MuJoCo has no moving body without a mass; that of a hinge is 1e-5 of the bar's.

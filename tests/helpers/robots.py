@@ -1,4 +1,4 @@
-"""Robots of example-robot-data, and the bar that they carry in the tests."""
+"""Robots and the bar that they carry in the tests: a UR5, and others of example-robot-data."""
 
 import importlib.metadata
 from functools import lru_cache
@@ -9,6 +9,7 @@ import numpy as np
 import quietarm as qa
 from quietarm.models import Base
 
+FIXTURES = Path(__file__).parents[1] / "fixtures"
 UR5_JOINTS = (
     "shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
     "wrist_1_joint", "wrist_2_joint", "wrist_3_joint",
@@ -27,7 +28,14 @@ BAR = {
 
 @lru_cache
 def urdf_of(name: str) -> Path:
-    """The file of this name in example-robot-data."""
+    """The file of this name, of the fixtures or, in slow tests, of example-robot-data."""
+    fixture = FIXTURES / name
+    return fixture if fixture.exists() else shipped_urdf(name)
+
+
+@lru_cache
+def shipped_urdf(name: str) -> Path:
+    """The file of this name in example-robot-data, which the extra `slow` installs."""
     for file in importlib.metadata.files("example-robot-data"):
         if file.name == name:
             return Path(file.locate())

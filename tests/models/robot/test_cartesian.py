@@ -3,13 +3,15 @@
 from functools import lru_cache
 
 import numpy as np
-import pinocchio
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from robots import BAR, START, UR5_JOINTS, ur5_with_bar, urdf_of
 
 import quietarm as qa
+
+pinocchio = pytest.importorskip("pinocchio")
+pytestmark = pytest.mark.slow
 
 PANDA_JOINTS = tuple(f"panda_joint{number}" for number in range(1, 8))
 PANDA_START = np.array([0.3, -0.4, 0.2, -1.9, 0.3, 1.6, 0.5])

@@ -1,12 +1,15 @@
 """The equations of motion, against Pinocchio's, which reads the URDF itself."""
 
 import numpy as np
-import pinocchio
 import pytest
-from robots import UR5_JOINTS, urdf_of
+from robots import UR5_JOINTS, shipped_urdf, urdf_of
 
 import quietarm as qa
 from quietarm.models import Base
+from quietarm.models.robot.urdf import dynamics_of, read_urdf
+
+pinocchio = pytest.importorskip("pinocchio")
+pytestmark = pytest.mark.slow
 
 STIFF = Base(stiffness=(1e9, 1e9))  # something has to bend; it adds nothing at rest
 FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
@@ -80,3 +83,10 @@ def test_rotors_and_friction_add_their_torques():
     expected[UR5_JOINTS.index("elbow_joint")] = 0.3 * motion[2, 2]
     expected[UR5_JOINTS.index("wrist_1_joint")] = 2.0 * motion[1, 3]
     assert difference == pytest.approx(expected, abs=1e-12)
+
+
+def test_the_ur5_of_the_quick_tests_is_the_shipped_one():
+    name = "ur5_robot.urdf"
+    ours, theirs = (read_urdf(file(name).read_text()) for file in (urdf_of, shipped_urdf))
+    assert ours.joints.keys() == theirs.joints.keys()
+    assert dynamics_of(urdf_of(name).read_text()) == dynamics_of(shipped_urdf(name).read_text())

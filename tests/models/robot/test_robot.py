@@ -108,6 +108,7 @@ def test_positions_are_limited_by_the_urdf(tmp_path):
         qa.Robot.load(_file(tmp_path, "limits: joint_limits.yaml\n"))
 
 
+@pytest.mark.slow
 def test_a_joint_that_slides_is_held_in_metres(tmp_path):
     fingers = "{panda_finger_joint1: 20mm, panda_finger_joint2: 0.02}"
     (tmp_path / "robot.yaml").write_text(
@@ -188,6 +189,7 @@ def test_a_urdf_that_cannot_be_followed_is_refused(old, new, words):
         qa.Robot(urdf=URDF.replace(old, new), elastic_joints=GEARS)
 
 
+@pytest.mark.slow
 def test_a_mimicking_joint_that_is_held_is_no_trouble():
     robot = qa.Robot(
         urdf=urdf_of("panda.urdf"), base=Base((1e5, 1e5)),

@@ -24,6 +24,8 @@ import quietarm as qa
 from quietarm.models import JointMotion
 from quietarm.ocp import FreeVibration, perturb_plant
 
+pytestmark = pytest.mark.slow
+
 
 def _on_pedestal(robot):
     """The robot of MuJoCo, on the pedestal."""

@@ -11,6 +11,8 @@ from robots import BAR, END, START, UR5_JOINTS, straight, ur5_with_bar, urdf_of
 import quietarm as qa
 from quietarm.models import JointMotion, RobotOnPath
 
+pytestmark = pytest.mark.slow
+
 # The figures of the move, by another program and MuJoCo.
 ENERGY = 33.287
 LIMITED = 38.0

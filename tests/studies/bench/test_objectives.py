@@ -63,6 +63,7 @@ def test_every_run_has_all_objectives_and_is_measured_by_them(runs, problem):
     assert np.isfinite(table["igd_plus"]).all()
 
 
+@pytest.mark.slow
 def test_noise_stands_in_the_name_of_a_method_and_of_its_file(runs):
     labels = [job.label for job in runs]
     assert labels[2] == "nsga3(population=20,noise=0.02,reevaluate=2)"
@@ -91,6 +92,7 @@ def test_the_torque_problem_is_measured_by_its_six_fronts_together():
     assert len(X) == len(F) > 1000
 
 
+@pytest.mark.slow
 def test_fronts_of_the_same_objectives_are_compared_and_others_refused(runs, tmp_path):
     fronts = list(runs.values())
     comparison = compare_fronts([fronts[0], fronts[-1]], ["searched", "by gradient"])
@@ -131,6 +133,7 @@ def test_pictures_have_a_peak_as_colour_and_an_axis_for_each_objective(runs, pro
         draw_peak(fronts[:1], peak=1)
 
 
+@pytest.mark.slow
 def test_a_problem_of_a_front_has_its_objectives(runs):
     front = next(iter(runs.values()))
     problem = NamedProblem.of_front("mine", front)

@@ -62,6 +62,7 @@ def test_power_is_said_of_the_test_that_is_used():
     )
 
 
+@pytest.mark.slow
 def test_against_a_repeated_method_five_runs_give_no_verdict(fronts):
     results = Results.of_jobs(fronts)  # five runs of four methods; epsilon repeats itself
     assert results.is_repeated(NAME, "epsilon(points=8)")
@@ -83,6 +84,7 @@ def test_against_a_repeated_method_five_runs_give_no_verdict(fronts):
     assert verdict_on(results, NAME) == f"no verdict: {say_power(5, 2)}"
 
 
+@pytest.mark.slow
 def test_runs_are_told_to_be_one_by_their_fronts(fronts):
     """Motions differ and their points do not; columns computed from them round either way."""
     problem = problem_of(NAME)
@@ -132,6 +134,7 @@ def results_with(one, other, front):
 samples = st.lists(st.integers(0, 4), min_size=2, max_size=5).filter(lambda s: len(set(s)) > 1)
 
 
+@pytest.mark.slow
 @settings(max_examples=30)
 @given(one=samples, other=samples)
 def test_with_ties_p_is_that_of_all_permutations_and_never_below_the_least(fronts, one, other):
@@ -144,6 +147,7 @@ def test_with_ties_p_is_that_of_all_permutations_and_never_below_the_least(front
     assert pair >= attainable_p(len(one), len(other)) * (1 - 1e-12)
 
 
+@pytest.mark.slow
 def test_runs_that_repeat_each_other_are_one_value(fronts):
     front = next(iter(fronts.values()))
     above = results_with([1] * 6, [2, 3, 4, 5, 2, 3], front)
@@ -159,6 +163,7 @@ def test_runs_that_repeat_each_other_are_one_value(fronts):
     assert "The same from every seed, and one value in the tests: one; other." in report
 
 
+@pytest.mark.slow
 def test_what_differs_by_less_than_a_front_s_accuracy_is_a_tie(fronts):
     front = next(iter(fronts.values()))
     close = results_with([1, 2, 3], [1 + 1e-8, 2 - 1e-8, 3 + 1e-8], front)
@@ -212,6 +217,7 @@ def test_a_report_does_not_depend_on_the_order_of_sets(fronts, tmp_path):
     assert told[0] == told[1]
 
 
+@pytest.mark.slow
 def test_of_motions_that_nobody_found_there_is_no_verdict(fronts):
     far = [(job.label, replace(front, points=front.points[-1:])) for job, front in fronts.items()]
     results = Results([Run(problem_of(NAME), *one) for one in far])
@@ -238,6 +244,7 @@ def test_a_tool_with_many_runs_on_one_problem_leaves_the_others_ranked(fronts):
     assert ranking.left_out == ("my tool (not on all problems, or too few runs)",)
 
 
+@pytest.mark.slow
 def test_missing_values_are_censored(fronts):
     assert quartiles([1.0, 2.0, np.nan]) == (1.0, 2.0, np.inf)
     results = Results.of_jobs(fronts)
@@ -246,6 +253,7 @@ def test_missing_values_are_censored(fronts):
     assert ranking_over(results) is None  # one move
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("by", ["seconds", "evaluations"])
 @pytest.mark.parametrize("target", [0.9, 0.6, 0.4, 0.2])
 def test_the_expected_running_time_is_cocos_with_an_interval_about_it(fronts, by, target):

@@ -8,7 +8,6 @@ from itertools import pairwise
 from math import inf, nan
 
 import numpy as np
-import pinocchio
 import pytest
 import yaml
 from c_library import compiled, needs_compiler
@@ -40,6 +39,7 @@ def _curved():
     return qa.GeometricPath.through([START, middle, END], joints=UR5_JOINTS)
 
 
+@pytest.mark.slow_after(1)
 @needs_compiler
 @pytest.mark.parametrize("path", [None, _curved()], ids=["straight", "curved"])
 def test_c_gives_all_joints_at_any_time(path, tmp_path):
@@ -98,6 +98,7 @@ def test_tables_have_a_column_for_each_joint(tmp_path):
             assert matlab[name].ravel() == pytest.approx(values, abs=1e-7)
 
 
+@pytest.mark.slow
 def test_a_rate_of_a_controller_is_not_called_coarse():
     """The place on the path is interpolated, in whatever unit the joints are."""
     for plan in (_plan(), _plan(_curved())):
@@ -105,6 +106,7 @@ def test_a_rate_of_a_controller_is_not_called_coarse():
         assert residual_between(plan, 500, 3) == pytest.approx(plan.residual, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_joints_stand_above_each_other_with_their_limits():
     figure = qa.motion_figure(_plan())
     drawn = [ax for ax in figure.axes if ax.lines]
@@ -119,8 +121,10 @@ def test_joints_stand_above_each_other_with_their_limits():
     assert "along its path in 1 s" in figure.get_suptitle().replace("\n", " ")
 
 
+@pytest.mark.slow
 def test_the_film_shows_the_robot_where_pinocchio_says(tmp_path):
     """Still, the drawn tip is the end of the bar, hanging by its sag, seen from one side."""
+    pinocchio = pytest.importorskip("pinocchio")
     plan = _plan()
     (structure,) = structures_of([Line(plan, "plan")], np.array([0.0, 1.0]), 2.0, 1.0)
     model = pinocchio.buildModelFromUrdf(str(urdf_of("ur5_robot.urdf")))
@@ -149,6 +153,7 @@ def test_displacements_of_the_tip_are_named_by_the_axes_of_its_frame(tmp_path):
     assert ",tip_x_m,tip_y_m," in (tmp_path / "move.csv").read_text().splitlines()[0]
 
 
+@pytest.mark.slow
 def test_a_film_of_a_robot_moves_and_has_the_cycloid_beside_it(tmp_path):
     film = animate(_plan(), width=240, rate=3)
     film.save(tmp_path / "film.gif")

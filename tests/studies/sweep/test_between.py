@@ -61,6 +61,7 @@ def test_a_cell_is_what_it_was_and_between_it_is_as_still_as_stated():
     assert MoveLibrary("moves.zarr").between() == stated  # kept
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("axis", "values"),
     [

@@ -58,6 +58,7 @@ def test_a_plan_of_a_robot_and_its_files(call):
     assert float(rows[-1][1]) == pytest.approx(path(1.0)[0])
 
 
+@pytest.mark.slow
 def test_a_straight_line_in_space(call):
     """The file has the joints' path, and the answer says how straight the link goes."""
     line = f"plan ur5_bar.yaml {START} --line-by=200mm,300mm,-100mm --duration 1"
@@ -69,6 +70,7 @@ def test_a_straight_line_in_space(call):
     assert plan.task.plant.path.joints == UR5_JOINTS
 
 
+@pytest.mark.slow
 def test_a_plan_is_corrected_by_the_whole_equations(call):
     code, out, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 --in-full --output move.json")
     assert code == 0
@@ -80,6 +82,7 @@ def test_a_plan_is_corrected_by_the_whole_equations(call):
     assert plan.candidate.in_full.residual <= 1e-5
 
 
+@pytest.mark.slow
 def test_waypoints_of_another_planner(call):
     """A JointTrajectory, joints in another order, is followed without its times."""
     message = {
@@ -98,6 +101,7 @@ def test_waypoints_of_another_planner(call):
     assert path(1.0) == pytest.approx([1.4, -1.0, 1.2, -1.3, -1.2, 0.6])
 
 
+@pytest.mark.slow
 def test_a_plan_is_compared_with_shapers_and_ruckig_in_phase(call):
     """Ruckig's joints keep their own limits, and what it leaves is much."""
     limits = "--acceleration-limit 14 --speed-limit shoulder_pan_joint=2.6 --terms 6"
@@ -115,6 +119,7 @@ def test_a_plan_is_compared_with_shapers_and_ruckig_in_phase(call):
     assert float(rows["ruckig"]["peak acceleration [rad/s^2]"]) <= 14 * (1 + 1e-6)
 
 
+@pytest.mark.slow
 def test_ruckig_does_not_follow_a_curved_path(call):
     """One line says so, and what else to compare with."""
     Path("curved.csv").write_text(
@@ -129,6 +134,7 @@ def test_ruckig_does_not_follow_a_curved_path(call):
     assert "with cycloid, shapers and toppra" in words
 
 
+@pytest.mark.slow
 def test_toppra_follows_a_curved_path_within_the_limits_of_all_joints(call):
     """Speeds and accelerations are kept; what swings is left behind."""
     pytest.importorskip("toppra")
@@ -147,6 +153,7 @@ def test_toppra_follows_a_curved_path_within_the_limits_of_all_joints(call):
     assert "exceeds" not in rows["toppra"] or not rows["toppra"]["exceeds"]
 
 
+@pytest.mark.slow
 def test_durations_are_swept_and_points_are_searched(call):
     code, out, _ = call(f"sweep ur5_bar.yaml {ENDS} --duration 0.9,1.0 --output moves.zarr")
     assert code == 0
@@ -192,6 +199,7 @@ def test_the_page_of_sliders_is_of_plants_of_one_joint(refused):
     assert "give it to quietarm plan, evaluate, front or search" in refused("explore ur5_bar.yaml")
 
 
+@pytest.mark.slow
 def test_ways_are_shares_of_the_path_and_have_no_angles(call):
     """The place on a path goes from 0 to 1, in whatever units the joints are."""
     line = f"evaluate ur5_bar.yaml {ENDS} --duration 1 --coefficients=0,-3 --output move.json"
@@ -207,6 +215,7 @@ def test_ways_are_shares_of_the_path_and_have_no_angles(call):
     assert " of the path" in " ".join(out.split())
 
 
+@pytest.mark.slow
 def test_limits_by_joint_and_of_the_file(call):
     """A limit that is typed stands in place of that of the file."""
     Path("limited.yaml").write_text(Path("ur5_bar.yaml").read_text() + "limits: urdf\n")
@@ -219,6 +228,7 @@ def test_limits_by_joint_and_of_the_file(call):
     assert "elbow_joint 30 N m" in out
 
 
+@pytest.mark.slow
 def test_a_robot_is_listed_with_what_was_read(call):
     code, out, _ = call(f"list ur5_bar.yaml {ENDS}")
     assert code == 0
@@ -238,6 +248,7 @@ def test_a_list_refuses_the_paths_that_a_plan_does(refused, line, words):
     assert words in refused(line)
 
 
+@pytest.mark.slow_after(5)
 @pytest.mark.parametrize(("line", "words"), [
     ("plan ur5_bar.yaml --duration 1", "has no path; give --start and --target"),
     (f"plan ur5_bar.yaml {ENDS}", "Missing option '--duration'"),
