@@ -87,7 +87,7 @@ def test_cvodes_and_the_rollout_spend_what_scipy_finds(tasks, name, plant):
     assert rollout(task, profile, SIX).motion.energy == pytest.approx(spent, rel=1e-5)
 
 
-@pytest.mark.slow_after(1)
+@pytest.mark.slow
 def test_both_solvers_and_the_floor_agree_with_the_plan(task, solved):
     plan, other = solved(task), solved(task, solver=qa.Ipopt())
     assert (plan.verification.agrees, plan.residual < 1e-8) == (True, True)

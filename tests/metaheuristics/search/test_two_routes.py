@@ -115,12 +115,14 @@ def test_no_search_dominates_the_gradient(case, searched):
             assert np.all(point.energy >= front.energies[no_stiller] * (1 - TOLERANCE))
 
 
+@pytest.mark.slow
 def test_at_their_own_residuals_the_gradient_is_as_cheap_or_cheaper(thinned, least):
     # between the front's points, too
     for front, energies in zip(thinned, least, strict=True):
         assert np.all(energies <= front.energies * (1 + TOLERANCE))
 
 
+@pytest.mark.slow
 def test_polishing_a_search_lands_on_the_front(thinned, least):
     for front, energies in zip(thinned, least, strict=True):
         polish = polish_front(front)

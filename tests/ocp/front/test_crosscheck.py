@@ -25,7 +25,7 @@ def front(request):
     return epsilon_front(task, CycloidPolynomial(4), **settings)
 
 
-@pytest.mark.slow_after(1)
+@pytest.mark.slow
 def test_the_other_solver_finds_no_other_energy(front):
     told = []
     both = cross_check(

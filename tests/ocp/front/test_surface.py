@@ -51,6 +51,7 @@ def test_no_motion_of_a_lattice_of_coefficients_dominates_a_point(front, lattice
         assert not better.any()
 
 
+@pytest.mark.slow
 def test_its_hypervolume_is_that_of_the_lattice(front, lattice):
     best = moocore.filter_dominated(lattice)
     ideal = best.min(axis=0)

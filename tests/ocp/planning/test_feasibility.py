@@ -67,6 +67,7 @@ def test_what_the_error_offers_is_feasible(refused, tasks, case):
             assert np.abs(plan.coefficients).max() <= settings["bound"] * (1 + 1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_the_residual_offered_for_one_term_is_the_least_there_is(refused, tasks, name):
     # Coefficients from -2 to 2 in turn, then twice around the best; the error leaves a room of

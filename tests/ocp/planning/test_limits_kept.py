@@ -68,7 +68,7 @@ CASES = [
 ]
 
 
-@pytest.mark.slow_after(2)
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(("move", "quantity"), CASES)
 def test_a_limit_is_kept_and_its_peak_told(plants, solved, move, quantity):
     plant, start, target, duration = MOVES[move]

@@ -62,7 +62,7 @@ def test_ipopt_finds_the_same(task, plan):
     assert other.energy == pytest.approx(plan.energy, rel=1e-2)
 
 
-@pytest.mark.slow_after(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("error", [1e-4, 0.05, 0.1])
 def test_by_default_it_leaves_no_more_than_the_plain_plan_in_the_worst_case(task, error):
     task = replace(task, uncertainty=qa.Uncertainty({"frequency": error}))

@@ -48,6 +48,7 @@ def test_all_expected_running_times_follow_from_the_file_of_histories(results, t
         assert values[0] == pytest.approx(values[1], rel=1e-8, nan_ok=True)
 
 
+@pytest.mark.slow
 def test_a_file_has_the_marks_that_improve_and_the_end_and_is_the_same_again(results, tmp_path):
     for name in ("one", "other"):
         results.write_histories(tmp_path / f"{name}.csv.gz")

@@ -81,6 +81,7 @@ def test_plants_problems_and_methods_are_listed(call, done, crane_file):
     assert "  crane " in call("list plants --plant-file crane.py")[1]
 
 
+@pytest.mark.slow
 def test_reference_fronts_are_written_to_a_folder(done, folder):
     two, torque = (problem_of(f"single-link-30deg-0.8s-{name}") for name in ("2-terms", "torque"))
     out = done(f"list {two.name} {torque.name} --output fronts")

@@ -48,6 +48,7 @@ def test_each_motion_has_its_worst_case_within_the_errors_of_the_plans(found):
     assert re.match(r"within the limits it takes 0\.\d+ s", found["3hump-ei-ruckig"].why)
 
 
+@pytest.mark.slow
 def test_the_worst_case_is_that_of_a_fine_grid_by_cvodes(found):
     plan = found["zvd"]
     shaper = compare_plans({}, ["zvd"], {"frequency": 0.08}, 0, task=MOVE)[0]

@@ -55,6 +55,7 @@ def test_it_answers_to_this_machines_names(port, host):
     assert status(port, "/ws", own) != 403
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "host",
     ["evil.example:PORT", "localhost.evil.example", "evil.localhost", "127.0.0.1.evil.example",

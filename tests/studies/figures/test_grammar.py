@@ -117,6 +117,7 @@ def letters_of(figure):
     return {text.get_fontsize() for text in texts}
 
 
+@pytest.mark.slow
 def test_letters_are_as_high_as_the_site_counts_on(figures):
     # docs/_extensions/readable_pictures.py: at 93 pixels an inch 7 points are 9 pixels
     for name, figure in figures.items():

@@ -651,6 +651,7 @@ def test_a_drift_from_push_to_push_of_one_recording_is_inside_the_interval():
     assert "omega drifts over the ring-downs, from 3." in found.warnings[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_a_machine_that_varies_at_random_does_not_drift(seed):
     random = np.random.default_rng(seed)

@@ -99,6 +99,7 @@ def test_a_move_of_an_uncertain_plant_is_there_without_solving(
         assert plan.energy <= (1 + stated.excess + 1e-3) * energy
 
 
+@pytest.mark.slow
 def test_between_cells_it_is_the_polynomial_through_the_nearest_six():
     axes = [np.linspace(0, 1, 9), np.array([0.0, 0.3, 0.4, 1.0, 1.7, 2.0, 2.2])]
     x, y = np.meshgrid(*axes, indexing="ij")

@@ -17,7 +17,7 @@ def run(line, closed):
     )  # fmt: skip
 
 
-@pytest.mark.slow_after(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("closed", [">&-", ">&- 2>&-", "<&- >&- 2>&-"])
 def test_a_file_is_written_whatever_is_closed(folder, plan, closed):
     plan.save("plan.json")

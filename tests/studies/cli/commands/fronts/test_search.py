@@ -74,6 +74,7 @@ def test_several_seeds_are_written_to_a_file_each_with_their_spread(call):
     assert not Path("f.json").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_seeds_that_are_done_survive_a_kill(at_a_terminal, stop, folder, workers):
     process = at_a_terminal(

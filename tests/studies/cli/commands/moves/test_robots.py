@@ -34,6 +34,7 @@ def _files(folder):
     Path("short.csv").write_text("0,-1.4,1.7\n1,-1,1.2\n")
 
 
+@pytest.mark.slow
 def test_a_plan_of_a_robot_and_its_files(call):
     outputs = "--output move.json --output move.yaml --output move.csv"
     code, out, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 {outputs}")
