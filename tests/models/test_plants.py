@@ -1,11 +1,13 @@
 """The plants: the paper's equations, parameters, names."""
 
-from dataclasses import fields
+from dataclasses import dataclass, fields
+from typing import ClassVar
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from sound_plant import Sound
 from third_opinion import EQUATIONS, PHI
 
 import quietarm as qa
@@ -75,3 +77,21 @@ def test_a_linear_axis_is_two_masses_and_a_spring():
     for wrong, told in (({"load": 9.0}, "load is 9 kg"), ({"share1": 1.2}, "shares of the swing")):
         with pytest.raises(ValueError, match=told):
             qa.LinearAxis(**wrong)
+
+
+@dataclass(frozen=True)
+class Pair(Sound):
+    """Two joints that turn alike, and a tip on each."""
+
+    name: ClassVar[str] = "pair-probe"
+
+    def joints(self, path):
+        return [path, path]
+
+    def tip_displacements(self, W):
+        return [W[0], 2 * W[0]]
+
+
+def test_joints_and_tips_are_called_by_their_numbers_if_there_are_several():
+    assert (Sound().joint_names, Sound().tip_names) == (("joint",), ("tip",))
+    assert (Pair().joint_names, Pair().tip_names) == (("joint_1", "joint_2"), ("tip_1", "tip_2"))

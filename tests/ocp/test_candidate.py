@@ -1,6 +1,7 @@
 """The independent integrator: the paper's tables, many points at once, bad input."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -71,3 +72,27 @@ def test_times_that_do_not_increase_from_the_start_are_refused(tasks, times):
     candidate = qa.Candidate.of_profile(tasks["single link"], qa.CycloidPolynomial(0), [])
     with pytest.raises(ValueError, match="give finite ones that increase from 0 or later"):
         candidate.sample(times)
+
+
+def test_there_is_a_motion_for_every_scenario_and_none_in_full_of_a_plant_that_is_no_reduction():
+    plant = qa.SingleLinkManipulator()
+    uncertain = qa.Uncertainty({"frequency": 0.05})
+    task = qa.PointToPoint(plant, pi / 6, 0.8, uncertainty=uncertain)
+    candidate = qa.evaluate_coefficients(task, []).candidate
+    assert len(candidate.scenarios) == len(task.scenarios)
+    assert candidate.scenarios[0] is candidate
+    assert candidate.in_full is None
+
+
+def test_after_arrival_alone_the_tip_swings_as_in_the_whole_motion(tasks):
+    candidate = qa.evaluate_coefficients(tasks["single link"], []).candidate
+    later = [0.9, 1.0]
+    whole = candidate.sample([0.1, *later])
+    assert candidate.sample(later).tips == pytest.approx(whole.tips[1:], rel=1e-9)
+
+
+def test_a_peak_is_stated_with_or_without_the_range_of_its_quantity(tasks):
+    motion = qa.evaluate_coefficients(tasks["single link"], []).motion
+    assert motion.states("torque")
+    assert replace(motion, ranges={}).states("torque")
+    assert not replace(motion, ranges={}, peak_torque=None).states("torque")

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import quietarm as qa
 from quietarm.ocp import CycloidPolynomial, CycloidSpline
 
 angles = st.floats(-2 * math.pi, 2 * math.pi)
@@ -102,3 +103,28 @@ def test_there_are_at_most_32_terms_and_28_of_a_polynomial():
     for family, terms in ((CycloidSpline, 33), (CycloidPolynomial, 29)):
         with pytest.raises(ValueError, match=f"terms is {terms}; give at most {terms - 1}"):
             family(terms)
+
+
+# -- what is wrong with coefficients --
+
+
+@pytest.mark.parametrize(
+    ("size", "given", "told"),
+    [
+        (1, "x", "give 1 number$"),
+        (2, "x", "give 2 numbers$"),
+        (3, [0.1, 0.2], "got 2 coefficients for a profile of 3; give 3 numbers$"),
+        (2, [0.1, math.nan], "coefficient 2 is nan"),
+    ],
+)
+def test_coefficients_that_do_not_fit_are_told(size, given, told):
+    with pytest.raises(ValueError, match=told):
+        CycloidPolynomial(size).checked(given)
+
+
+def test_a_duration_may_be_as_short_as_the_profile_allows():
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8)
+    shaped = qa.shaped_cycloid(task, "zv")
+    assert shaped.checked([], shaped.least_duration) == ()
+    with pytest.raises(ValueError, match="too short for the "):
+        shaped.checked([], 0.99 * shaped.least_duration)

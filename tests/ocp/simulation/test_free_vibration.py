@@ -1,10 +1,13 @@
 """The tip's motion after arrival, against the free decay of a damped oscillator."""
 
 import math
+from dataclasses import dataclass
+from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 import pytest
+from sound_plant import Sound
 
 import quietarm as qa
 from quietarm.ocp import FreeVibration, perturb_plant
@@ -130,3 +133,21 @@ def test_modes_are_those_that_swing_be_they_slow():
     assert FreeVibration(qa.SingleLinkManipulator(omega=5.0, zeta=1.2), 0.0).modes == []
     slow = FreeVibration(qa.SingleLinkManipulator(omega=0.5, zeta=0.1), 0.0)
     assert slow.modes == [pytest.approx((0.5, 0.1), rel=1e-9)]
+
+
+@dataclass(frozen=True)
+class Swung(Sound):
+    """A mode that the joint's acceleration stiffens, as of a pendulum that is swung."""
+
+    name: ClassVar[str] = "swung-probe"
+
+    def modal_accelerations(self, joint, W, dW):
+        return [-(self.omega**2 + 50 * joint.acceleration) * W[0] - joint.acceleration]
+
+
+@pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
+def test_after_arrival_the_joint_neither_moves_nor_accelerates():
+    vibration = FreeVibration(Swung(), 0.0, 1.0)
+    assert vibration.modes == [(pytest.approx(10.0), pytest.approx(0.0, abs=1e-12))]
+    with pytest.raises(ValueError, match="read-only"):
+        vibration.rows[0] = 0.0
