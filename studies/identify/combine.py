@@ -39,12 +39,15 @@ class Combined(NamedTuple):
         The parameters that they identify.
     wide : dict of str to str
         Those whose interval is as wide as their value, and that in words.
+    rough : dict of str to float
+        The values of these, as far as they are told.
     trends : dict of str to Trend
         Those that drift from one recording to the next.
     """
 
     estimates: list[Estimate]
     wide: dict[str, str]
+    rough: dict[str, float]
     trends: dict[str, Trend]
 
 
@@ -52,6 +55,7 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> Combined:
     """The estimates of parameters from parts, that are in the order of their recording."""
     estimates = list[Estimate]()
     wide = dict[str, str]()
+    rough = dict[str, float]()
     trends = dict[str, Trend]()
     for name in names:
         groups = _groups_of(parts, name)
@@ -65,9 +69,10 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> Combined:
         if estimated.value == 0 or estimated.error >= 1:
             low, high = estimated.widest
             wide[name] = f"its interval, {low:.3g} to {high:.3g}, is as wide as its value"
+            rough[name] = estimated.value
         else:
             estimates.append(estimated)
-    return Combined(estimates, wide, trends)
+    return Combined(estimates, wide, rough, trends)
 
 
 def _groups_of(parts: Sequence[Part], name: str) -> list[Group]:

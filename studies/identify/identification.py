@@ -63,6 +63,8 @@ def identify(
     -------
     Identified
         The plant, the intervals of the mean and of the next swing, and what is not identifiable.
+        What recordings tell roughly is in the plant as well; of what they tell nothing it keeps
+        the values that it had.
 
     Raises
     ------
@@ -108,14 +110,20 @@ def identify(
     doubts += doubt_units(recordings, [fitter.frequency for fitter in fitters], plant.joint)
     doubts += _drifts(plant, combined, fitted)
     values = {estimate.parameter: estimate.value for estimate in combined.estimates}
+    rough = {
+        name: value
+        for name, value in combined.rough.items()
+        if value > 0 or not is_modal(plant, name)
+    }
     return Identified(
-        plant=replace(plant, **values),
+        plant=replace(plant, **values, **rough),
         estimates=tuple(combined.estimates),
         not_identifiable={name: unknown[name] for name in names if name in unknown},
         parts=tuple(fitted),
         left_out=left_out | worthless,
         warnings=tuple(doubts),
         versions=versions(),
+        rough=rough,
     )
 
 

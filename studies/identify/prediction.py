@@ -38,6 +38,8 @@ class Prediction:
         The least, and where its five periods begin [s].
     frequency : float
         Of the ring-down by itself [Hz].
+    why : str
+        The likeliest cause of what is not predicted, in words.
     """
 
     recording: str
@@ -47,6 +49,7 @@ class Prediction:
     worst: float
     worst_at: float
     frequency: float
+    why: str = ""
 
 
 @takes(plant=Plant)
@@ -83,11 +86,36 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
                 worst=worst,
                 worst_at=worst_at,
                 frequency=fitter.frequency_of(part.vector),
+                why=_why(fitter, part, p),
             )
             predictions.append(prediction)
     if not predictions:
         raise ValueError(f"{recordings[0].name}: no ring-down of three periods; record longer")
     return predictions
+
+
+def _why(fitter: PartFitter, part: Part, p: Array) -> str:
+    """What tells a ring-down apart from a machine's with some parameters: the likeliest."""
+    same = 0.01  # share of a frequency, which in seven periods is a phase of 25 degrees
+    alike = 1.5  # times a damping
+    frequency = fitter.frequency_of(part.vector)
+    expected = fitter.frequency_of(p)
+    if abs(frequency / expected - 1) > same:
+        return (
+            f"it swings at {frequency:.4g} Hz, and the machine at {expected:.4g} Hz: it carried "
+            "another load, or is another machine"
+        )
+    damping = fitter.damping_of(part)
+    damping_expected = float(p[fitter.are_dampings].max(initial=0.0))
+    lower, higher = sorted([damping, damping_expected])
+    if higher > alike * max(lower, 0.0):
+        return f"its damping is {damping:.3g}, and the machine's {damping_expected:.3g}"
+    if part.misfit > 2 * part.noise:
+        return (
+            f"it is no free decay of its modes: they leave {part.misfit:.0%} of it; look at the "
+            "signal"
+        )
+    return f"its noise is {part.noise:.0%} of the swing: push harder, or record longer"
 
 
 def _shares(model: SwingModel, p: Array, period: float) -> list[tuple[float, float]]:

@@ -14,7 +14,7 @@ TIME = np.arange(0, 6, 0.005)
 OMEGA, ZETA = 2 * math.pi * 3.2, 0.01
 SWING = np.exp(-ZETA * OMEGA * TIME) * np.cos(OMEGA * math.sqrt(1 - ZETA**2) * TIME)
 TIP = 20 * SWING + np.random.default_rng(0).standard_normal(len(TIME))  # mm
-PUSH = "identify push.csv flexible-beam --quiet --tip tip_mm"
+PUSH = "identify push.csv flexible-beam --quiet --tip tip_mm --assume all"
 
 
 def write(path, tip):
@@ -97,7 +97,8 @@ def test_texts_of_other_programs_tell_the_same(push, done, name):
 
 
 def same(done, line):
-    done(f"{line} --quiet --output arm.json")
+    assumed = "" if "--assume" in line else "--assume all"
+    done(f"{line} {assumed} --quiet --output arm.json")
     omega, zeta = Identified.load("arm.json").estimates
     assert omega.low < OMEGA < omega.high, line
     assert zeta.value == pytest.approx(ZETA, rel=0.1)
@@ -241,7 +242,7 @@ def test_words_tell_from_which_amplitude_on_a_swing_is_fitted(push, done):
     phase = 2 * math.pi * np.cumsum(2.0 - 0.1 * (size / 20) ** 2) * 0.01
     (push / "hard.csv").write_text("time_s,tip_mm\n" + rows("%.2f,%.4f\n", t, size * np.cos(phase)))
     out = " ".join(
-        done("identify hard.csv flexible-beam --tip tip_mm --quiet -o hard.json").split()
+        done("identify hard.csv flexible-beam --tip tip_mm --assume all -o hard.json").split()
     )
     assert "fitted from an amplitude of" in out
     assert "The intervals hold for this swing, not for a larger one" in out
