@@ -80,6 +80,7 @@ def identify(
         PartFitter(plant, names, recording, frequency)
         for recording, frequency in zip(recordings, frequencies)
     ]
+    _refuse_other_frequency(fitters)
     at_rest = "torque" not in kinds and all(is_modal(plant, name) for name in names)
     fitted = list[Part]()
     left_out = dict[str, str]()
@@ -110,20 +111,15 @@ def identify(
     doubts += doubt_units(recordings, [fitter.frequency for fitter in fitters], plant.joint)
     doubts += _drifts(plant, combined, fitted)
     values = {estimate.parameter: estimate.value for estimate in combined.estimates}
-    rough = {
-        name: value
-        for name, value in combined.rough.items()
-        if value > 0 or not is_modal(plant, name)
-    }
     return Identified(
-        plant=replace(plant, **values, **rough),
+        plant=replace(plant, **values, **combined.rough),
         estimates=tuple(combined.estimates),
         not_identifiable={name: unknown[name] for name in names if name in unknown},
         parts=tuple(fitted),
         left_out=left_out | worthless,
         warnings=tuple(doubts),
         versions=versions(),
-        rough=rough,
+        rough=combined.rough,
     )
 
 
@@ -137,6 +133,23 @@ def curve_of(
     fitter.frequency = fitter.frequency_of(part.vector)
     model = fitter.model(part)
     return model, model.fitted(part.vector)
+
+
+def _refuse_other_frequency(fitters: Sequence[PartFitter]) -> None:
+    """Refuse to fit at a plant's own frequencies where a recording swings at none of them."""
+    same = 0.3  # share of a frequency: further off a fit finds nothing
+    for fitter in fitters:
+        if fitter.are_rates.any() or not fitter.frequency:
+            continue
+        own = fitter.frequencies
+        nearest = float(own[np.abs(own - fitter.frequency).argmin()])
+        if abs(fitter.frequency / nearest - 1) > same:
+            rates = [name for name in fitter.plant.measured if is_frequency(fitter.plant, name)]
+            raise ValueError(
+                f"{fitter.recording.name} swings at {fitter.frequency:.4g} Hz, and "
+                f"{fitter.plant.name} has {nearest:.4g} Hz; seek {rates[0] if rates else 'it'} as "
+                "well, by free, or set it"
+            )
 
 
 def _by_recording(reasons: dict[str, str]) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models.checks import not_negative
-from quietarm.studies.identify.signals.clocks import holes_in_words, running
+from quietarm.studies.identify.signals.clocks import holes, holes_in_words, running
 from quietarm.studies.identify.signals.stamps import mended
 
 Array = NDArray[np.float64]
@@ -170,6 +170,12 @@ class Recording:
     def step(self) -> float:
         """The usual time between samples [s]."""
         return float(np.median(np.diff(self.time)))
+
+    @property
+    def stretches(self) -> list[slice]:
+        """The rows between holes, where they are enough to be read."""
+        runs = np.split(np.arange(len(self.time)), holes(self.time) + 1)
+        return [slice(run[0], run[-1] + 1) for run in runs if len(run) >= LEAST_ROWS]
 
     def rows(self, begin: float, end: float) -> slice:
         """The rows from one time to another."""

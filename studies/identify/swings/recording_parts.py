@@ -11,6 +11,7 @@ from quietarm.studies.identify.fits.hub_swing import with_hub
 from quietarm.studies.identify.fits.part_fitter import PartFitter
 from quietarm.studies.identify.fits.whole_recording import wide_range
 from quietarm.studies.identify.machine import Part
+from quietarm.studies.identify.signals.clocks import holes
 from quietarm.studies.identify.signals.recording import LEAST_ROWS
 from quietarm.studies.identify.swings.ring_down_fit import fit_ring_down
 from quietarm.studies.identify.swings.ring_downs import (
@@ -117,8 +118,13 @@ def _longest_beat(
 
 
 def _beat_over(fitter: PartFitter, spans: Sequence[slice], start: Array) -> Part | None:
-    """One swing of two modes over all of some spans; None where two modes do not meet it."""
+    """One swing of two modes over all of some spans; None where two modes do not meet it.
+
+    Nor over a hole, in which the beats are not seen.
+    """
     rows = slice(spans[0].start, spans[-1].stop)
+    if len(holes(fitter.recording.time[rows])):
+        return None
     return fit_close_modes(fitter, rows, start)
 
 
