@@ -14,7 +14,7 @@ from quietarm.studies.identify.fits.part_fitter import PartFitter
 from quietarm.studies.identify.fits.swing_model import SwingModel
 from quietarm.studies.identify.machine import Part, is_modal, values_of
 from quietarm.studies.identify.signals.mending import without_glitches
-from quietarm.studies.identify.signals.recording import Recording
+from quietarm.studies.identify.signals.recording import Recording, checked_recordings
 from quietarm.studies.identify.swings.frequencies import find_frequencies
 from quietarm.studies.identify.swings.recording_parts import fit_parts
 
@@ -64,7 +64,7 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
     names = [name for name in plant.measured if is_modal(plant, name)]
     p = values_of(plant, names)
     predictions = list[Prediction]()
-    recordings, _ = without_glitches(recordings)
+    recordings, _ = without_glitches(checked_recordings(recordings))
     for recording, frequency in zip(recordings, find_frequencies(recordings)):
         fitter = PartFitter(plant, names, recording, frequency)
         parts, why = fit_parts(fitter)

@@ -42,6 +42,15 @@ class ReadRecording(NamedTuple):
     notes: list[str]
 
 
+def notes_in_words(read: Sequence[ReadRecording]) -> list[str]:
+    """The notes on files, each once, with the files that it is of."""
+    files = dict[str, list[str]]()
+    for one in read:
+        for note in one.notes:
+            files.setdefault(note, []).append(one.recording.name)
+    return [f"{', '.join(names)}: {note}" for note, names in files.items()]
+
+
 def read_recording(path: Path, columns: Columns, name: str) -> ReadRecording:
     """Read a recording from the columns of a file.
 
@@ -85,7 +94,7 @@ def read_recording(path: Path, columns: Columns, name: str) -> ReadRecording:
     except ValueError as error:
         raise FileFormatError(str(error)) from None
     notes = [unused_in_words(table.unused(headings)), *_without_unit(table, named, columns)]
-    return ReadRecording(recording, [f"{name}: {note}" for note in notes if note])
+    return ReadRecording(recording, [note for note in notes if note])
 
 
 def _with_time(table: Table, columns: Columns) -> dict[str, Sequence[str]]:

@@ -18,7 +18,7 @@ from quietarm.ocp.checks import cut, nearest
 from quietarm.ocp.files import MOST_BYTES, read_bytes
 from quietarm.studies.reading.matlab import read_matlab
 from quietarm.studies.reading.text import read_text
-from quietarm.studies.reading.units import UNITS, kind_of, normal, split_name
+from quietarm.studies.reading.units import KINDS, UNITS, kind_of, normal, split_name
 
 Array = NDArray[np.float64]
 ARRAYS = (".npy", ".npz", ".mat")
@@ -160,7 +160,7 @@ class Table:
         if kind:
             raise FileFormatError(
                 f"{self.path}: {written!r} of column {column.name} is a unit of {kind}, and not of "
-                f"{kind_of(usual) or quantity}; {how}"
+                f"{KINDS.get(quantity, quantity)}; {how}"
             )
         raise FileFormatError(f"{self.path}: is {written!r} of column {column.name} a unit? {how}")
 

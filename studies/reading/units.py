@@ -45,10 +45,11 @@ OF_OPTIONS: Mapping[str, Mapping[str, float]] = {
     "torque": {**UNITS["torque"], **UNITS["force"]},
 }
 """Units that an option may give before the kind of joint is known."""
-_KINDS: Mapping[str, str] = {
-    "time": "time", "angle": "angle", "position": "length", "torque": "torque", "force": "force",
+KINDS: Mapping[str, str] = {
+    "time": "time", "angle": "angle", "torque": "torque", "force": "force", "position": "length",
     "acceleration": "acceleration",
 }  # fmt: skip
+"""What the units of a quantity are of, in words: Nm is looked for before nm."""
 _SIGNALS = {
     *("time", "stamp", "timestamp", "angle", "theta", "position", "pos", "q", "tip", "torque"),
     *("force", "acceleration", "acc", "joint", "axis", "hub", "motor", "encoder", "sensor"),
@@ -71,7 +72,7 @@ _AFTER = re.compile(r"(.*?[^\s_/,:;-])\s*(?:[_/,:; -]| in )\s*([^\s_,:;-]+(?:\s*
 
 def kind_of(unit: str) -> str:
     """What a unit is one of, in words; empty where it is unknown."""
-    return next((words for kind, words in _KINDS.items() if normal(unit) in UNITS[kind]), "")
+    return next((words for kind, words in KINDS.items() if normal(unit) in UNITS[kind]), "")
 
 
 def unknown_ending(name: str) -> str:

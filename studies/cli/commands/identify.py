@@ -27,7 +27,12 @@ from quietarm.studies.cli.quantities import (
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from quietarm.studies.identify import Recording
 from quietarm.studies.identify.machine import is_modal
-from quietarm.studies.reading.recording import Columns, ReadRecording, read_recording
+from quietarm.studies.reading.recording import (
+    Columns,
+    ReadRecording,
+    notes_in_words,
+    read_recording,
+)
 from quietarm.studies.report.machines import (
     machine_notes,
     machine_rows,
@@ -98,7 +103,7 @@ def identify(given: Given) -> None:
     plant = given.read_plant(kind)
     read = _read(given, paths, plant)
     recordings = [one.recording for one in read]
-    notes = [note for one in read for note in one.notes]
+    notes = notes_in_words(read)
     if given.check:
         return _check(given, plant, recordings, notes)
     known = dict(given.parameters).keys()

@@ -121,7 +121,7 @@ def _wraps(time: Array, tick: float) -> Wraps | None:
         off = np.abs(ahead - count * usual)
         near = np.where(count == 1, 0.5 * usual, np.clip(jitter, 0.02 * usual, 0.5 * usual))
         # one that comes back to its begin more likely started anew, but where no sample lacks
-        to_begin = np.abs(time[back + 1] - time[0]) <= LONG * usual
+        to_begin = np.abs(time[back + 1] - time[0]) <= _SHORT * usual
         fits = (ahead > 0) & (off <= near + 2 * rounded) & (count <= np.where(to_begin, 1, LONG))
         if fits.any():
             miss = float((off[fits] / usual).max()) - int(fits.sum())

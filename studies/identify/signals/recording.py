@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models.checks import not_negative
+from quietarm.ocp.checks import instance, several
 from quietarm.studies.identify.signals.clocks import holes, holes_in_words, running
 from quietarm.studies.identify.signals.stamps import mended
 
@@ -97,12 +98,15 @@ class Recording:
             raise ValueError(f"name is {reprlib.repr(self.name)}; give a text")
         if not isinstance(self.mended, Mapping):
             self._refuse(f": mended is {reprlib.repr(self.mended)}; give sentences by names")
+        if self.time is None:
+            self._refuse(" has no time; give an array of seconds")
         object.__setattr__(self, "tick", not_negative("tick", self.tick))
 
     def _numbers(self, name: str, values: Any) -> Array:
         """A signal as an array of floats; ValueError where it is none."""
         shape = "(rows,) or (rows, tips)" if name in ("tip", "acceleration") else "(rows,)"
-        said = f": {name} is {reprlib.repr(values)}; give an array of numbers, of shape {shape}"
+        shown = " ".join(reprlib.repr(values).split())  # numpy's has lines
+        said = f": {name} is {shown}; give an array of numbers, of shape {shape}"
         if hasattr(values, "filled"):  # to name numpy's class would load numpy.ma
             self._refuse(
                 f": {name} is a masked array; give plain numbers, as of its filled(np.nan)"
@@ -116,6 +120,8 @@ class Recording:
             self._refuse(said)
         if array.ndim != 1 and not (array.ndim == 2 and name in ("tip", "acceleration")):
             self._refuse(f": {name} has shape {array.shape}; give {shape}")
+        if not array.size:
+            self._refuse(f" has nothing in its {name}; give {LEAST_ROWS} rows or more")
         return array
 
     def _on_a_clock(self, arrays: Mapping[str, Array], rows: NDArray[np.intp]) -> dict[str, Array]:
@@ -199,6 +205,18 @@ class Recording:
         if np.count_nonzero(dense) < LEAST_ROWS:
             dense[:] = True
         return replace(self, **{name: v[dense].mean(axis=1) for name, v in blocks.items()})
+
+
+def checked_recordings(recordings: Any) -> list[Recording]:
+    """Recordings as a list, one or more."""
+    if isinstance(recordings, Recording):
+        raise TypeError(f"{recordings.name} is one recording; give a list, as [recording]")
+    checked = several("recordings", recordings, "recordings, as [Recording(time, tip=tip)]")
+    if not checked:
+        raise ValueError("no recording is given; give one")
+    for recording in checked:
+        instance("a recording", recording, Recording)
+    return checked
 
 
 def noise_of(values: Array) -> Array:

@@ -63,11 +63,16 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
     """Ring-downs of several periods, or why there are none."""
     if by_hand:
         spans = [fitter.recording.rows(*ends) for ends in by_hand]
-        spans = [rows for rows in spans if rows.stop - rows.start >= LEAST_ROWS]
+        spans = [rows for rows in spans if _are_enough(rows)]
     else:
         spans = find_ring_downs(fitter.recording, fitter.frequency)
     parts = list[Part]()
     why = _no_ring_down(fitter)
+    if by_hand and not spans:
+        time = fitter.recording.time
+        why = (
+            f"no part has {LEAST_ROWS} rows of it; it lasts from {time[0]:.6g} to {time[-1]:.6g} s"
+        )
     earliest = 0
     while spans:
         rows = spans[0]
@@ -92,6 +97,10 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
             span = f"{part.begin:.6g} to {part.end:.6g} s"
             why = f"{span} is no free decay of {fitter.frequency:.3g} Hz"
     return parts, why
+
+
+def _are_enough(rows: slice) -> bool:
+    return rows.stop - rows.start >= LEAST_ROWS
 
 
 def _longest_beat(
@@ -162,8 +171,8 @@ def _well_damped(fitter: PartFitter, by_hand: Spans) -> list[Part]:
     much_damping = 0.06  # from which on a swing is over too soon for an envelope to show it
     usual = fitter.frequency
     parts = list[Part]()
-    spans = [recording.rows(*ends) for ends in by_hand] or [slice(None)]
-    for span in spans:
+    spans = [rows for ends in by_hand if _are_enough(rows := recording.rows(*ends))]
+    for span in spans if by_hand else [slice(None)]:
         piece = recording.part(span)
         if moves(piece):
             continue
