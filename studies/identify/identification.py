@@ -130,6 +130,30 @@ def identify(
     )
 
 
+@takes(plant=Plant)
+def sought(
+    recordings: Sequence[Recording], plant: Plant, free: Sequence[str] | None = None
+) -> tuple[str, ...]:
+    """The parameters that `identify` seeks; the plant keeps the values of all others.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        Of one machine, with the same signals.
+    plant : Plant
+        Its equations.
+    free : sequence of str, optional
+        As of `identify`.
+
+    Returns
+    -------
+    tuple of str
+        Their names.
+    """
+    recordings = checked_recordings(recordings)
+    return tuple(_sought(plant, free, _check(recordings, plant)))
+
+
 def curve_of(
     machine: Identified, part: Part, recordings: Sequence[Recording]
 ) -> tuple[SwingModel, Array]:

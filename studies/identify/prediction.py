@@ -100,13 +100,15 @@ def _why(fitter: PartFitter, part: Part, p: Array) -> str:
     alike = 1.5  # times a damping
     frequency = fitter.frequency_of(part.vector)
     expected = fitter.frequency_of(p)
-    if abs(frequency / expected - 1) > same:
+    damping = fitter.damping_of(part)
+    damping_expected = float(p[fitter.are_dampings].max(initial=0.0))
+    undamped = frequency / np.sqrt(1 - damping**2)
+    undamped_expected = expected / np.sqrt(1 - damping_expected**2)
+    if abs(undamped / undamped_expected - 1) > same:
         return (
             f"it swings at {frequency:.4g} Hz, and the machine at {expected:.4g} Hz: it carried "
             "another load, or is another machine"
         )
-    damping = fitter.damping_of(part)
-    damping_expected = float(p[fitter.are_dampings].max(initial=0.0))
     lower, higher = sorted([damping, damping_expected])
     if higher > alike * max(lower, 0.0):
         return f"its damping is {damping:.3g}, and the machine's {damping_expected:.3g}"

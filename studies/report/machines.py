@@ -50,25 +50,21 @@ def _instead(machine: Identified, name: str, given: Collection[str]) -> str:
     return f"{_with_unit(machine.plant, name).removeprefix(f'{name} ')} {whence}"
 
 
-def untold_refused(machine: Identified, known: Collection[str]) -> ValueError | None:
-    """Why a machine is not saved: what it has of the plant's defaults; None where it has nothing.
+def refuse_defaults(plant: Plant, names: Sequence[str]) -> None:
+    """Refuse to save a machine with a plant's defaults of some parameters; of none it may be saved.
 
-    `known` are the parameters that the user gave or lets stand. The defaults of quietarm's own
-    plants are of the machines that their sources describe.
+    The defaults of quietarm's own plants are of the machines that their sources describe; those of
+    a plant of one's own are one's own.
     """
-    names = [name for name in machine.untold if name not in known]
-    if not names or file_of_plant(type(machine.plant)) is not None:
-        return None
-    by_recordings = [name for name in names if is_modal(machine.plant, name)]
+    if not names or file_of_plant(type(plant)) is not None:
+        return
     remedy = f"give each by --set, as --set {names[0]}=..."
-    if not by_recordings:
-        remedy += f", or let those stand that you do not need, as --assume {names[-1]}"
-    else:
-        names = by_recordings
-    listed = ", ".join(names)
-    return ValueError(
-        f"the machine is not saved: the recordings do not tell {listed}, and the defaults of "
-        f"{machine.plant.name} are another machine's; {remedy}"
+    may_stand = [name for name in names if not is_modal(plant, name)]
+    if may_stand:
+        remedy += f", or let stand what you do not need, as by --assume {may_stand[-1]}"
+    raise ValueError(
+        f"the machine is not saved: the recordings do not tell {', '.join(names)}, and the "
+        f"defaults of {plant.name} are another machine's; {remedy}"
     )
 
 
@@ -94,8 +90,7 @@ def nothing_predicted(plant: Plant, predictions: Sequence[Prediction]) -> ValueE
     worst = min(failed, key=lambda prediction: prediction.share)
     return ValueError(
         f"{plant.name} predicts nothing of {worst.recording}, "
-        f"{span_words(worst.begin, worst.end)}: {1 - worst.share:.0%} of the swing is left after "
-        f"it is taken off, as {worst.why}"
+        f"{span_words(worst.begin, worst.end)} ({worst.share:.0%}): {worst.why}"
     )
 
 

@@ -38,7 +38,7 @@ from quietarm.studies.report.machines import (
     machine_rows,
     nothing_predicted,
     prediction_rows,
-    untold_refused,
+    refuse_defaults,
 )
 
 _UNITS = ("As time:ms,angle:deg,tip:mm,acceleration:g, of a linear axis angle:mm,torque:N. "
@@ -107,16 +107,21 @@ def identify(given: Given) -> None:
     if given.check:
         return _check(given, plant, recordings, notes)
     known = dict(given.parameters).keys()
-    assumed = _assumed(given.assume, plant)
+    told_otherwise = {*known, *_assumed(given.assume, plant)}
+    if isinstance(kind, identification.Identified):
+        told_otherwise |= plant.measured.keys()
+    saves = any(ending_of(path) != PICTURE for path in given.output)
+    if saves:  # what no recording tells is known before they are fitted
+        sought = identification.sought(recordings, plant, given.free)
+        refuse_defaults(plant, _others(plant, {*sought, *told_otherwise}))
     with busy("fitting"):
         machine = identification.identify(recordings, plant, given.free, given.parts)
     machine = machine.with_given(plant, known)
-    if isinstance(kind, identification.Identified):
-        known = plant.measured.keys()
-    refused = untold_refused(machine, {*known, *assumed})
-    written = [path for path in given.output if not refused or ending_of(path) == PICTURE]
+    if saves:
+        told = set(plant.measured) - set(machine.untold)
+        refuse_defaults(plant, _others(plant, told | told_otherwise))
     files = answer_files(
-        written,
+        given.output,
         lambda: figures.identification_figure(machine, recordings),
         machine,
     )
@@ -125,8 +130,12 @@ def identify(given: Given) -> None:
         machine_rows(machine, known),
         *machine_notes(machine, not given.angle, known),
         *notes,
-        trouble=refused if len(written) < len(given.output) else None,
     )
+
+
+def _others(plant: Plant, names: Collection[str]) -> list[str]:
+    """The parameters of a plant that are none of these."""
+    return [name for name in plant.measured if name not in names]
 
 
 def _read(given: Given, paths: Sequence[Path], plant: Plant) -> list[ReadRecording]:
