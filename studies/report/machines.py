@@ -32,7 +32,7 @@ def machine_rows(machine: Identified, given: Collection[str] = ()) -> list[Row]:
     others = [name for name in machine.untold if name not in machine.not_identifiable]
     for words, names in {
         "as given": [name for name in others if name in given],
-        "not told": [name for name in others if name not in given],
+        "default": [name for name in others if name not in given],
     }.items():
         if names:
             rows.append((words, ", ".join(_with_unit(machine.plant, name) for name in names)))
@@ -51,20 +51,20 @@ def _instead(machine: Identified, name: str, given: Collection[str]) -> str:
 
 
 def refuse_defaults(plant: Plant, names: Sequence[str]) -> None:
-    """Refuse to save a machine with a plant's defaults of some parameters; of none it may be saved.
+    """Refuse to save a machine whose plant has default values for these parameters, if any.
 
     The defaults of quietarm's own plants are of the machines that their sources describe; those of
     a plant of one's own are one's own.
     """
     if not names or file_of_plant(type(plant)) is not None:
         return
-    remedy = f"give each by --set, as --set {names[0]}=..."
+    remedy = f"give each by --set, such as --set {names[0]}=..."
     may_stand = [name for name in names if not is_modal(plant, name)]
     if may_stand:
-        remedy += f", or let stand what you do not need, as by --assume {may_stand[-1]}"
+        remedy += f", or keep the defaults that do not matter to you, by --assume {may_stand[-1]}"
     raise ValueError(
-        f"the machine is not saved: the recordings do not tell {', '.join(names)}, and the "
-        f"defaults of {plant.name} are another machine's; {remedy}"
+        f"cannot save the machine: the recordings do not tell {', '.join(names)}, and the defaults "
+        f"of {plant.name} belong to another machine; {remedy}"
     )
 
 
@@ -105,12 +105,12 @@ def machine_notes(machine: Identified, at_rest: bool, given: Collection[str] = (
     untold = [name for name in machine.untold if name not in given]
     if untold:
         notes.append(
-            "Not told: the plant's defaults, which are another machine's. Give what you know by "
-            f"--set, as {untold[0]}={getattr(machine.plant, untold[0]):.4g}; torque and energy "
-            "depend on it."
+            "The recordings do not tell the values in the row 'default', which belong to another "
+            f"machine. Set what you know, such as --set {untold[0]}=...; torque and energy depend "
+            "on them."
         )
     notes += [
-        f"--set {estimate.parameter} is not used, but where the fit starts: the recordings tell it."
+        f"--set {estimate.parameter} is not used, because the recordings tell its value."
         for estimate in machine.estimates
         if estimate.parameter in given
     ]

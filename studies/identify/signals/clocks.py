@@ -253,5 +253,5 @@ def holes_in_words(time: Array, numbers: Rows) -> Mapping[str, str]:
     several = f"{len(after)} holes, the largest" if len(after) > 1 else "a hole"
     return {
         "hole": f"{several} of {seconds:.4g} s after row {numbers[row]}, at {time[row]:.6g} s: "
-        f"{steps:.0f} times the usual step without a sample; nothing is made up for it"
+        f"{steps:.0f} times the usual step without a sample; the fit does not interpolate it"
     }

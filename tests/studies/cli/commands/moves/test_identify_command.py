@@ -273,10 +273,10 @@ GANTRY = "identify ring0.csv ring1.csv linear-axis --quiet --tip tip_mm"
 def test_a_machine_has_nothing_of_the_class_that_nobody_told(ring_downs, done, refused):
     said = refused(f"{GANTRY} --output axis.json --output fit.svg")
     assert "the recordings do not tell share1, mass, load, friction" in said
-    assert "give each by --set" in said
+    assert "give each by --set, such as --set share1=..." in said
     assert not (ring_downs / "axis.json").exists()
     out = done(f"{GANTRY} --output fit.svg")
-    assert "not told   share1 1, mass 8 kg, load 2 kg, friction 5 N s/m" in out
+    assert "default    share1 1, mass 8 kg, load 2 kg, friction 5 N s/m" in out
     weighed = "--set mass=82.7kg --set load=15kg --set friction=50"
     done(f"{GANTRY} {weighed} --assume share1 --output axis.json")
     plant = Identified.load("axis.json").plant
@@ -308,9 +308,9 @@ def test_a_frequency_or_damping_cannot_be_assumed(ring_downs, refused, call):
     assert "--assume zeta1: a ring-down tells it" in said
     said = refused(f"{GANTRY} --free omega1 --assume all --output axis.json")
     assert "do not tell zeta1, and" in said
-    assert "give each by --set, as --set zeta1=..." in said
+    assert "give each by --set, such as --set zeta1=..." in said
     out = call(f"{GANTRY} --set omega1=12Hz --assume all --output axis.json")[1]
-    assert "--set omega1 is not used, but where the fit starts" in out
+    assert "--set omega1 is not used, because the recordings tell its value" in out
 
 
 def test_plants_of_ones_own_have_values_of_ones_own(ring_downs, done):
@@ -366,7 +366,7 @@ def test_an_unknown_unit_and_columns_of_no_use_are_named(push, done):
     )
     out = done("identify odd.csv flexible-beam --tip tip_mm")
     assert "odd.csv: not used: columns load, note" in out
-    assert "'cs' of column time_cs is no known unit: it is taken in s" in out
+    assert "'cs' in column time_cs is not a known unit, so its values are read in s" in out
 
 
 @pytest.mark.parametrize("heading", ["micros", "time_us", "micros()", "Time (us)"])
