@@ -26,8 +26,7 @@ from quietarm.ocp.checks import finite, has_no, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
 from quietarm.ocp.objectives import checked_objectives
-from quietarm.studies.reading.units import UNITS as OF_COLUMNS
-from quietarm.studies.reading.units import normal
+from quietarm.studies.reading.units import OF_OPTIONS, normal
 from quietarm.studies.sweep.grid import MOST_VALUES, OF_MOVES
 
 S = TypeVar("S")
@@ -295,9 +294,9 @@ def _scale(text: str) -> tuple[str, float]:
 
 
 def _of_column(quantity: str) -> Mapping[str, float]:
-    if quantity not in OF_COLUMNS:
-        raise ValueError(unknown("quantity", quantity, OF_COLUMNS))
-    return OF_COLUMNS[quantity]
+    if quantity not in OF_OPTIONS:
+        raise ValueError(unknown("quantity", quantity, OF_OPTIONS))
+    return OF_OPTIONS[quantity]
 
 
 def parse_objectives(text: str) -> tuple[str, ...]:

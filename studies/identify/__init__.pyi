@@ -1,4 +1,5 @@
 from .identification import identify as identify
+from .identification import sought as sought
 from .machine import Estimate as Estimate
 from .machine import Identified as Identified
 from .machine import Part as Part

@@ -39,12 +39,16 @@ class Combined(NamedTuple):
         The parameters that they identify.
     wide : dict of str to str
         Those whose interval is as wide as their value, and that in words.
+    rough : dict of str to float
+        The values of these in which the parts agree all the same: what makes their interval wide is
+        how they change along a swing.
     trends : dict of str to Trend
         Those that drift from one recording to the next.
     """
 
     estimates: list[Estimate]
     wide: dict[str, str]
+    rough: dict[str, float]
     trends: dict[str, Trend]
 
 
@@ -52,6 +56,7 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> Combined:
     """The estimates of parameters from parts, that are in the order of their recording."""
     estimates = list[Estimate]()
     wide = dict[str, str]()
+    rough = dict[str, float]()
     trends = dict[str, Trend]()
     for name in names:
         groups = _groups_of(parts, name)
@@ -65,9 +70,20 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> Combined:
         if estimated.value == 0 or estimated.error >= 1:
             low, high = estimated.widest
             wide[name] = f"its interval, {low:.3g} to {high:.3g}, is as wide as its value"
+            if _agree(parts, name, estimated.value):
+                rough[name] = estimated.value
         else:
             estimates.append(estimated)
-    return Combined(estimates, wide, trends)
+    return Combined(estimates, wide, rough, trends)
+
+
+def _agree(parts: Sequence[Part], name: str, value: float) -> bool:
+    """Whether all parts by themselves tell about one positive value of a parameter."""
+    apart = 0.5  # share of the value that parts may differ, or be unsure of
+    values = np.array([part.values[name] for part in parts])
+    deviations = np.array([part.deviations[name] for part in parts])
+    widest = max(float(np.ptp(values)), float(np.median(deviations)))
+    return value > 0 and float(values.min()) > 0 and widest <= apart * value
 
 
 def _groups_of(parts: Sequence[Part], name: str) -> list[Group]:

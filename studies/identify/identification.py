@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
-from quietarm.ocp.checks import takes
+from quietarm.ocp.checks import finite, several, takes
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
 from quietarm.studies.identify.combine import Combined, combine
@@ -26,7 +26,7 @@ from quietarm.studies.identify.machine import (
     is_modal,
 )
 from quietarm.studies.identify.signals.mending import without_glitches
-from quietarm.studies.identify.signals.recording import Recording
+from quietarm.studies.identify.signals.recording import Recording, checked_recordings
 from quietarm.studies.identify.swings.frequencies import doubt_units, find_frequencies
 from quietarm.studies.identify.swings.recording_parts import NO_SWING, fit_parts
 from quietarm.studies.identify.swings.ring_downs import moves
@@ -63,6 +63,8 @@ def identify(
     -------
     Identified
         The plant, the intervals of the mean and of the next swing, and what is not identifiable.
+        What recordings tell roughly is in the plant as well; of what they tell nothing it keeps
+        the values that it had.
 
     Raises
     ------
@@ -70,15 +72,23 @@ def identify(
         When a parameter is unknown, the recordings have different signals, nothing in them rings
         for two periods, or no parameters of the plant meet them.
     """
+    recordings = checked_recordings(recordings)
     kinds = _check(recordings, plant)
     names = _sought(plant, free, kinds)
+    parts = _checked_parts(parts)
     recordings, doubts = without_glitches(recordings)
     frequencies = find_frequencies(recordings)
     fitters = [
         PartFitter(plant, names, recording, frequency)
         for recording, frequency in zip(recordings, frequencies)
     ]
+    _refuse_other_frequency(fitters)
     at_rest = "torque" not in kinds and all(is_modal(plant, name) for name in names)
+    if parts and not at_rest:
+        raise ValueError(
+            "a part selects ring-downs, and what is sought needs all of the recording; leave the "
+            "parts out, or seek frequencies and dampings alone, without a torque"
+        )
     fitted = list[Part]()
     left_out = dict[str, str]()
     moving = list[PartFitter]()
@@ -109,14 +119,39 @@ def identify(
     doubts += _drifts(plant, combined, fitted)
     values = {estimate.parameter: estimate.value for estimate in combined.estimates}
     return Identified(
-        plant=replace(plant, **values),
+        plant=replace(plant, **values, **combined.rough),
         estimates=tuple(combined.estimates),
         not_identifiable={name: unknown[name] for name in names if name in unknown},
         parts=tuple(fitted),
         left_out=left_out | worthless,
         warnings=tuple(doubts),
         versions=versions(),
+        rough=combined.rough,
     )
+
+
+@takes(plant=Plant)
+def sought(
+    recordings: Sequence[Recording], plant: Plant, free: Sequence[str] | None = None
+) -> tuple[str, ...]:
+    """The parameters that `identify` seeks; the plant keeps the values of all others.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        Of one machine, with the same signals.
+    plant : Plant
+        Its equations.
+    free : sequence of str, optional
+        As of `identify`.
+
+    Returns
+    -------
+    tuple of str
+        Their names.
+    """
+    recordings = checked_recordings(recordings)
+    return tuple(_sought(plant, free, _check(recordings, plant)))
 
 
 def curve_of(
@@ -131,6 +166,23 @@ def curve_of(
     return model, model.fitted(part.vector)
 
 
+def _refuse_other_frequency(fitters: Sequence[PartFitter]) -> None:
+    """Refuse to fit at a plant's own frequencies where a recording swings at none of them."""
+    same = 0.3  # share of a frequency: further off a fit finds nothing
+    for fitter in fitters:
+        if fitter.are_rates.any() or not fitter.frequency:
+            continue
+        own = fitter.frequencies
+        nearest = float(own[np.abs(own - fitter.frequency).argmin()])
+        if abs(fitter.frequency / nearest - 1) > same:
+            rates = [name for name in fitter.plant.measured if is_frequency(fitter.plant, name)]
+            raise ValueError(
+                f"{fitter.recording.name} swings at {fitter.frequency:.4g} Hz, and "
+                f"{fitter.plant.name} has {nearest:.4g} Hz; seek {rates[0] if rates else 'it'} as "
+                "well, by free, or set it"
+            )
+
+
 def _by_recording(reasons: dict[str, str]) -> str:
     """Why each recording is left out, in a line."""
     return "; ".join(f"{name}: {why}" for name, why in reasons.items())
@@ -138,8 +190,6 @@ def _by_recording(reasons: dict[str, str]) -> str:
 
 def _check(recordings: Sequence[Recording], plant: Plant) -> list[str]:
     """The kinds of the recordings' signals, that are the same in all of them."""
-    if not recordings:
-        raise ValueError("no recording is given; give one")
     first = recordings[0]
     kinds = [*first.signals]
     for recording in recordings:
@@ -158,8 +208,28 @@ def _check(recordings: Sequence[Recording], plant: Plant) -> list[str]:
     return kinds
 
 
+def _checked_parts(parts: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Begins and ends of parts as numbers, each begin before its end."""
+    checked = list[tuple[float, float]]()
+    for part in several("parts", parts, "pairs of begin and end, as [(3.2, 7.3)]"):
+        ends = several("a part", part, "its begin and end, as (3.2, 7.3)")
+        if len(ends) != 2:
+            raise ValueError(f"a part is {part!r}; give its begin and end, as (3.2, 7.3)")
+        begin, end = (finite("an end of a part", value, "s") for value in ends)
+        if begin >= end:
+            raise ValueError(f"a part is {part!r}; give its begin before its end")
+        checked.append((begin, end))
+    return checked
+
+
 def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> list[str]:
     if free is not None:
+        free = several("free", free, "names of parameters, as ['omega']")
+        for name in free:
+            if not isinstance(name, str):
+                raise TypeError(f"a name in free is {name!r}; give a parameter's, as 'omega'")
+        if not free:
+            raise ValueError("free names no parameter; name one, or leave it out")
         refuse_unknown(plant, free, also=())
         return [*dict.fromkeys(free)]
     names = [name for name in plant.measured if is_modal(plant, name)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import casadi as ca
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import JointMotion, Plant
+from quietarm.ocp.checks import IF_STATED
 from quietarm.ocp.saved import Saved
 from quietarm.ocp.uncertainty import with_values
 
@@ -132,7 +133,7 @@ class Identified(Saved):
     Attributes
     ----------
     plant : Plant
-        With the identified parameters; all others are as given.
+        With the identified parameters and the rough ones; all others are as given.
     estimates : tuple of Estimate
         The identified parameters.
     not_identifiable : dict of str to str
@@ -145,6 +146,9 @@ class Identified(Saved):
         Doubts about the recordings, such as their units or a drift from one to the next.
     versions : dict of str to str
         Of what identified it.
+    rough : dict of str to float
+        The values of parameters that are not identifiable but told roughly: with an interval as
+        wide as they are.
     """
 
     kind: ClassVar[str] = "machine"
@@ -157,6 +161,19 @@ class Identified(Saved):
     left_out: dict[str, str]
     warnings: tuple[str, ...]
     versions: dict[str, str]
+    rough: dict[str, float] = field(default_factory=dict, metadata=IF_STATED)
+
+    @property
+    def untold(self) -> tuple[str, ...]:
+        """The parameters of which the recordings tell nothing: the plant keeps what it had."""
+        told = {estimate.parameter for estimate in self.estimates} | self.rough.keys()
+        return tuple(name for name in self.plant.measured if name not in told)
+
+    def with_given(self, plant: Plant, names: Iterable[str]) -> Identified:
+        """The same, with values of a plant in place of those that are told but roughly."""
+        given = {name: getattr(plant, name) for name in names if name in self.rough}
+        rough = {name: value for name, value in self.rough.items() if name not in given}
+        return replace(self, plant=replace(self.plant, **given), rough=rough)
 
     @property
     def errors(self) -> dict[str, float]:

@@ -14,7 +14,7 @@ from quietarm.studies.identify.fits.part_fitter import PartFitter
 from quietarm.studies.identify.fits.swing_model import SwingModel
 from quietarm.studies.identify.machine import Part, is_modal, values_of
 from quietarm.studies.identify.signals.mending import without_glitches
-from quietarm.studies.identify.signals.recording import Recording
+from quietarm.studies.identify.signals.recording import Recording, checked_recordings
 from quietarm.studies.identify.swings.frequencies import find_frequencies
 from quietarm.studies.identify.swings.recording_parts import fit_parts
 
@@ -38,6 +38,8 @@ class Prediction:
         The least, and where its five periods begin [s].
     frequency : float
         Of the ring-down by itself [Hz].
+    why : str
+        The likeliest cause of what is not predicted, in words.
     """
 
     recording: str
@@ -47,6 +49,7 @@ class Prediction:
     worst: float
     worst_at: float
     frequency: float
+    why: str = ""
 
 
 @takes(plant=Plant)
@@ -61,7 +64,7 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
     names = [name for name in plant.measured if is_modal(plant, name)]
     p = values_of(plant, names)
     predictions = list[Prediction]()
-    recordings, _ = without_glitches(recordings)
+    recordings, _ = without_glitches(checked_recordings(recordings))
     for recording, frequency in zip(recordings, find_frequencies(recordings)):
         fitter = PartFitter(plant, names, recording, frequency)
         parts, why = fit_parts(fitter)
@@ -83,11 +86,38 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
                 worst=worst,
                 worst_at=worst_at,
                 frequency=fitter.frequency_of(part.vector),
+                why=_why(fitter, part, p),
             )
             predictions.append(prediction)
     if not predictions:
         raise ValueError(f"{recordings[0].name}: no ring-down of three periods; record longer")
     return predictions
+
+
+def _why(fitter: PartFitter, part: Part, p: Array) -> str:
+    """What tells a ring-down apart from a machine's with some parameters: the likeliest."""
+    same = 0.01  # share of a frequency, which in seven periods is a phase of 25 degrees
+    alike = 1.5  # times a damping
+    frequency = fitter.frequency_of(part.vector)
+    expected = fitter.frequency_of(p)
+    damping = fitter.damping_of(part)
+    damping_expected = float(p[fitter.are_dampings].max(initial=0.0))
+    undamped = frequency / np.sqrt(1 - damping**2)
+    undamped_expected = expected / np.sqrt(1 - damping_expected**2)
+    if abs(undamped / undamped_expected - 1) > same:
+        return (
+            f"it swings at {frequency:.4g} Hz, and the machine at {expected:.4g} Hz: it carried "
+            "another load, or is another machine"
+        )
+    lower, higher = sorted([damping, damping_expected])
+    if higher > alike * max(lower, 0.0):
+        return f"its damping is {damping:.3g}, and the machine's {damping_expected:.3g}"
+    if part.misfit > 2 * part.noise:
+        return (
+            f"it is no free decay of its modes: they leave {part.misfit:.0%} of it; look at the "
+            "signal"
+        )
+    return f"its noise is {part.noise:.0%} of the swing: push harder, or record longer"
 
 
 def _shares(model: SwingModel, p: Array, period: float) -> list[tuple[float, float]]:

@@ -11,19 +11,24 @@ from numpy.typing import NDArray
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.studies.identify.signals.clocks import holes, running
 from quietarm.studies.identify.signals.recording import MOST_ANGLE
-from quietarm.studies.reading.table import read_table
+from quietarm.studies.reading.table import Table, read_table, unused_in_words
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class RecordedPath:
-    """A joint's path: the cubic spline through its points, at rest at both ends."""
+    """A joint's path: the cubic spline through its points, at rest at both ends.
+
+    With notes on what was mended of its file, and what of it is not used.
+    """
 
     start: float
     target: float
     motion: FreeMotion
+    notes: tuple[str, ...] = ()
 
     @property
     def duration(self) -> float:
@@ -42,6 +47,7 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
     )
     time = table.in_si(begin, "time")
     angle = table.in_si(name, label)
+    time, angle, notes = _on_a_clock(table, begin, time, angle)
     _check(path, time, angle, joint)
     largest = np.abs(angle).max()
     if joint == ROTARY and largest > 2 * np.pi and not table.find(name).written:
@@ -52,7 +58,44 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
     spline = CubicSpline(time - time[0], angle, bc_type="clamped")
     jerk, acceleration, *_ = spline.c
     motion = FreeMotion(time - time[0], 2 * acceleration, 6 * jerk)
-    return RecordedPath(float(angle[0]), float(angle[-1]), motion)
+    notes += [unused_in_words(table.unused([begin, name]))]
+    return RecordedPath(float(angle[0]), float(angle[-1]), motion, tuple(filter(None, notes)))
+
+
+def _on_a_clock(
+    table: Table, begin: str, time: Array, angle: Array
+) -> tuple[Array, Array, list[str]]:
+    """Times that increase and the angles there, and what was mended of the clock in words."""
+    path = table.path
+    if len(time) != len(angle):
+        raise FileFormatError(f"{path}: its columns have {len(time)} and {len(angle)} rows")
+    if not (np.isfinite(time).all() and np.isfinite(angle).all()):
+        raise FileFormatError(f"{path} has a number that is not finite; mend it")
+    counts = table.find(begin).values
+    whole = bool((counts == np.round(counts)).all())
+    try:
+        clock = running(time, table.factor(begin, "time") if whole else 0.0)
+    except ValueError as error:
+        raise FileFormatError(f"{path}: {error}") from None
+    time = clock.time
+    still = np.flatnonzero(np.diff(time) == 0)
+    if still.size:
+        raise FileFormatError(
+            f"{path}: row {clock.rows[still[0] + 1] + 1} has the time of the row before; leave one "
+            "of them out"
+        )
+    after = holes(time)
+    if after.size:
+        row = after[0]
+        raise FileFormatError(
+            f"{path}: a hole of {time[row + 1] - time[row]:.4g} s after row {clock.rows[row] + 1}, "
+            f"among steps of {np.median(np.diff(time)):.3g} s; give a path without holes"
+        )
+    return (
+        time,
+        angle[clock.rows],
+        [f"warning: {path}: {change}" for change in clock.changes.values()],
+    )
 
 
 def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
@@ -66,13 +109,6 @@ def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
         raise FileFormatError(
             f"{path} has {len(time)} rows; give {least_rows} to {most_rows}, for a move of a "
             "second a hundred are plenty"
-        )
-    if not (np.isfinite(time).all() and np.isfinite(angle).all()):
-        raise FileFormatError(f"{path} has a number that is not finite; mend it")
-    late = np.flatnonzero(np.diff(time) <= 0)
-    if late.size:
-        raise FileFormatError(
-            f"{path}: the time does not increase from row {late[0] + 1} to the next; sort the rows"
         )
     if np.abs(angle).max() > MOST_ANGLE:
         rotary = ("an angle", "degrees", "deg")

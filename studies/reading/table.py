@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,7 +18,7 @@ from quietarm.ocp.checks import cut, nearest
 from quietarm.ocp.files import MOST_BYTES, read_bytes
 from quietarm.studies.reading.matlab import read_matlab
 from quietarm.studies.reading.text import read_text
-from quietarm.studies.reading.units import UNITS, normal, split_name
+from quietarm.studies.reading.units import KINDS, UNITS, kind_of, normal, split_name
 
 Array = NDArray[np.float64]
 ARRAYS = (".npy", ".npz", ".mat")
@@ -33,10 +33,11 @@ _MOST_COLUMNS = 1000
 _MOST_OF_ARRAY = 10_000
 """Rows and columns of a text, and columns of an array, which may be a long row."""
 _CALLED = {
-    "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "seconds", "millis", "micros"},
+    "time": {"time", "t", "x_value", "x value", "timestamp", "zeit", "sec", "seconds", "ms", "us",
+             "ns", "millis", "micros", "nanos", "milliseconds", "microseconds", "nanoseconds"},
     "angle": {"angle", "theta", "position", "q"},
     "position": {"position", "x", "s", "q"},
-}
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -49,16 +50,22 @@ class Column:
 
     @property
     def written(self) -> str:
-        """Its unit, wherever it is written; empty where it is nowhere."""
-        return self.unit or split_name(self.name)[1]
+        """Its unit, wherever it is written; empty where it is nowhere.
+
+        Of a time a heading may be nothing else, as ``micros`` of the sketches of small boards.
+        """
+        alone = self.name.strip().removesuffix("()")
+        is_time = _plain(alone) in _CALLED["time"] and normal(alone) in UNITS["time"]
+        return self.unit or split_name(self.name)[1] or (alone if is_time else "")
 
 
 @dataclass(frozen=True)
 class Table:
-    """The columns of a file, in its order."""
+    """The columns of a file, in its order; and names of those that hold words."""
 
     path: Path
     columns: tuple[Column, ...]
+    words: tuple[str, ...] = ()
 
     def find(self, name: str) -> Column:
         """A column by its heading, or by its number from 0; FileFormatError where there is none.
@@ -110,41 +117,80 @@ class Table:
         return f"its columns, by name or by number from 0, are {', '.join(names)}{more}"
 
     def _first_is_time(self) -> bool:
-        """Whether the first column rises evenly, and does not only count the rows."""
+        """Whether the first column rises evenly, and does not only count the rows.
+
+        A counter that wraps rises as well.
+        """
         first = self.columns[0]
-        if len(self.columns) < 2 or not rises_evenly(first.values):
+        if len(self.columns) < 2 or not _rises(first.values):
             return False
         counts = (np.diff(first.values[np.isfinite(first.values)]) == 1).all()
         return not counts or normal(first.written) in UNITS["time"]
 
-    def in_si(
+    def in_si(self, name: str, quantity: str, unit: str = "", scale: float | None = None) -> Array:
+        """A column in SI units: by a scale, a unit, that of its name, or as it is."""
+        return self.find(name).values * self.factor(name, quantity, unit, scale)
+
+    def factor(
         self,
         name: str,
         quantity: str,
         unit: str = "",
         scale: float | None = None,
-        *,
-        by_options: bool = False,
-    ) -> Array:
-        """A column in SI units: by a scale, a unit, that of its name, or as it is.
+        option: str = "",
+    ) -> float:
+        """What one of a column is in SI units: by a scale, a unit, that of its name, or 1.
 
         A unit that is given holds whatever the name says. FileFormatError where its name ends in
-        what may be a unit or not; it names the options of a command that has some for it.
+        what may be a unit or not, or is one of something else; it names the options of a command
+        that has some, which call the quantity by `option`.
         """
         column = self.find(name)
         known = UNITS[quantity]
         if scale is not None:
-            return column.values * scale
-        written = normal(column.written)
-        if written and not unit and written not in known:
-            usual = next(iter(known))
-            how = f"name the column {quantity}_{usual}"
-            if by_options:
-                how = f"give the {quantity}'s by --units {quantity}:{usual}, or by --scale"
+            return scale
+        written = unit or column.written
+        if normal(written) in known or not written:
+            return known.get(normal(written), 1.0)
+        usual = next(iter(known))
+        how = f"name the column {quantity}_{usual}"
+        if option:
+            how = f"give the {quantity}'s by --units {option}:{usual}, or by --scale {option}=..."
+        kind = kind_of(written)
+        if kind:
             raise FileFormatError(
-                f"{self.path}: is {column.written!r} of column {column.name} a unit? {how}"
+                f"{self.path}: {written!r} of column {column.name} is a unit of {kind}, and not of "
+                f"{KINDS.get(quantity, quantity)}; {how}"
             )
-        return column.values * known.get(normal(unit) or written, 1.0)
+        raise FileFormatError(f"{self.path}: is {written!r} of column {column.name} a unit? {how}")
+
+    def unused(self, names: Collection[str]) -> tuple[str, ...]:
+        """Columns that are none of these, by their names in words."""
+        used = [self.find(name) for name in names]
+        left = [column.name for column in self.columns if not any(column is one for one in used)]
+        return (*left, *self.words)
+
+
+def unused_in_words(unused: Sequence[str]) -> str:
+    """That columns are not used, in a sentence; empty where all are."""
+    most = 8
+    if not unused:
+        return ""
+    names = ", ".join(unused[:most])
+    more = f" and {len(unused) - most} more" if len(unused) > most else ""
+    columns = "column" if len(unused) == 1 else "columns"
+    return f"not used: {columns} {names}{more}"
+
+
+def _rises(values: Array) -> bool:
+    """Whether numbers rise evenly, but where a counter wraps or a recording begins anew."""
+    few = 0.01  # share of the steps that go back
+    finite = values[np.isfinite(values)]
+    back = np.diff(finite) < 0
+    if not back.any() or np.count_nonzero(back) > max(1.0, few * len(back)):
+        return rises_evenly(values)
+    runs = np.split(finite, np.flatnonzero(back) + 1)
+    return rises_evenly(max(runs, key=len))
 
 
 def rises_evenly(values: Array) -> bool:
@@ -200,16 +246,19 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
     # letters of a column's heading: more are no name, and would fill every message
     longest_name = 100
     content = read_bytes(path)
+    words = list[str]()
     with reading(path):
         if path.suffix.lower() in ARRAYS:
             columns = _of_variables(_arrays(path.suffix.lower(), content, strict), strict)
         else:
             _refuse_huge(content)
-            columns = [Column(*entry) for entry in read_text(content, strict)]
+            text = read_text(content, strict)
+            columns = [Column(*entry) for entry in text.numbers]
+            words = text.words
     columns = [replace(column, name=cut(column.name, longest_name)) for column in columns]
     if not columns and not strict:
         raise FileFormatError(f"{path}: it has no vectors of numbers; save the time and what rings")
-    return Table(path, tuple(columns))
+    return Table(path, tuple(columns), tuple(cut(name, longest_name) for name in words))
 
 
 def _arrays(kind: str, content: bytes, strict: bool) -> dict[str, Any]:

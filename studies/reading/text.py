@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import groupby
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +29,15 @@ _HEAD = 2000
 """Lines in which the numbers have to begin."""
 
 
-def read_text(content: bytes, strict: bool) -> list[tuple[str, str, Array]]:
-    """Names, units and numbers of a text's columns; separator, decimal mark and heading are found.
+class TextColumns(NamedTuple):
+    """Names, units and numbers of a text's columns, and names of those that hold words."""
+
+    numbers: list[tuple[str, str, Array]]
+    words: list[str]
+
+
+def read_text(content: bytes, strict: bool) -> TextColumns:
+    """The columns of a text; separator, decimal mark and heading are found.
 
     A column of clock times is in seconds since its first row. A `strict` table has nothing but its
     heading above the numbers.
@@ -68,11 +75,13 @@ def read_text(content: bytes, strict: bool) -> list[tuple[str, str, Array]]:
         )
     names, units = heading or ([str(k) for k in range(width)], [""] * width)
     columns = _numbers([(k, lines[k]) for k in data], separator, len(names))
-    return [
+    numbers = [
         (names[k].strip(), unit or units[k], column)
         for k, (unit, column) in columns.items()
         if names[k].strip() or np.isfinite(column).any()
     ]
+    words = [names[k].strip() for k in range(len(names)) if k not in columns]
+    return TextColumns(numbers, [name for name in words if name])
 
 
 def _is_rule(line: str) -> bool:

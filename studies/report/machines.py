@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from math import floor, log10, pi
 from typing import Any
 
-from quietarm.models import Plant
+from quietarm.models import Plant, file_of_plant
 from quietarm.studies.identify import Estimate, Identified, Part, Prediction
+from quietarm.studies.identify.machine import is_modal
 from quietarm.studies.report.words import span_words
 
 Row = tuple[str, str]
 
 
-def machine_rows(machine: Identified) -> list[Row]:
-    """The parameters with their intervals, then each part of the recordings."""
+def machine_rows(machine: Identified, given: Collection[str] = ()) -> list[Row]:
+    """The parameters with their intervals, then each part of the recordings.
+
+    `given` are those that the user gave.
+    """
     rows = [("plant", machine.plant.name)]
     rows += [
         (estimate.parameter, text)
@@ -22,20 +26,46 @@ def machine_rows(machine: Identified) -> list[Row]:
         for text in _estimate(machine.plant, estimate)
     ]
     rows += [
-        (name, f"not identifiable: {why}; {getattr(machine.plant, name):.4g} as given")
+        (name, f"not identifiable: {why}; {_instead(machine, name, given)}")
         for name, why in machine.not_identifiable.items()
     ]
-    untold = _as_given(machine)
-    if untold:
-        rows.append(("as given", ", ".join(_with_unit(machine.plant, name) for name in untold)))
+    others = [name for name in machine.untold if name not in machine.not_identifiable]
+    for words, names in {
+        "as given": [name for name in others if name in given],
+        "default": [name for name in others if name not in given],
+    }.items():
+        if names:
+            rows.append((words, ", ".join(_with_unit(machine.plant, name) for name in names)))
     rows += [(part.recording, _part(machine.plant, part)) for part in machine.parts]
     return rows + [(name, f"left out: {why}") for name, why in machine.left_out.items()]
 
 
-def _as_given(machine: Identified) -> list[str]:
-    """The parameters that no recording tells."""
-    known = {estimate.parameter for estimate in machine.estimates} | machine.not_identifiable.keys()
-    return [name for name in machine.plant.measured if name not in known]
+def _instead(machine: Identified, name: str, given: Collection[str]) -> str:
+    """What a plant has of a parameter that is not identifiable, and whence."""
+    whence = "the plant's default"
+    if name in machine.rough:
+        whence = "by the recordings"
+    elif name in given:
+        whence = "as given"
+    return f"{_with_unit(machine.plant, name).removeprefix(f'{name} ')} {whence}"
+
+
+def refuse_defaults(plant: Plant, names: Sequence[str]) -> None:
+    """Refuse to save a machine whose plant has default values for these parameters, if any.
+
+    The defaults of quietarm's own plants are of the machines that their sources describe; those of
+    a plant of one's own are one's own.
+    """
+    if not names or file_of_plant(type(plant)) is not None:
+        return
+    remedy = f"give each by --set, such as --set {names[0]}=..."
+    may_stand = [name for name in names if not is_modal(plant, name)]
+    if may_stand:
+        remedy += f", or keep the defaults that do not matter to you, by --assume {may_stand[-1]}"
+    raise ValueError(
+        f"cannot save the machine: the recordings do not tell {', '.join(names)}, and the defaults "
+        f"of {plant.name} belong to another machine; {remedy}"
+    )
 
 
 def prediction_rows(plant: Plant, predictions: Sequence[Prediction]) -> list[Row]:
@@ -52,17 +82,38 @@ def prediction_rows(plant: Plant, predictions: Sequence[Prediction]) -> list[Row
     return rows
 
 
-def machine_notes(machine: Identified, at_rest: bool) -> list[str]:
-    """What is to be known before the intervals are believed; of a joint that is taken as held."""
-    untold = _as_given(machine)
+def nothing_predicted(plant: Plant, predictions: Sequence[Prediction]) -> ValueError | None:
+    """Why a machine predicts nothing of some ring-downs; None where it predicts of all."""
+    failed = [prediction for prediction in predictions if prediction.share <= 0]
+    if not failed:
+        return None
+    worst = min(failed, key=lambda prediction: prediction.share)
+    return ValueError(
+        f"{plant.name} predicts nothing of {worst.recording}, "
+        f"{span_words(worst.begin, worst.end)} ({worst.share:.0%}): {worst.why}"
+    )
+
+
+def machine_notes(machine: Identified, at_rest: bool, given: Collection[str] = ()) -> list[str]:
+    """What is to be known before the intervals are believed; of a joint that is taken as held.
+
+    `given` are the parameters that the user gave.
+    """
     notes = [
         "Misfit: root mean square of the residuals, as a share of the swing's; likewise the noise."
     ]
+    untold = [name for name in machine.untold if name not in given]
     if untold:
         notes.append(
-            "Torque and energy depend on what is as given: set what you know by --set, as "
-            f"{untold[0]}={getattr(machine.plant, untold[0]):.4g}."
+            "The recordings do not tell the values in the row 'default', which belong to another "
+            f"machine. Set what you know, such as --set {untold[0]}=...; torque and energy depend "
+            "on them."
         )
+    notes += [
+        f"--set {estimate.parameter} is not used, because the recordings tell its value."
+        for estimate in machine.estimates
+        if estimate.parameter in given
+    ]
     if at_rest:
         notes.append(
             "The joint is taken to be held: name its angle's column by --angle, where a controller "

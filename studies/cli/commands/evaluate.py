@@ -108,7 +108,7 @@ def _evaluate_path(given: Given) -> None:
     task = given.read_task(start=recorded.start, target=recorded.target, duration=recorded.duration)
     with busy("integrating"):
         rows = path_rows(task, recorded)
-    finish([], rows)
+    finish([], rows, *recorded.notes)
 
 
 def _evaluate_table(given: Given) -> None:

@@ -61,6 +61,11 @@ class PartFitter:
         self._modes = self.response.eigenvalues(self.of_plant)[0].imag
         self._splines = dict[tuple[float, float], Any]()
 
+    @property
+    def frequencies(self) -> Array:
+        """Of the plant's modes as they are given, with the joint at rest [Hz]."""
+        return np.asarray(self._modes, float) / tau
+
     def of(self, names: Sequence[str]) -> PartFitter:
         """The fits of the same recording with other parameters sought."""
         return PartFitter(self.plant, names, self.recording, self.frequency)

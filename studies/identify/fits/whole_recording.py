@@ -17,8 +17,11 @@ def wide_range(frequency: float) -> Array:
 
 
 def fit_whole(fitter: PartFitter, rows: slice = slice(None)) -> Part:
-    """All of the recording, or some rows, from the better of the two best starts."""
-    part = fitter.part(rows, hub="moves")
+    """All of the recording, or some rows, from the better of the two best starts.
+
+    How the joint moves in a hole is unknown: the longest stretch without one is all.
+    """
+    part = fitter.part(_longest(fitter, rows), hub="moves")
     starts = [fitter.of_plant, *fitter.starts(wide_range(fitter.frequency))]
     rough = fitter.model(part, samples=FEW_SAMPLES)
     best_starts = sorted(starts, key=rough.cost)[:2]
@@ -27,12 +30,20 @@ def fit_whole(fitter: PartFitter, rows: slice = slice(None)) -> Part:
     return fitter.fit(part, best.p)[0]
 
 
+def _longest(fitter: PartFitter, rows: slice) -> slice:
+    """The longest stretch of some rows without a hole; all of them where none is long enough."""
+    first, last, _ = rows.indices(len(fitter.recording.time))
+    stretches = fitter.recording.part(rows).stretches
+    longest = max(stretches, key=lambda run: run.stop - run.start, default=slice(0, last - first))
+    return slice(first + longest.start, first + longest.stop)
+
+
 def sensitivities(fitter: PartFitter) -> Array:
     """How the whole recording would change by the plant's values, a column each.
 
     What amplitudes and trend can do instead does not count.
     """
-    model = fitter.model(fitter.part(slice(None), hub="moves"))
+    model = fitter.model(fitter.part(_longest(fitter, slice(None)), hub="moves"))
     p = fitter.of_plant
     x = model.start(p)
     size = model.values.std(axis=0)[:, None, None]

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.models.checks import not_negative
+from quietarm.ocp.checks import instance, several
+from quietarm.studies.identify.signals.clocks import holes, holes_in_words, running
 from quietarm.studies.identify.signals.stamps import mended
 
 Array = NDArray[np.float64]
@@ -29,8 +33,8 @@ class Recording:
     Parameters
     ----------
     time : array, shape (rows,)
-        When [s], increasing. Of rows with the same time the first is read; stamps that are rounded
-        are those of an even rate.
+        When [s], increasing. A counter of 16, 24 or 32 bits that wraps is unwrapped. Of rows with
+        the same time the first is read; stamps that are rounded are those of an even rate.
     angle : array, shape (rows,), optional
         Of the joint [rad]; without it the joint is held.
     tip : array, shape (rows,) or (rows, tips), optional
@@ -43,14 +47,19 @@ class Recording:
     name : str, optional
         What messages call it.
     mended : mapping, optional
-        What was mended in the times: sentences, by what was mended.
+        What was mended in the times, and where samples lack: sentences, by what was mended.
+    tick : float, optional
+        What the clock counts in [s], so that it is known where it wraps; found where it is 1 s,
+        1 ms, 1 us, 0.1 us or 1 ns.
 
     Raises
     ------
     ValueError
-        When no signal is given, rows do not fit, the time does not increase, or the angle cannot be
-        one in radians.
+        When a signal is no array of numbers or none is given, rows do not fit, the clock starts
+        anew or goes back, or the angle cannot be one in radians.
     """
+
+    example = "a recording, as Recording(time, tip=tip)"
 
     time: Array
     angle: Array | None = None
@@ -59,9 +68,11 @@ class Recording:
     torque: Array | None = None
     name: str = "the recording"
     mended: Mapping[str, str] = field(default_factory=dict)
+    tick: float = 0.0
 
     def __post_init__(self) -> None:
-        arrays = {name: np.asarray(values, float) for name, values in self._arrays.items()}
+        self._refuse_wrong_options()
+        arrays = {name: self._numbers(name, values) for name, values in self._arrays.items()}
         if not arrays.keys() - {"time", "angle"}:
             self._refuse(" has no tip, acceleration or torque; give one")
         rows = len(arrays["time"])
@@ -73,21 +84,68 @@ class Recording:
         whole_count = np.count_nonzero(whole)
         if not LEAST_ROWS <= whole_count <= _MOST_ROWS:
             self._refuse(f" has {whole_count} rows; give {LEAST_ROWS} to {_MOST_ROWS}")
-        whole_rows, changes = mended({name: values[whole] for name, values in arrays.items()})
-        object.__setattr__(self, "mended", {**self.mended, **changes})
-        for name, values in whole_rows.items():
+        for name, values in self._on_a_clock(arrays, np.flatnonzero(whole)).items():
             object.__setattr__(self, name, values)
-        late = int(np.argmin(np.diff(self.time)))
-        if self.time[late + 1] <= self.time[late]:
-            self._refuse(
-                f": the time does not increase from row {late + 1} to the next; sort the rows, or "
-                "mend it"
-            )
         if self.angle is not None and (largest := np.abs(self.angle).max()) > MOST_ANGLE:
             self._refuse(
                 f": an angle of {largest:g} rad; is it in degrees? say so by its unit, or rename a "
                 "column whose name says rad"
             )
+
+    def _refuse_wrong_options(self) -> None:
+        """Refuse a name that is no text, a tick that is no time, and no mapping of sentences."""
+        if not isinstance(self.name, str):
+            raise ValueError(f"name is {reprlib.repr(self.name)}; give a text")
+        if not isinstance(self.mended, Mapping):
+            self._refuse(f": mended is {reprlib.repr(self.mended)}; give sentences by names")
+        if self.time is None:
+            self._refuse(" has no time; give an array of seconds")
+        object.__setattr__(self, "tick", not_negative("tick", self.tick))
+
+    def _numbers(self, name: str, values: Any) -> Array:
+        """A signal as an array of floats; ValueError where it is none."""
+        shape = "(rows,) or (rows, tips)" if name in ("tip", "acceleration") else "(rows,)"
+        shown = " ".join(reprlib.repr(values).split())  # numpy's has lines
+        said = f": {name} is {shown}; give an array of numbers, of shape {shape}"
+        if hasattr(values, "filled"):  # to name numpy's class would load numpy.ma
+            self._refuse(
+                f": {name} is a masked array; give plain numbers, as of its filled(np.nan)"
+            )
+        try:
+            array = np.asarray(values)
+            if array.dtype.kind not in "iufO":
+                self._refuse(said)
+            array = array.astype(float)
+        except (TypeError, ValueError, OverflowError):
+            self._refuse(said)
+        if array.ndim != 1 and not (array.ndim == 2 and name in ("tip", "acceleration")):
+            self._refuse(f": {name} has shape {array.shape}; give {shape}")
+        if not array.size:
+            self._refuse(f" has nothing in its {name}; give {LEAST_ROWS} rows or more")
+        return array
+
+    def _on_a_clock(self, arrays: Mapping[str, Array], rows: NDArray[np.intp]) -> dict[str, Array]:
+        """Some rows of arrays, with a time that increases; what was mended is noted."""
+        try:
+            clock = running(arrays["time"][rows], self.tick, 1 + rows)
+        except ValueError as error:
+            self._refuse(f": {error}")
+        rows = rows[clock.rows]
+        ordered = {name: values[rows] for name, values in arrays.items()} | {"time": clock.time}
+        increasing, changes = mended(ordered)
+        time = increasing["time"]
+        late = int(np.argmin(np.diff(time)))
+        if time[late + 1] <= time[late]:
+            self._refuse(
+                f": the time stands still from row {1 + rows[late]} to the next; its clock is too "
+                "coarse, give the samples per second in its place"
+            )
+        if len(time) < len(rows):  # rows that stand twice
+            rows = rows[np.searchsorted(clock.time, time)]
+        lacking = holes_in_words(time, 1 + rows)
+        notes = {**clock.changes, **changes, **lacking, **self.mended}
+        object.__setattr__(self, "mended", notes)
+        return increasing
 
     def _refuse(self, why: str) -> NoReturn:
         raise ValueError(f"{self.name}{why}")
@@ -119,6 +177,12 @@ class Recording:
         """The usual time between samples [s]."""
         return float(np.median(np.diff(self.time)))
 
+    @property
+    def stretches(self) -> list[slice]:
+        """The rows between holes, where they are enough to be read."""
+        runs = np.split(np.arange(len(self.time)), holes(self.time) + 1)
+        return [slice(run[0], run[-1] + 1) for run in runs if len(run) >= LEAST_ROWS]
+
     def rows(self, begin: float, end: float) -> slice:
         """The rows from one time to another."""
         first, last = np.searchsorted(self.time, [begin, end], side="left")
@@ -129,12 +193,30 @@ class Recording:
         return replace(self, **{name: values[rows] for name, values in self._arrays.items()})
 
     def averaged(self, count: float) -> Recording:
-        """Its means over so many rows each; itself where these are fewer than two."""
+        """Its means over so many rows each, in none of which samples lack for as long.
+
+        Itself where these are fewer than two.
+        """
         size = max(1, int(min(count, len(self.time) / LEAST_ROWS)))
         rows = len(self.time) // size * size
         arrays = self._arrays.items()
         blocks = {name: v[:rows].reshape(-1, size, *v.shape[1:]) for name, v in arrays}
-        return replace(self, **{name: v.mean(axis=1) for name, v in blocks.items()})
+        dense = np.ptp(blocks["time"], axis=1) < 2 * size * self.step
+        if np.count_nonzero(dense) < LEAST_ROWS:
+            dense[:] = True
+        return replace(self, **{name: v[dense].mean(axis=1) for name, v in blocks.items()})
+
+
+def checked_recordings(recordings: Any) -> list[Recording]:
+    """Recordings as a list, one or more."""
+    if isinstance(recordings, Recording):
+        raise TypeError(f"{recordings.name} is one recording; give a list, as [recording]")
+    checked = several("recordings", recordings, "recordings, as [Recording(time, tip=tip)]")
+    if not checked:
+        raise ValueError("no recording is given; give one")
+    for recording in checked:
+        instance("a recording", recording, Recording)
+    return checked
 
 
 def noise_of(values: Array) -> Array:

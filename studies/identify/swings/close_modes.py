@@ -18,6 +18,7 @@ from quietarm.studies.identify.fits.fitting import Fit, fit
 from quietarm.studies.identify.fits.swing_model import SwingModel
 from quietarm.studies.identify.signals.envelope import phasor
 from quietarm.studies.identify.signals.recording import Recording, noise_of
+from quietarm.studies.identify.swings.dry_friction import fit_dry
 
 Array = NDArray[np.float64]
 
@@ -59,8 +60,8 @@ class CloseModes:
         [rad/s], and damping ratios.
     frequency_deviations, damping_deviations : array, shape (2,)
         Their standard deviations.
-    amplitude : float
-        Of the louder at the begin, in the signal's unit.
+    amplitude, ratio : float
+        Of the louder at the begin, in the signal's unit; and of the other as a share of it.
     misfit, noise : float
         What both leave, and the recording's noise, as shares of the swing.
     """
@@ -70,6 +71,7 @@ class CloseModes:
     frequency_deviations: Array
     damping_deviations: Array
     amplitude: float
+    ratio: float
     misfit: float
     noise: float
 
@@ -94,7 +96,30 @@ def find_close_modes(recording: Recording, piece: Recording, frequency: float) -
     lower = np.array([0.5 * start[0], -0.02, 0.5 * start[2], -0.02])
     upper = np.array([2.0 * start[0], most_damping, 2.0 * start[2], most_damping])
     both = fit(model, np.clip(start, lower, upper), lower, upper, frequency)
-    return _judged(both, recording, piece)
+    close = _judged(both, recording, piece)
+    if close is None or not _beats(close, piece):
+        return None
+    return close
+
+
+def _beats(close: CloseModes, piece: Recording) -> bool:
+    """Whether a beat of two modes shows in a swing, as one mode by itself has none.
+
+    Less than a whole beat may be the straight envelope that dry friction has. Of 100 simulated
+    swings with dry friction 15 were met by two modes, with 0.65 of a beat at most.
+    """
+    much_worse = 1.3  # times what two modes leave, that dry friction leaves where they are there
+    least_left = 0.05  # of the louder, that the other mode has after half a beat
+    apart = abs(float(close.frequencies[0] - close.frequencies[1]))
+    seconds = float(np.ptp(piece.time))
+    faster = close.frequencies[1] * close.dampings[1] - close.frequencies[0] * close.dampings[0]
+    left = close.ratio * np.exp(-faster * min(pi / apart, seconds))
+    if left < least_left:
+        return False
+    if apart * seconds >= tau:
+        return True
+    dry = fit_dry(piece, close.frequencies[0] / tau, max(float(close.dampings[0]), 1e-3))
+    return dry.misfit > much_worse * close.misfit
 
 
 def _by_matrix_pencil(recording: Recording, frequency: float) -> Array | None:
@@ -148,6 +173,7 @@ def _judged(both: Fit, recording: Recording, piece: Recording) -> CloseModes | N
         deviations[::2][order],
         deviations[1::2][order],
         float(amplitudes.max()),
+        float(amplitudes.min() / amplitudes.max()),
         both.misfit,
         noise,
     )

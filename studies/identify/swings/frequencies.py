@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models.joint_motion import ROTARY
+from quietarm.studies.identify.signals.clocks import LONG
 from quietarm.studies.identify.signals.envelope import envelope, evenly
 from quietarm.studies.identify.signals.recording import LEAST_ROWS, Recording
 from quietarm.studies.identify.signals.spectra import highest_peaks, spectrogram
@@ -99,15 +100,22 @@ def doubt_units(
 def _candidates_of(recording: Recording) -> Candidates:
     """Candidates of the longest rest of the joint, if it is a fifth of the recording.
 
-    Where nothing swings there, those of all of it.
+    Where nothing swings there, those of all of it without a hole.
     """
-    stretches = rests(recording, 10 / float(np.ptp(recording.time)))
-    longest = max(stretches, key=lambda rows: rows.stop - rows.start, default=slice(0, 0))
-    if longest.stop - longest.start >= max(len(recording.time) / 5, LEAST_ROWS):
-        candidates = _candidates(recording.part(longest))
-        if any(candidates.values()):
-            return candidates
-    return _candidates(recording)
+    frequency = 10 / float(np.ptp(recording.time))
+    hole = LONG * recording.step * frequency  # in periods
+    whole = recording.stretches
+    for stretches in (rests(recording, frequency, hole), whole):
+        longest = max(stretches, key=lambda rows: rows.stop - rows.start, default=slice(0, 0))
+        if longest.stop - longest.start >= max(len(recording.time) / 5, LEAST_ROWS):
+            candidates = _candidates(recording.part(longest))
+            if any(candidates.values()):
+                return candidates
+    together = Candidates()
+    for rows in whole if len(whole) > 1 else ():
+        for frequency, loudness in _candidates(recording.part(rows)).items():
+            together[frequency] = together.get(frequency, 0.0) + loudness
+    return together
 
 
 def _candidates(recording: Recording) -> Candidates:

@@ -11,6 +11,7 @@ from quietarm.studies.identify.fits.hub_swing import with_hub
 from quietarm.studies.identify.fits.part_fitter import PartFitter
 from quietarm.studies.identify.fits.whole_recording import wide_range
 from quietarm.studies.identify.machine import Part
+from quietarm.studies.identify.signals.clocks import holes
 from quietarm.studies.identify.signals.recording import LEAST_ROWS
 from quietarm.studies.identify.swings.ring_down_fit import fit_ring_down
 from quietarm.studies.identify.swings.ring_downs import (
@@ -62,11 +63,16 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
     """Ring-downs of several periods, or why there are none."""
     if by_hand:
         spans = [fitter.recording.rows(*ends) for ends in by_hand]
-        spans = [rows for rows in spans if rows.stop - rows.start >= LEAST_ROWS]
+        spans = [rows for rows in spans if _are_enough(rows)]
     else:
         spans = find_ring_downs(fitter.recording, fitter.frequency)
     parts = list[Part]()
     why = _no_ring_down(fitter)
+    if by_hand and not spans:
+        time = fitter.recording.time
+        why = (
+            f"no part has {LEAST_ROWS} rows of it; it lasts from {time[0]:.6g} to {time[-1]:.6g} s"
+        )
     earliest = 0
     while spans:
         rows = spans[0]
@@ -93,6 +99,10 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
     return parts, why
 
 
+def _are_enough(rows: slice) -> bool:
+    return rows.stop - rows.start >= LEAST_ROWS
+
+
 def _longest_beat(
     fitter: PartFitter, spans: Sequence[slice], start: Array
 ) -> tuple[Part | None, int]:
@@ -117,8 +127,13 @@ def _longest_beat(
 
 
 def _beat_over(fitter: PartFitter, spans: Sequence[slice], start: Array) -> Part | None:
-    """One swing of two modes over all of some spans; None where two modes do not meet it."""
+    """One swing of two modes over all of some spans; None where two modes do not meet it.
+
+    Nor over a hole, in which the beats are not seen.
+    """
     rows = slice(spans[0].start, spans[-1].stop)
+    if len(holes(fitter.recording.time[rows])):
+        return None
     return fit_close_modes(fitter, rows, start)
 
 
@@ -156,8 +171,8 @@ def _well_damped(fitter: PartFitter, by_hand: Spans) -> list[Part]:
     much_damping = 0.06  # from which on a swing is over too soon for an envelope to show it
     usual = fitter.frequency
     parts = list[Part]()
-    spans = [recording.rows(*ends) for ends in by_hand] or [slice(None)]
-    for span in spans:
+    spans = [rows for ends in by_hand if _are_enough(rows := recording.rows(*ends))]
+    for span in spans if by_hand else [slice(None)]:
         piece = recording.part(span)
         if moves(piece):
             continue

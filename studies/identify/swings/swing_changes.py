@@ -17,6 +17,7 @@ from quietarm.studies.identify.machine import Part
 from quietarm.studies.identify.signals.recording import LEAST_ROWS
 from quietarm.studies.identify.swings.amplitudes import spread_of
 from quietarm.studies.identify.swings.close_modes import CloseModes, find_close_modes
+from quietarm.studies.identify.swings.dry_friction import fit_dry
 from quietarm.studies.identify.swings.modulation import changes_along
 from quietarm.studies.identify.swings.ring_downs import moves
 
@@ -55,13 +56,27 @@ def with_changes(fitter: PartFitter, part: Part, best: Fit, rows: slice) -> Part
         last = _words(fitter, pieces[-1])
         warning = (
             f"a misfit of {part.misfit:.1%} of the swing by one frequency and damping: {first} at "
-            f"first, {last} at last; they change with the amplitude, or a second mode is near. The "
-            "intervals hold for this swing, not for a larger one: push as hard as your moves do"
+            f"first, {last} at last; {_cause_of_changes(fitter, part)}. The intervals hold for "
+            "this swing, not for a larger one: push as hard as your moves do"
         )
         met = replace(met, cause="amplitude", warning=warning)
     if part.saturated:
         spread = _beyond_the_saturated(part, pieces, spread)
     return replace(met, spread=spread)
+
+
+def _cause_of_changes(fitter: PartFitter, part: Part) -> str:
+    """Why frequency and damping change along a swing: by dry friction, where that meets it."""
+    much_better = 0.7  # times the misfit of one decay
+    piece = fitter.thinned(fitter.piece(part))
+    dry = fit_dry(piece, fitter.frequency_of(part.vector), max(fitter.damping_of(part), 1e-3))
+    _, damping, lost = dry.p.tolist()
+    if part.saturated or lost <= 0 or dry.misfit > much_better * part.misfit:
+        return "they change with the amplitude, or a second mode is near"
+    return (
+        f"dry friction damps it: the amplitude loses {tau * lost:.2g} of its first value each "
+        f"period, beside a damping of {max(damping, 0.0):.2g}"
+    )
 
 
 def _beyond_the_saturated(part: Part, pieces: Sequence[Part], spread: Spread) -> Spread:

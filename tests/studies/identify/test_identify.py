@@ -335,7 +335,7 @@ RING = np.cos(20 * T)
     ("make", "said"),
     [
         (partial(qa.Recording, T, 300 * T, RING), "an angle of 600 rad; is it in degrees"),
-        (partial(qa.Recording, T[::-1], tip=RING), "does not increase from row 1"),
+        (partial(qa.Recording, T[::-1], tip=RING), "the rows stand in reverse order"),
         (partial(qa.Recording, T, tip=np.where(T > 0.05, np.nan, RING)), "has 10 rows; give 20"),
         (partial(qa.Recording, T), "has no tip, acceleration or torque"),
     ],
@@ -679,3 +679,74 @@ def test_a_sample_that_lacks_is_no_rounding_of_the_stamps():
     recording = qa.Recording(t[lacking], tip=tip[lacking])
     assert recording.time == pytest.approx(t[lacking], abs=1e-12)
     assert recording.mended == {}
+
+
+def dry(t, hertz, friction, zeta=0.0, size=20.0, start=0.5):
+    """Released at its start, with dry friction that holds it off its rest by so much at most.
+
+    Half swings about a rest that friction shifts, each a closed form (Den Hartog, 1931).
+    """
+    omega = math.tau * hertz
+    damped = omega * math.sqrt(1 - zeta**2)
+    tip = np.full(len(t), size)
+    begin, x = start, size
+    while abs(x) > friction and begin < t[-1]:
+        rest = math.copysign(friction, x)
+        s = t - begin
+        now = s >= 0
+        swing = np.cos(damped * s) + zeta * omega / damped * np.sin(damped * s)
+        tip[now] = (rest + (x - rest) * np.exp(-zeta * omega * s) * swing)[now]
+        x = rest - (x - rest) * math.exp(-zeta * omega * math.pi / damped)
+        begin += math.pi / damped
+        tip[t >= begin] = x
+    return tip
+
+
+@pytest.mark.parametrize(
+    ("hertz", "friction", "zeta", "noise"),
+    # 2.0.0 called such two modes that beat
+    [(2.73, 0.55, 0.0006, 0.01), (6.28, 0.6, 0.0, 0.012), (5.48, 0.35, 0.005, 0.005)],
+)
+def test_dry_friction_is_called_so_and_not_two_modes(hertz, friction, zeta, noise):
+    t = np.arange(0, 0.5 + 1.3 * 20 / (4 * friction) / hertz, 0.02 / hertz)
+    found = beam(qa.Recording(t, tip=noisy(dry(t, hertz, friction, zeta), noise)))
+    (part,) = found.parts
+    assert part.cause == "amplitude"
+    assert "dry friction damps it: the amplitude loses" in part.warning
+    lost = float(part.warning.partition("loses ")[2].split()[0])
+    assert lost == pytest.approx(4 * friction / 20, rel=0.1)
+    assert holds(found, hertz)
+
+
+def test_a_mode_that_dies_before_it_beats_is_no_second_one():
+    # as of a mast after a push, whose carriage gives way for a moment
+    t = np.arange(0, 9, 0.004)
+    tip = decay(t, 4.498, 0.007) + decay(t, 4.45, 0.04, amplitude=3.0)
+    each = [qa.Recording(t, tip=noisy(tip, 0.001, seed), name=str(seed)) for seed in (0, 1)]
+    found = qa.identify(each, qa.LinearAxis())
+    assert "close" not in causes(found)
+    assert found.plant.zeta1 == pytest.approx(0.007, rel=0.1)
+
+
+def test_what_ring_downs_agree_on_is_written_however_wide_its_interval_is():
+    # two pushes, whose beats have another mode of much more damping in their intervals
+    t = np.arange(0, 25, 0.005)
+    tip = decay(t, 3.2, 0.002) + decay(t, 3.45, 0.006, amplitude=18.0)
+    each = [qa.Recording(t, tip=noisy(tip, 0.005, seed), name=str(seed)) for seed in (0, 1)]
+    found = beam(*each)
+    assert "as wide as its value" in found.not_identifiable["zeta"]
+    assert found.plant.zeta == found.rough["zeta"] == pytest.approx(0.002, rel=0.1)
+    assert "zeta" not in found.untold
+    with pytest.raises(ValueError, match=r"two modes beat|zeta is not identifiable"):
+        _ = found.errors
+
+
+def test_a_plant_that_swings_elsewhere_is_not_fitted_with_its_own_frequency():
+    with pytest.raises(ValueError, match=r"swings at 3\.2.* Hz, and linear-axis has 12 Hz; seek"):
+        qa.identify([rung()], qa.LinearAxis(), ["zeta1"])
+
+
+def test_a_part_is_for_ring_downs_alone(moved):
+    recording = qa.Recording(TIME, moved.joint[:, 0], tip=moved.tips[:, 0])
+    with pytest.raises(ValueError, match="needs all of the recording; leave the parts out"):
+        qa.identify([recording], LINK, ["omega", "beta1"], parts=[(1.0, 3.0)])

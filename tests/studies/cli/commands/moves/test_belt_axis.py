@@ -44,7 +44,8 @@ def test_a_belt_axis_is_identified_and_moved_to_rest(done):
     Path("raw_data_x.csv").write_text(klipper_text(np.random.default_rng(3)))
     done(
         "identify raw_data_x.csv linear-axis --acceleration accel_x --units acceleration:mm/s^2 "
-        "--set mass=1.2 --set load=400g --output belt.json --output fit.png --quiet"
+        "--set mass=1.2 --set load=400g --assume share1,friction --output belt.json "
+        "--output fit.png --quiet"
     )
     found = Identified.load("belt.json")
     omega, zeta = found.estimates

@@ -57,6 +57,39 @@ def test_a_path_of_a_linear_axis_is_in_metres(done, folder, column, target):
     assert "m/s^2 from point to point" in out
 
 
+def _cycloid(clock, name="path.csv"):
+    """The cycloid from 0 to 30 deg in 0.8 s, a row a millisecond."""
+    share = np.arange(801) / 800
+    angle = math.pi / 6 * (share - np.sin(math.tau * share) / math.tau)
+    rows = "".join(f"{t:.0f},{q:.9f}\n" for t, q in zip(clock, angle))
+    with open(name, "w") as file:
+        file.write(f"time_us,angle_rad\n{rows}")
+
+
+def test_the_clock_of_a_path_that_wraps_is_unwrapped(done, folder):
+    _cycloid((np.arange(801) * 1000 + 2**32 - 400_000) % 2**32)
+    out = done("evaluate single-link --path path.csv")
+    assert "0 to 30 deg in 0.8 s" in out
+    assert "0.0911497 J" in out  # as of the cycloid itself
+    assert "77.1 mm" in out
+    assert "path.csv: its clock, a counter of 32 bits, wraps after row 400" in out
+
+
+def test_a_path_with_a_hole_or_of_two_recordings_is_refused(refused, folder):
+    _cycloid(np.sort((np.arange(801) * 1000 + 2**32 - 400_000) % 2**32))
+    said = refused("evaluate single-link --path path.csv")
+    assert "path.csv: a hole of 4294 s after row 401, among steps of 0.001 s" in said
+    _cycloid(np.append(np.arange(400), np.arange(401)) * 1000)
+    said = refused("evaluate single-link --path path.csv")
+    assert "two recordings, the second from row 401" in said
+
+
+def test_columns_of_a_path_that_are_not_used_are_named(done, folder):
+    rows = "".join(f"{k / 10},{x},5,a\n" for k, x in enumerate([0, 1, 3, 6, 8, 9, 9.5]))
+    (folder / "path.csv").write_text(f"time_s,angle_deg,current,note\n{rows}")
+    assert "not used: columns current, note" in done("evaluate single-link --path path.csv")
+
+
 # A table of results
 
 (REFERENCE,) = problem_of("single-link-30deg-0.8s-2-terms").fronts()

@@ -14,7 +14,7 @@ TIME = np.arange(0, 6, 0.005)
 OMEGA, ZETA = 2 * math.pi * 3.2, 0.01
 SWING = np.exp(-ZETA * OMEGA * TIME) * np.cos(OMEGA * math.sqrt(1 - ZETA**2) * TIME)
 TIP = 20 * SWING + np.random.default_rng(0).standard_normal(len(TIME))  # mm
-PUSH = "identify push.csv flexible-beam --quiet --tip tip_mm"
+PUSH = "identify push.csv flexible-beam --quiet --tip tip_mm --assume all"
 
 
 def write(path, tip):
@@ -98,7 +98,8 @@ def test_texts_of_other_programs_tell_the_same(push, done, name):
 
 
 def same(done, line):
-    done(f"{line} --quiet --output arm.json")
+    assumed = "" if "--assume" in line else "--assume all"
+    done(f"{line} {assumed} --quiet --output arm.json")
     omega, zeta = Identified.load("arm.json").estimates
     assert omega.low < OMEGA < omega.high, line
     assert zeta.value == pytest.approx(ZETA, rel=0.1)
@@ -248,9 +249,172 @@ def test_words_tell_from_which_amplitude_on_a_swing_is_fitted(push, done):
     phase = 2 * math.pi * np.cumsum(2.0 - 0.1 * (size / 20) ** 2) * 0.01
     (push / "hard.csv").write_text("time_s,tip_mm\n" + rows("%.2f,%.4f\n", t, size * np.cos(phase)))
     out = " ".join(
-        done("identify hard.csv flexible-beam --tip tip_mm --quiet -o hard.json").split()
+        done("identify hard.csv flexible-beam --tip tip_mm --assume all -o hard.json").split()
     )
     assert "fitted from an amplitude of" in out
     assert "The intervals hold for this swing, not for a larger one" in out
     omega = Identified.load("hard.json").estimates[0]
     assert omega.low < 2 * math.pi * 1.91 < 2 * math.pi * 1.995 < omega.high
+
+
+# What neither recordings nor the user tell
+
+
+@pytest.fixture
+def ring_downs(folder):
+    """Two ring-downs of a gantry: 4.5 Hz, 0.007, with its position in mm and its force."""
+    omega = 2 * math.pi * 4.5
+    for k in range(2):
+        noise = np.random.default_rng(k).normal(0, 0.02, len(TIME))
+        tip = (8 + k) * np.exp(-0.007 * omega * TIME) * np.cos(omega * TIME) + noise
+        (folder / f"ring{k}.csv").write_text(
+            "time_s,tip_mm,axis_mm,force_N\n"
+            + rows("%.4g,%.4f,%.3f,%.2f\n", TIME, tip, 0 * tip, tip)
+        )
+    return folder
+
+
+GANTRY = "identify ring0.csv ring1.csv linear-axis --quiet --tip tip_mm"
+
+
+def test_a_machine_has_nothing_of_the_class_that_nobody_told(ring_downs, done, refused):
+    said = refused(f"{GANTRY} --output axis.json --output fit.svg")
+    assert "the recordings do not tell share1, mass, load, friction" in said
+    assert "give each by --set, such as --set share1=..." in said
+    assert not (ring_downs / "axis.json").exists()
+    out = done(f"{GANTRY} --output fit.svg")
+    assert "default    share1 1, mass 8 kg, load 2 kg, friction 5 N s/m" in out
+    weighed = "--set mass=82.7kg --set load=15kg --set friction=50"
+    done(f"{GANTRY} {weighed} --assume share1 --output axis.json")
+    plant = Identified.load("axis.json").plant
+    assert (plant.mass, plant.load, plant.friction, plant.share1) == (82.7, 15, 50, 1)
+    assert plant.omega1 == pytest.approx(2 * math.pi * 4.5, rel=1e-3)
+    assert plant.zeta1 == pytest.approx(0.007, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("plant", "given", "lacks"),
+    [
+        ("single-link", "", "alpha1, alpha2, c, beta1, beta2, phi"),
+        ("flexible-beam", "", "hub_inertia, friction, length, mass_per_length, tip_mass, hub_r"),
+        ("flexible-beam", "--set length=1 --set hub_radius=0", "hub_inertia, friction, mass_"),
+        ("arm-on-flexible-link", "", "alpha1, alpha2, alpha3, alpha4, beta1, beta2, beta3, c, phi"),
+        ("linear-axis", "--assume mass,load,friction", "share1,"),
+        ("linear-axis", "--free omega1 --set zeta1=0.01", "share1, mass, load, friction"),
+        ("linear-axis", "--free omega1", "zeta1, share1, mass, load, friction"),
+    ],
+)  # fmt: skip
+def test_each_parameter_that_is_not_told_is_named(ring_downs, refused, plant, given, lacks):
+    line = GANTRY.replace("linear-axis", plant)
+    said = refused(f"{line} {given} --output axis.json")
+    assert f"the recordings do not tell {lacks}" in said
+
+
+def test_a_frequency_or_damping_cannot_be_assumed(ring_downs, refused, call):
+    said = refused(f"{GANTRY} --assume zeta1 --output axis.json")
+    assert "--assume zeta1: a ring-down tells it" in said
+    said = refused(f"{GANTRY} --free omega1 --assume all --output axis.json")
+    assert "do not tell zeta1, and" in said
+    assert "give each by --set, such as --set zeta1=..." in said
+    out = call(f"{GANTRY} --set omega1=12Hz --assume all --output axis.json")[1]
+    assert "--set omega1 is not used, because the recordings tell its value" in out
+
+
+def test_plants_of_ones_own_have_values_of_ones_own(ring_downs, done):
+    (ring_downs / "mine.py").write_text(
+        "from dataclasses import dataclass\nfrom quietarm.models import LinearAxis\n"
+        "@dataclass(frozen=True)\nclass Mine(LinearAxis):\n    name = 'mine'\n"
+        "    mass: float = 90.0\n"
+    )
+    line = GANTRY.replace("linear-axis", "mine --plant-file mine.py")
+    done(f"{line} --output axis.json")
+    assert (ring_downs / "axis.json").exists()
+
+
+# Units by the kind of joint, and columns
+
+
+def test_the_position_of_a_linear_axis_is_a_length_and_its_drive_a_force(ring_downs, done, refused):
+    out = done(f"{GANTRY} --angle axis_mm --assume all")
+    assert "ring0.csv, ring1.csv: not used: column force_N" in out
+    assert "omega1" in out
+    assert "mm' of column axis_mm is a unit of length, and not of angle" in refused(
+        f"{GANTRY} --angle axis_mm".replace("linear-axis", "flexible-beam")
+    )
+    assert "'N' of column force_N is a unit of force, and not of torque" in refused(
+        f"{GANTRY} --torque force_N".replace("linear-axis", "flexible-beam")
+    )
+    assert "'deg' of column axis_mm is a unit of angle, and not of length" in refused(
+        f"{GANTRY} --angle axis_mm --units angle:deg"
+    )
+    done(f"{GANTRY} --angle axis_mm --units angle:um")
+    done(f"{GANTRY} --angle axis_mm --scale angle=1e-3")
+    said = refused(f"{GANTRY} --angle tip_mm --tip axis_mm --units angle:m")
+    assert "is it in millimetres?" not in said
+    (ring_downs / "far.csv").write_text(
+        "time_s,tip_mm,axis\n" + rows("%.4g,%.4f,%.3f\n", TIME, TIP, 800 + 0 * TIME)
+    )
+    said = refused("identify far.csv linear-axis --tip tip_mm --angle axis")
+    assert "a position of 800 m; is it in millimetres? say so by --units angle:mm" in said
+
+
+def test_what_is_given_twice_or_for_nothing_is_refused(ring_downs, refused):
+    assert "--angle is given 2 times" in refused(f"{GANTRY} --angle axis_mm --angle force_N")
+    assert "--units has torque, and no column of it" in refused(f"{GANTRY} --units torque:N")
+    assert "--scale has angle, and no column of it" in refused(f"{GANTRY} --scale angle=2")
+    twice = (ring_downs / "ring0.csv").read_text().replace("axis_mm", "tip_mm")
+    (ring_downs / "ring0.csv").write_text(twice)
+    assert "2 columns are called 'tip_mm'; give one's number, 1 or 2" in refused(GANTRY)
+
+
+def test_an_unknown_unit_and_columns_of_no_use_are_named(push, done):
+    (push / "odd.csv").write_text(
+        "time_cs,tip_mm,load,note\n" + rows("%.3f,%.3f,%.1f,ok\n", TIME, TIP, TIP)
+    )
+    out = done("identify odd.csv flexible-beam --tip tip_mm")
+    assert "odd.csv: not used: columns load, note" in out
+    assert "'cs' in column time_cs is not a known unit, so its values are read in s" in out
+
+
+@pytest.mark.parametrize("heading", ["micros", "time_us", "micros()", "Time (us)"])
+def test_a_counter_of_a_small_board_that_wraps_is_unwrapped(push, done, heading):
+    ticks = (np.round(1e6 * TIME) + 2**32 - 3_000_000) % 2**32
+    (push / "board.csv").write_text(f"{heading},tip_mm\n" + rows("%.0f,%.3f\n", ticks, TIP))
+    same(done, "identify board.csv flexible-beam --tip tip_mm")
+    out = done("identify board.csv flexible-beam --tip tip_mm")
+    assert "board.csv: its clock, a counter of 32 bits, wraps after row 600" in " ".join(
+        out.split()
+    )
+
+
+def test_milliseconds_of_a_counter_of_microseconds_wrap_with_it(push, done):
+    ticks = (np.round(1e6 * TIME) + 2**32 - 3_000_000) % 2**32 // 1000
+    (push / "board.csv").write_text("millis,tip_mm\n" + rows("%.0f,%.3f\n", ticks, TIP))
+    same(done, "identify board.csv flexible-beam --tip tip_mm")
+
+
+def test_a_file_of_two_recordings_is_named(push, refused):
+    rest = (push / "again0.csv").read_text().partition("\n")[2]
+    (push / "push.csv").write_text((push / "push.csv").read_text() + rest)
+    said = refused(PUSH)
+    assert "push.csv: two recordings, the second from row 1201: give them as two files" in said
+
+
+# A machine that predicts nothing
+
+
+@pytest.mark.parametrize(
+    ("hertz", "zeta", "why"),
+    [(3.6, ZETA, "swings at 3.6 Hz, and the machine at 3.2"), (3.2, 0.4, "its damping is 0.")],
+)
+def test_a_check_that_predicts_nothing_is_an_error_with_its_cause(push, call, hertz, zeta, why):
+    call(f"{PUSH} --output arm.json")
+    omega = 2 * math.pi * hertz
+    since = np.maximum(TIME - 0.5, 0)
+    tip = 20 * np.exp(-zeta * omega * since) * np.cos(omega * math.sqrt(1 - zeta**2) * since)
+    write(push / "other.csv", tip + np.random.default_rng(5).normal(0, 0.02, len(TIME)))
+    code, out, err = call("identify --check arm.json other.csv --tip tip_mm --quiet")
+    assert code == 2
+    assert "of the swing predicted" in out
+    assert "predicts nothing of other.csv" in err
+    assert why in err
