@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from quietarm.models.joint_motion import JointMotion
-from quietarm.models.robot.urdf import FIXED, Urdf
+from quietarm.models.robot.urdf import Urdf
 
 
 @dataclass(frozen=True)
@@ -43,12 +43,16 @@ class Following:
 def led_by(urdf: Urdf, joint: str, held: Collection[str] = ()) -> Following:
     """Which joint leads one in the end, through others that follow; itself where it follows none.
 
-    One that is `held` follows none.
+    One that is `held` follows none. Where the last in a chain mimics a joint that the URDF does not
+    have, the leader is that one.
     """
     leader = joint
     multiplier = 1.0
     offset = 0.0
-    while leader not in held and (mimic := urdf.joints[leader].mimics) is not None:
+    while leader in urdf.joints and leader not in held:
+        mimic = urdf.joints[leader].mimics
+        if mimic is None:
+            break
         offset += multiplier * mimic.offset
         multiplier *= mimic.multiplier
         leader = mimic.joint
@@ -63,7 +67,7 @@ def followers_of(urdf: Urdf, held: Collection[str] = ()) -> dict[str, Following]
         for name, entry in following.items()
         if entry.leader != name
         and entry.leader not in held
-        and urdf.joints[entry.leader].kind != FIXED
+        and entry.leader in urdf.moving
     }
 
 

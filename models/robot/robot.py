@@ -54,6 +54,8 @@ from quietarm.models.robot.urdf_text import as_read_before, dynamics_of
 
 STANDARD_GRAVITY = 9.80665
 """[m/s^2], of the SI."""
+_MOST_MOVING = 100
+"""Joints, whose equations are written in two seconds."""
 USUAL_MODES = 2
 """That are followed where the file does not say how many."""
 _OVER = 1e-9
@@ -402,6 +404,11 @@ class Robot:
                 )
         if not names:
             raise ValueError("no joint of the robot is driven; name those that are, as joints")
+        if len(names) + len(self.springs) > _MOST_MOVING:
+            raise ValueError(
+                f"the robot has {len(names) + len(self.springs)} joints that move; give at most "
+                f"{_MOST_MOVING}, others as fixed ones or in held"
+            )
         return names
 
     def _check_names(self) -> None:

@@ -28,6 +28,8 @@ def notes_of(robot: Robot) -> tuple[Note, ...]:
         *_own_friction(robot),
         *_damping_of_passive_joints(robot),
         *_held_followers(robot),
+        *_without_leader(robot.description),
+        *_without_ranges(robot),
         *_decelerations(robot),
     )
 
@@ -131,6 +133,26 @@ def _held_followers(robot: Robot) -> Iterator[Note]:
                 f"{name} is held at {position:.4g}, where the URDF has it mimic {mimic.joint}; "
                 "leave it out of held and it follows"
             )
+
+
+def _without_leader(urdf: Urdf) -> Iterator[Note]:
+    """Joints that mimic what the URDF does not have."""
+    missing = {
+        name: joint.mimics.joint
+        for name, joint in urdf.joints.items()
+        if joint.mimics is not None and joint.mimics.joint not in urdf.joints
+    }
+    if missing:
+        names = listed([f"{name} mimics {leader}" for name, leader in missing.items()])
+        yield Note(f"joints of the URDF are held, as it does not have what they mimic: {names}")
+
+
+def _without_ranges(robot: Robot) -> Iterator[Note]:
+    """Driven joints that end nowhere, although the URDF does not call them continuous."""
+    joints = robot.description.joints
+    names = [name for name in robot.joints if not joints[name].continuous and joints[name].endless]
+    if names:
+        yield Note(f"no range of {listed(names)}: their <limit> has neither lower nor upper")
 
 
 def _decelerations(robot: Robot) -> Iterator[Note]:

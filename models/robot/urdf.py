@@ -14,7 +14,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from quietarm.models.checks import has_no
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.frames import Frame, rotation_of, rotation_of_quaternion
 from quietarm.models.robot.urdf_text import parse
@@ -27,14 +26,14 @@ _KINDS = {
 }  # fmt: skip
 _MOST_LINKS = 1000
 """Humanoids with their hands have some two hundred."""
-_MOST_MOVING = 100
-"""Joints, whose equations are written in two seconds."""
 _LARGEST = 1e9
 """Of a mass, a moment or a place, in SI units: squares and products stay numbers."""
 _LONG = 20.0
 """From one joint to the next [m]: longer links are those of a URDF in millimetres."""
 _ROUNDED = 1e-9
 """Share by which a moment of inertia may be below 0 for rounding."""
+_NO_MOMENT = 1e-12
+"""Moment of inertia [kg m^2] that rounding may leave or take."""
 _UNEVEN = 0.01
 """Share by which a moment of inertia may be above the sum of the two others: URDFs have few digits
 of a plate's."""
@@ -75,18 +74,19 @@ class Inertia:
     def turns_backwards(self) -> bool:
         """Whether a moment is below 0 by more than rounding: a torque would turn it backwards."""
         least, _, most = self.principal
-        return least < -_ROUNDED * max(1.0, abs(most), abs(least))
+        return least < -_ROUNDED * max(1.0, most)
 
     @property
     def fault(self) -> str:
         """Why no body has such an inertia; an empty text where one may."""
         least, middle, most = self.principal
-        if least < -_ROUNDED * max(self.mass, abs(most), abs(least)):
+        if least < -max(_ROUNDED * most, _NO_MOMENT):
             return f"a moment of inertia of {least:.3g} kg m^2, below 0"
-        if most > (1 + _UNEVEN) * (least + middle):
+        others = max(least + middle, 0.0)
+        if most > (1 + _UNEVEN) * others + _NO_MOMENT:
             return (
                 f"a moment of inertia of {most:.3g} kg m^2, above the sum of the two others, "
-                f"{least + middle:.3g}"
+                f"{round(others, 15):.3g}"
             )
         return ""
 
@@ -125,6 +125,12 @@ class UrdfJoint:
     damping: float = 0.0
     friction: float = 0.0
     mimics: Mimic | None = None
+    continuous: bool = False
+
+    @property
+    def endless(self) -> bool:
+        """Whether no range binds it."""
+        return self.lower == -math.inf and self.upper == math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,22 +204,15 @@ def read_urdf(text: str) -> Urdf:
     urdf = Urdf(root.get("name") or "robot", links, joints, roots[0])
     if len(list(urdf.outwards())) != len(joints):
         raise ValueError("the URDF has a closed loop beside its tree; give a tree alone")
-    if len(urdf.moving) > _MOST_MOVING:
-        raise ValueError(
-            f"the URDF has {len(urdf.moving)} joints that move; give at most {_MOST_MOVING}, "
-            "others as fixed ones"
-        )
     return urdf
 
 
 def _check_mimic(joint: UrdfJoint, joints: Mapping[str, UrdfJoint]) -> None:
-    """Refuse a joint that follows none, or itself in the end."""
+    """Refuse a joint that follows itself in the end."""
     chain = [joint.name]
     while (mimic := joints[chain[-1]].mimics) is not None:
         if mimic.joint not in joints:
-            raise ValueError(
-                has_no("the URDF", f"joint, for {chain[-1]!r} to mimic,", mimic.joint, joints)
-            )
+            return  # which is held, with a note
         chain.append(mimic.joint)
         if mimic.joint in chain[:-1]:
             raise ValueError(
@@ -284,6 +283,7 @@ def _joint(element: ElementTree.Element) -> UrdfJoint:
         ),
         **_sizes(element, "dynamics", ("damping", "friction"), what),
         mimics=None if mimic is None else _mimic(mimic, what),
+        continuous=kind == "continuous",
     )
 
 

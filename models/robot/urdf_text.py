@@ -100,7 +100,9 @@ def passed_over(text: str) -> list[str]:
             names += [f"{name} of <{element.tag}>" for name in element.keys() if name not in known]
         if element.tag in CHILDREN and element.tag != "robot":
             known = (*CHILDREN[element.tag], *_WITHOUT_EFFECT.get(element.tag, ()))
-            names += [f"<{child.tag}>" for child in element if child.tag not in known]
+            names += [
+                f"<{child.tag}> of <{element.tag}>" for child in element if child.tag not in known
+            ]
     return list(dict.fromkeys(names))
 
 

@@ -158,7 +158,7 @@ def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
 def ros_text(plan: Plan, rate: float, joint: str) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, of all joints.
 
-    A single joint has the name that is given, several those of the plant. ValueError where a name
+    The joint of a plant of one has the name that is given, others those of the plant. ValueError where a name
     has letters that YAML cannot hold, as those of control.
     """
     motion = plan.sampled(times_of(plan, rate))
@@ -171,7 +171,7 @@ def ros_text(plan: Plan, rate: float, joint: str) -> str:
         for time, *moving in zip(motion.time, *orders)
     ]
     joint_names = plan.task.plant.joint_names
-    names = (joint,) if len(joint_names) == 1 else joint_names
+    names = joint_names if plan.task.plant.has_path else (joint,)
     for name in names:
         if not name.isprintable():
             raise ValueError(f"joint is {name!r}; give a name of letters, as shoulder_pan_joint")
