@@ -65,9 +65,7 @@ def followers_of(urdf: Urdf, held: Collection[str] = ()) -> dict[str, Following]
     return {
         name: entry
         for name, entry in following.items()
-        if entry.leader != name
-        and entry.leader not in held
-        and entry.leader in urdf.moving
+        if entry.leader != name and entry.leader not in held and entry.leader in urdf.moving
     }
 
 

@@ -152,7 +152,7 @@ def _without_ranges(robot: Robot) -> Iterator[Note]:
     joints = robot.description.joints
     names = [name for name in robot.joints if not joints[name].continuous and joints[name].endless]
     if names:
-        yield Note(f"no range of {listed(names)}: their <limit> has neither lower nor upper")
+        yield Note(f"the URDF has neither lower nor upper of {listed(names)}: taken as endless")
 
 
 def _decelerations(robot: Robot) -> Iterator[Note]:

@@ -45,6 +45,8 @@ _NUMBERS = ("origin", "mass", "inertia", "axis", "limit", "mimic", "dynamics", "
 READING = "reading"
 """The attribute of <robot> that says in which way the text of a saved robot was filtered."""
 _THIS_READING = "2"
+_MOST_LINKS = 1000
+"""Humanoids with their hands have some two hundred."""
 _NEAR = 0.8
 """Share of letters in common from which on a name is another one that was mistyped; real URDFs
 have `command_effort` and `gear_velocity`, which are none."""
@@ -66,6 +68,9 @@ def parse(text: str) -> ElementTree.Element:
         raise ValueError(f"the URDF begins with <{root.tag}>; give one of <robot>")
     if root.find("robot") is not None:
         raise ValueError("the URDF holds several robots; give a file for each, or one tree of all")
+    links = len(root.findall("link"))
+    if links > _MOST_LINKS:
+        raise ValueError(f"the URDF has {links} links; give at most {_MOST_LINKS}")
     if _XACRO.search(_COMMENT.sub("", text)):
         raise ValueError("the URDF has xacro's macros; run xacro on it first, and give its output")
     for element, owner in _read(root):
@@ -97,7 +102,8 @@ def passed_over(text: str) -> list[str]:
     for element, _ in _read(root):
         if element.tag in _NUMBERS:
             known = ATTRIBUTES.get(element.tag, ())
-            names += [f"{name} of <{element.tag}>" for name in element.keys() if name not in known]
+            unread = [name for name in element.attrib if name not in known]
+            names += [f"{name} of <{element.tag}>" for name in unread]
         if element.tag in CHILDREN and element.tag != "robot":
             known = (*CHILDREN[element.tag], *_WITHOUT_EFFECT.get(element.tag, ()))
             names += [
@@ -178,7 +184,7 @@ def _filtered(root: ElementTree.Element) -> str:
         for child in list(element):
             if child.tag not in CHILDREN.get(element.tag, ()):
                 element.remove(child)
-        for name in list(element.keys()):
+        for name in list(element.attrib):
             if name not in ATTRIBUTES.get(element.tag, ()):
                 del element.attrib[name]
         element.text = None
@@ -204,10 +210,8 @@ def _refuse_mistyped(element: ElementTree.Element, owner: ElementTree.Element) -
     for child in element:
         near = _mistyped(str(child.tag), known, others)
         if near:
-            raise ValueError(
-                f"{_words(owner)} has no entry <{child.tag}>; did you mean <{near}>?"
-            )
-    for name in element.keys():
+            raise ValueError(f"{_words(owner)} has no entry <{child.tag}>; did you mean <{near}>?")
+    for name in element.attrib:
         near = _mistyped(name, ATTRIBUTES.get(element.tag, ()), others)
         if near:
             raise ValueError(

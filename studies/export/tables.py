@@ -71,8 +71,9 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     """Columns, as `columns_of` reads them, by their headings, as `angle_deg`, at a rate [Hz].
 
     The last row is the first tick at or after arrival. Each of several joints has columns of its
-    own, `elbow_angle_deg`, and so has each joint that follows one. Each tip has one, or of a robot each axis of its tip's frame along which
-    that moves, `tip_x_mm`; of a robust plan in each scenario, which its heading names.
+    own, `elbow_angle_deg`, and so has each joint that follows one. Each tip has a column, or of a
+    robot each axis of its tip's frame along which that moves, `tip_x_mm`; of a robust plan in each
+    scenario, which its heading names.
     """
     linear_names = {"angle": "position", "torque": "force"}
     times = times_of(plan, rate)
@@ -158,8 +159,8 @@ def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
 def ros_text(plan: Plan, rate: float, joint: str) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, of all joints.
 
-    The joint of a plant of one has the name that is given, others those of the plant. ValueError where a name
-    has letters that YAML cannot hold, as those of control.
+    A single joint has the name that is given, those of a robot and of several have the plant's.
+    ValueError where a name has letters that YAML cannot hold, as those of control.
     """
     motion = plan.sampled(times_of(plan, rate))
     orders = [

@@ -249,8 +249,7 @@ def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]
     return [
         (
             "energy (F2)",
-            f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"
-            f"{_warnings(task, 'energy')}",
+            f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J){_warnings(task, 'energy')}",
         ),
         (
             "residual (F1)",

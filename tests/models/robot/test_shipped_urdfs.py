@@ -17,7 +17,7 @@ STIFF = Base(stiffness=(1e9, 1e9))  # something has to bend; it adds nothing wit
 EMPTY = {"ur3.urdf": "has no links"}
 """Files of the package that no reader makes a robot of."""
 SAMPLE = ("panda.urdf", "ur5_robot.urdf", "tiago_no_hand.urdf", "so101.urdf", "iris_simple.urdf")
-"""A gripper whose finger mimics, an arm, inertias that no body has, an axis of 0, nothing moving."""
+"""A finger that mimics, an arm, inertias that no body has, an axis of 0, nothing that moves."""
 NEGATIVE = {"romeo_laas_small.urdf": r"has a moment of inertia of -0\.0213 kg m\^2, below 0"}
 """Of a link that moves: Pinocchio takes it, and so does no equation that is to be solved."""
 WITHOUT_MASS = {"romeo.urdf": "joint 'LHand' moves no mass"}
