@@ -61,13 +61,13 @@ def _without_masses(robot: Robot) -> Iterator[Note]:
     if robot.base is None and not robot.elastic_joints and not robot.springs:
         yield Note(
             "the URDF has no masses of moving links: energy and torque are of the beam alone, and "
-            "only the residual holds; give links their <inertial>",
+            "only the residual holds; give links their inertial elements",
             ("energy", "torque"),
         )
         return
     yield Note(
         "the URDF has no masses of moving links: energy, torque and residual leave them out; give "
-        "links their <inertial>",
+        "links their inertial elements",
         ("energy", "torque", "residual"),
     )
 
@@ -101,9 +101,7 @@ def _own_friction(robot: Robot) -> Iterator[Note]:
             if 0 != getattr(joints[name], of_urdf) != value
         ]
         if differing:
-            yield Note(
-                f"{entry} as given in place of the URDF's <dynamics {of_urdf}>: {listed(differing)}"
-            )
+            yield Note(f"{entry} as given in place of the URDF's {of_urdf}: {listed(differing)}")
 
 
 def _damping_of_passive_joints(robot: Robot) -> Iterator[Note]:
@@ -115,7 +113,7 @@ def _damping_of_passive_joints(robot: Robot) -> Iterator[Note]:
     ]
     if left_out:
         yield Note(
-            f"<dynamics> of {listed(left_out)} in the URDF is not used: joints with springs have "
+            f"dynamics of {listed(left_out)} in the URDF are not used: joints with springs have "
             "the damping that springs gives"
         )
 

@@ -103,11 +103,11 @@ def passed_over(text: str) -> list[str]:
         if element.tag in _NUMBERS:
             known = ATTRIBUTES.get(element.tag, ())
             unread = [name for name in element.attrib if name not in known]
-            names += [f"{name} of <{element.tag}>" for name in unread]
+            names += [f"{name} of {element.tag}" for name in unread]
         if element.tag in CHILDREN and element.tag != "robot":
             known = (*CHILDREN[element.tag], *_WITHOUT_EFFECT.get(element.tag, ()))
             names += [
-                f"<{child.tag}> of <{element.tag}>" for child in element if child.tag not in known
+                f"{child.tag} of {element.tag}" for child in element if child.tag not in known
             ]
     return list(dict.fromkeys(names))
 

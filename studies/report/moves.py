@@ -265,11 +265,6 @@ def note_rows(plant: Plant) -> list[Row]:
     return [("warning", note.words) for note in plant.notes if not note.about]
 
 
-def note_lines(plant: Plant) -> list[str]:
-    """All notes on a plant, where there are no rows of figures for them to stand beside."""
-    return [f"warning: {note.words}" for note in plant.notes]
-
-
 def _warnings(task: PointToPoint, figure: str) -> str:
     """The notes on the plant that touch a figure, to stand beside it."""
     return "".join(f"  (warning: {words})" for words in about(task.plant.notes, figure))

@@ -99,7 +99,7 @@ def _by_joint(robot: Robot, entry: str, unit: str, of_urdf: str) -> str:
     listed = ", ".join(f"{name} {value:.4g}" for name, value in values.items())
     joints = robot.description.joints
     taken = [bool(of_urdf) and getattr(joints[name], of_urdf) == values[name] for name in values]
-    origin = f" (<dynamics {of_urdf}> of the URDF)" if all(taken) else ""
+    origin = f" (the URDF's {of_urdf})" if all(taken) else ""
     return f"{listed} {unit}{origin}"
 
 

@@ -106,6 +106,11 @@ def unit_of_way(plant: Plant) -> str:
     return "of the path" if plant.has_path else joint_unit("rad", plant.joint)
 
 
+def note_lines(plant: Plant) -> list[str]:
+    """All notes on a plant, where no rows of figures are for them to stand beside."""
+    return [f"warning: {note.words}" for note in plant.notes]
+
+
 def state_words(state: ModalState, tip_unit: str) -> str:
     """What rings, in millimetres, "W 5 mm, W' -300 mm/s", or in rad where the tip has that."""
     shown, factor = tip_scale(tip_unit)

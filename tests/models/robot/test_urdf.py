@@ -86,7 +86,7 @@ def test_a_circle_of_mimics_is_refused():
 def test_what_others_add_is_not_taken_for_a_mistake(name):
     """As in URDFs of ANYmal: it is named, and nothing is refused."""
     robot = robot_of(URDF.replace('effort="50"', f'effort="50" {name}="1"'))
-    assert words_of(robot) == f"not read of the URDF: {name} of <limit>"
+    assert words_of(robot) == f"not read of the URDF: {name} of limit"
 
 
 def test_what_does_not_bear_on_the_motion_is_not_named():
@@ -100,7 +100,7 @@ def test_what_does_not_bear_on_the_motion_is_not_named():
 
 def test_what_is_not_read_stays_named_when_the_robot_is_made_again():
     robot = robot_of(with_elbow('<safety_controller soft_upper_limit="1"/><dynamics D="3"/>'))
-    words = "not read of the URDF: <safety_controller> of <joint>, D of <dynamics>"
+    words = "not read of the URDF: safety_controller of joint, D of dynamics"
     assert words_of(robot) == words
     assert words_of(qa.Robot(**{entry: getattr(robot, entry) for entry in asdict(robot)})) == words
 
@@ -181,10 +181,8 @@ def test_damping_and_friction_of_the_urdf_are_used():
     own = robot_of(text, friction={"elbow": 2.0, "shoulder": 1.0}, coulomb={"elbow": 0.0})
     assert own.friction == {"elbow": 2.0, "shoulder": 1.0}
     assert own.coulomb == {"elbow": 0.0}
-    assert "friction as given in place of the URDF's <dynamics damping>: elbow 2 (URDF 5)" in (
-        words_of(own)
-    )
-    assert "<dynamics friction>: elbow 0 (URDF 3) N m" in words_of(own)
+    assert "friction as given in place of the URDF's damping: elbow 2 (URDF 5)" in (words_of(own))
+    assert "in place of the URDF's friction: elbow 0 (URDF 3) N m" in words_of(own)
     assert robot_of(with_elbow('<dynamics damping="0" friction="0"/>')).friction == {}
     held = robot_of(text, held={"elbow": 0.1})
     assert held.friction == {}
@@ -192,7 +190,7 @@ def test_damping_and_friction_of_the_urdf_are_used():
 
 def test_damping_of_a_passive_joint_is_named_where_springs_has_another():
     text = with_elbow('<dynamics damping="5"/>')
-    assert "<dynamics> of elbow in the URDF is not used" in (
+    assert "dynamics of elbow in the URDF are not used" in (
         words_of(robot_of(text, springs={"elbow": (100.0, 1.0)}))
     )
     assert words_of(robot_of(text, springs={"elbow": (100.0, 5.0)})) == ""
