@@ -11,6 +11,8 @@ from typing import Any
 
 _ALIKE = 0.55
 """Share of letters in common from which on a name is asked for."""
+_MOST_LISTED = 30
+"""Names in a message; humanoids have a hundred joints."""
 _PART = 3
 """So many letters of a longer name are enough."""
 
@@ -79,7 +81,9 @@ def unknown(what: str, name: str, known: Collection[str], also: str = "") -> str
 
 def has_no(owner: str, what: str, name: str, known: Collection[str]) -> str:
     """The message about a name that something does not have."""
-    listed = ", ".join(known) or "none"
+    names = list(known)
+    more = f" and {len(names) - _MOST_LISTED} more" if len(names) > _MOST_LISTED else ""
+    listed = (", ".join(names[:_MOST_LISTED]) or "none") + more
     return f"{owner} has no {what} {name!r}{nearest(name, known)} (it has: {listed})"
 
 

@@ -181,11 +181,17 @@ def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
     entries = [entry for entry in dataclasses.fields(kind) if "content" in entry.metadata]
     classes = get_type_hints(kind) if entries else {}
     content = {
-        entry.name: typed(table[entry.name], classes[entry.name])
+        entry.name: typed(_as_meant(table[entry.name], classes[entry.name]), classes[entry.name])
         for entry in entries
         if entry.name in table
     }
     return {**table, **content}
+
+
+def _as_meant(document: Any, kind: type[Any]) -> Any:
+    """What a file has of a part of a plant, by the part's `of_saved` where it has changed since."""
+    of_saved = getattr(kind, "of_saved", None)
+    return document if of_saved is None else of_saved(document)
 
 
 def _check_file(name: str, path: str, sha256: str) -> None:

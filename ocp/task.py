@@ -218,8 +218,8 @@ class PointToPoint:
 
     @property
     def ends(self) -> str:
-        """From where to where in words: "0 to 30 deg", of several joints places on their path."""
-        if len(self.plant.joint_names) > 1:
+        """From where to where in words: "0 to 30 deg", of joints on a path places on it."""
+        if self.plant.has_path:
             whole = (self.start, self.target) == (0.0, 1.0)
             return (
                 "along its path" if whole else f"{self.start:.6g} to {self.target:.6g} of the path"

@@ -79,6 +79,13 @@ class Beam:
                 words = f"{name.replace('_', ' ')} of the beam"
                 object.__setattr__(self, name, _size(words, value, unit))
         section = (self.width, self.height)
+        for name in ("width", "height"):
+            size = getattr(self, name)
+            if size is not None and size > self.length:
+                raise ValueError(
+                    f"{name} of the beam is {size:g} m, and its length {self.length:g} m; is it in "
+                    f"mm, as {size:g}mm?"
+                )
         by_section = (*section, self.youngs_modulus)
         if self.bending_stiffness is None:
             if None in by_section:

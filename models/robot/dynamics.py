@@ -107,9 +107,10 @@ class Dynamics:
         self.mechanism = mechanism
         self.driven = len(mechanism.driven)
         self.sprung = len(mechanism.sprung)
-        order = [*mechanism.driven, *mechanism.sprung]
-        self._place = [order.index(number) for number in range(len(order))]
-        self._order = order
+        self._order = [*mechanism.driven, *mechanism.sprung]
+        following = mechanism.following
+        leaders = [following[n][0] if n in following else n for n in range(len(mechanism.bodies))]
+        self._place = [self._order.index(number) for number in leaders]
 
     def stiffened(self, factor: float) -> Dynamics:
         """The same with so many times the stiffness, whose functions are the same."""
@@ -127,8 +128,9 @@ class Dynamics:
 
         Positions x, speeds v and accelerations a are in the same order. Rotors turn and rub.
         """
-        by_body = inverse_dynamics(self.mechanism, *(entry[self._place] for entry in (x, v, a)))
-        torque = by_body[self._order]
+        motions = (self._by_body(x), self._by_body(v, rate=True), self._by_body(a, rate=True))
+        by_body = inverse_dynamics(self.mechanism, *motions)
+        torque = self._by_joint(by_body)
         rotors = ca.DM(self.mechanism.rotor_inertia)
         friction = ca.DM(self.mechanism.friction)
         of_motors = rotors * a[: self.driven] + friction * v[: self.driven]
@@ -136,7 +138,23 @@ class Dynamics:
 
     def place(self, link: tuple[int, Frame], x: ca.SX) -> tuple[ca.SX, ca.SX]:
         """Rotation and origin of a link, seen from the ground."""
-        return place_of(self.mechanism, link, x[self._place])
+        return place_of(self.mechanism, link, self._by_body(x))
+
+    def _by_body(self, x: ca.SX, rate: bool = False) -> ca.SX:
+        """Positions of the bodies' joints, or their rates, by those of the joints that lead."""
+        by_body = x[self._place]
+        for number, (_, follower) in self.mechanism.following.items():
+            by_body[number] = follower.multiplier * by_body[number]
+            if not rate:
+                by_body[number] += follower.offset
+        return by_body
+
+    def _by_joint(self, torques: ca.SX) -> ca.SX:
+        """Torques of the joints that lead, which by virtual work move those that follow."""
+        by_joint = torques[self._order]
+        for number, (leader, follower) in self.mechanism.following.items():
+            by_joint[self._order.index(leader)] += follower.multiplier * torques[number]
+        return by_joint
 
     @cached_property
     def at_rest(self) -> ca.Function:

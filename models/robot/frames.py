@@ -33,6 +33,13 @@ def rotation_of(roll: float, pitch: float, yaw: float) -> Array:
     return about_z @ about_y @ about_x
 
 
+def rotation_of_quaternion(quaternion: Array) -> Array:
+    """By x, y, z, w of a quaternion of any length but 0, as a URDF's quat_xyzw."""
+    x, y, z, w = quaternion / np.linalg.norm(quaternion)
+    skew = skew_of(np.array([x, y, z]))
+    return np.eye(3) + 2 * w * skew + 2 * skew @ skew
+
+
 def rotation_about(axis: Array, angle: float) -> Array:
     """By an angle [rad] about a unit vector: Rodrigues' formula."""
     skew = skew_of(axis)

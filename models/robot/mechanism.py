@@ -7,13 +7,14 @@ of the URDF, of a gear between motor and link, of a beam's hinges, of a base tha
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.beam import Beam
+from quietarm.models.robot.following import Following
 from quietarm.models.robot.frames import Frame, rotation_about
 from quietarm.models.robot.urdf import FIXED, PRISMATIC, Inertia, Urdf, UrdfJoint
 
@@ -64,6 +65,10 @@ class Mechanism:
         Where every link of the URDF is: on which body, and where in its frame.
     gravity : ndarray
         [m/s^2].
+    following : mapping of int to (int, Following)
+        By the number of a body whose joint follows another: the body of that one, and how.
+    hint : str
+        What an error about loads asks besides, as whether lengths are in millimetres.
     """
 
     bodies: Sequence[Body]
@@ -75,6 +80,8 @@ class Mechanism:
     friction: Array
     links: Mapping[str, tuple[int, Frame]]
     gravity: Array
+    following: Mapping[int, tuple[int, Following]] = field(default_factory=dict)
+    hint: str = ""
 
     @property
     def spring_names(self) -> list[str]:
@@ -105,7 +112,7 @@ class _Tree:
     def __init__(self) -> None:
         self.bodies = list[Body]()
         self.springs = dict[int, tuple[float, float]]()
-        self.driven = dict[str, int]()
+        self.joints = dict[str, int]()
         self.links = dict[str, tuple[int, Frame]]()
 
     def add(
@@ -147,15 +154,29 @@ def build_mechanism(robot: Robot) -> Mechanism:
     springs = [tree.springs[number] for number in sorted(tree.springs)]
     return Mechanism(
         bodies=tree.bodies,
-        driven=[tree.driven[name] for name in robot.joints],
+        driven=[tree.joints[name] for name in robot.joints],
         sprung=sorted(tree.springs),
         stiffness=np.array([stiffness for stiffness, _ in springs]),
         damping=np.array([damping for _, damping in springs]),
-        rotor_inertia=np.array([robot.rotor_inertia.get(name, 0.0) for name in robot.joints]),
-        friction=np.array([robot.friction.get(name, 0.0) for name in robot.joints]),
+        rotor_inertia=_at_the_motors(robot, robot.rotor_inertia),
+        friction=_at_the_motors(robot, robot.friction),
         links=tree.links,
         gravity=np.array(robot.gravity),
+        following={
+            tree.joints[name]: (tree.joints[entry.leader], entry)
+            for name, entry in robot.followers.items()
+        },
+        hint=urdf.hint_of_size,
     )
+
+
+def _at_the_motors(robot: Robot, values: Mapping[str, float]) -> Array:
+    """Rotors or viscous friction that each driven joint feels, those of its followers as well."""
+    felt = {name: values.get(name, 0.0) for name in robot.joints}
+    for name, entry in robot.followers.items():
+        if entry.leader in felt:
+            felt[entry.leader] += entry.multiplier**2 * values.get(name, 0.0)
+    return np.array(list(felt.values()))
 
 
 def _base(tree: _Tree, robot: Robot) -> tuple[int, Frame]:
@@ -191,12 +212,14 @@ def _joined(
     spring = robot.springs.get(joint.name)
     if spring is not None:
         pair = (spring.stiffness, spring.damping)
-        return tree.add(joint.name, place, joint.axis, slides=slides, spring=pair), Frame()
-    if joint.name not in robot.joints:
+        passive = tree.add(joint.name, place, joint.axis, slides=slides, spring=pair)
+        tree.joints[joint.name] = passive
+        return passive, Frame()
+    if joint.name not in robot.joints and joint.name not in robot.followers:
         number, frame = place
-        return number, frame @ _moved(joint, robot.held.get(joint.name, 0.0))
+        return number, frame @ _moved(joint, robot.held_position(joint.name))
     motor = tree.add(joint.name, place, joint.axis, slides=slides)
-    tree.driven[joint.name] = motor
+    tree.joints[joint.name] = motor
     gear = robot.elastic_joints.get(joint.name)
     if gear is None:
         return motor, Frame()

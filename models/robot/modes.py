@@ -48,10 +48,7 @@ def sag_at(dynamics: Dynamics, q: Array, begin: Array | None = None) -> Array:
     try:
         return dynamics.sag(q, begin)
     except SoftSpringError as error:
-        raise ValueError(
-            f"spring {error} is too soft to carry its load with the joints at "
-            f"{', '.join(f'{x:.4g}' for x in q)}; give a stiffer one, or less mass"
-        ) from None
+        raise _too_soft(dynamics, str(error), q) from None
 
 
 def modes_at(dynamics: Dynamics, q: Array, p: Array | None = None) -> tuple[Array, Array]:
@@ -62,11 +59,17 @@ def modes_at(dynamics: Dynamics, q: Array, p: Array | None = None) -> tuple[Arra
     squares, shapes = spectrum((stiffness + stiffness.T) / 2, masses)
     if squares[0] <= 0:
         weakest = dynamics.mechanism.spring_names[int(np.abs(shapes[:, 0]).argmax())]
-        raise ValueError(
-            f"spring {weakest} is too soft to carry its load with the joints at "
-            f"{', '.join(f'{x:.4g}' for x in q)}; give a stiffer one, or less mass"
-        )
+        raise _too_soft(dynamics, weakest, q)
     return np.sqrt(squares), shapes
+
+
+def _too_soft(dynamics: Dynamics, spring: str, q: Array) -> ValueError:
+    hint = dynamics.mechanism.hint
+    return ValueError(
+        f"spring {spring} is too soft to carry its load with the joints at "
+        f"{', '.join(f'{x:.4g}' for x in q)}; "
+        f"{hint or 'give a stiffer one, or less mass'}"
+    )
 
 
 def tip_offset(dynamics: Dynamics, tip: Any, q: Array, p: Array) -> Array:

@@ -20,17 +20,20 @@ import numpy as np
 from quietarm.models.checks import finite, has_no, not_negative, positive, whole
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
+from quietarm.models.notes import Note
 from quietarm.models.plant import Plant, content, parameter
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.dynamics import Dynamics
 from quietarm.models.robot.files import read_text
 from quietarm.models.robot.flexibility import Base, Measured, Spring
+from quietarm.models.robot.following import Following, followers_of, held_position
 from quietarm.models.robot.full import FullRobot
-from quietarm.models.robot.mechanism import BEAM_END, Mechanism, build_mechanism
+from quietarm.models.robot.mechanism import BEAM_END, GROUND, Mechanism, build_mechanism
 from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
 from quietarm.models.robot.path import GeometricPath
 from quietarm.models.robot.piecewise import Place
 from quietarm.models.robot.robot_file import read_robot
+from quietarm.models.robot.robot_notes import notes_of, notes_of_text
 from quietarm.models.robot.stick_figure import stick_figure_of
 from quietarm.models.robot.tables import (
     EXCITED,
@@ -46,10 +49,15 @@ from quietarm.models.robot.tables import (
     tables_of,
     variations_of,
 )
-from quietarm.models.robot.urdf import Urdf, dynamics_of, read_urdf
+from quietarm.models.robot.urdf import Urdf, read_urdf
+from quietarm.models.robot.urdf_text import as_read_before, dynamics_of
 
 STANDARD_GRAVITY = 9.80665
 """[m/s^2], of the SI."""
+_MOST_MOVING = 100
+"""Joints, whose equations are written in two seconds."""
+USUAL_MODES = 2
+"""That are followed where the file does not say how many."""
 _OVER = 1e-9
 """By which a path may pass the range of a joint [rad or m]."""
 
@@ -67,9 +75,11 @@ class Robot:
     urdf : str or Path
         A file, or its text.
     joints : sequence of str, optional
-        The driven joints, in the order of paths; by default all that move and have no spring.
+        The driven joints, in the order of paths; by default all that move, have no spring and
+        mimic none. Those that mimic one follow it, or the motor of it where its gear gives.
     held : mapping of str to float, optional
-        Positions [rad or m] of joints that are not driven; 0 of those that are not named.
+        Positions [rad or m] of joints that are not driven; 0 of those that are not named. One that
+        mimics another and is named follows no more.
     beam : Beam, optional
         A beam at a link.
     elastic_joints : mapping of str to Spring, optional
@@ -84,17 +94,21 @@ class Robot:
     gravity : sequence of float
         [m/s^2], as seen from the root link.
     rotor_inertia, friction : mapping of str to float, optional
-        Of driven joints [kg m^2, N m s/rad], at the joint's side of its gear.
+        Of driven joints and those that follow them [kg m^2, N m s/rad], at the joint's side of its
+        gear; friction by default the URDF's <dynamics damping>.
     coulomb : mapping of str to float
-        Coulomb friction of driven joints [N m], against the speed; below 0.01 rad/s it is less, so
-        that it is smooth.
-    modes : int or "excited"
-        How many modes are followed, the slowest; or those of the slowest twelve that leave a
-        thousandth at least of what the most excited one leaves on the path.
+        Coulomb friction of the same [N m], against the speed; below 0.01 rad/s it is less, so
+        that it is smooth. By default the URDF's <dynamics friction>.
+    modes : int or "excited", optional
+        How many modes are followed, the slowest; by default two, or one where one spring is all
+        there is. Or those of the slowest twelve that leave a thousandth at least of what the most
+        excited one leaves on the path.
     limits : mapping, optional
         Limits by quantity and joint, as {"speed": {"elbow_joint": 3.0}}.
     measured : Measured, optional
         A measured frequency, to which all springs are scaled.
+    remarks : sequence of Note
+        What was passed over when its files were read; `notes` has these and more.
 
     Raises
     ------
@@ -116,25 +130,27 @@ class Robot:
     rotor_inertia: Mapping[str, float] = field(default_factory=dict)
     friction: Mapping[str, float] = field(default_factory=dict)
     coulomb: Mapping[str, float] = field(default_factory=dict)
-    modes: int | Literal["excited"] = 2
+    modes: int | Literal["excited"] | None = None
     limits: Limits = field(default_factory=dict)
     measured: Measured | None = None
+    remarks: tuple[Note, ...] = field(default=(), metadata={"if_stated": True})
 
     def __post_init__(self) -> None:
         text = str(self.urdf)
         if not text.lstrip("\ufeff \n\t").startswith("<"):
             text = read_text(text, "URDF")
         self._set("urdf", dynamics_of(text))
+        self._set("remarks", (*notes_of_text(text), *self.remarks))
         self._set("springs", self._springs("springs", self.springs))
         self._set("elastic_joints", self._springs("elastic_joints", self.elastic_joints))
         self._set("held", self._numbers("held", self.held, finite))
         self._set("joints", self._driven())
         self._check_names()
         self._set("rotor_inertia", self._numbers("rotor_inertia", self.rotor_inertia, not_negative))
-        self._set("friction", self._numbers("friction", self.friction, not_negative))
-        self._set("coulomb", self._numbers("coulomb", self.coulomb, not_negative))
+        self._set("friction", self._rubbing("friction", "damping"))
+        self._set("coulomb", self._rubbing("coulomb", "friction"))
         self._set("gravity", _vector("gravity", self.gravity))
-        if self.modes != EXCITED:
+        if self.modes is not None and self.modes != EXCITED:
             if isinstance(self.modes, str):
                 raise ValueError(
                     f"modes is {self.modes!r}; give a whole number, or {EXCITED} for those that "
@@ -151,9 +167,11 @@ class Robot:
             raise ValueError(
                 "the robot has nothing that bends; give a beam, elastic_joints, springs or a base"
             )
-        if self.modes != EXCITED and self.modes > sprung:
+        if self.modes is None:
+            self._set("modes", min(USUAL_MODES, sprung))
+        elif self.modes != EXCITED and self.modes > sprung:
             raise ValueError(
-                f"modes is {self.modes}; the robot has {sprung} springs, give at most that"
+                f"modes is {self.modes}; the robot has {counted_springs(sprung)}, give at most that"
             )
 
     @classmethod
@@ -176,6 +194,29 @@ class Robot:
             When the path has other joints, leaves their ranges, or a spring cannot carry its load.
         """
         return RobotOnPath(robot=self, path=path)
+
+    @classmethod
+    def of_saved(cls, entries: Any) -> Any:
+        """The entries of a saved robot, such that they mean what they meant to who saved them."""
+        if isinstance(entries, dict) and isinstance(entries.get("urdf"), str):
+            return {**entries, "urdf": as_read_before(entries["urdf"])}
+        return entries
+
+    @cached_property
+    def notes(self) -> tuple[Note, ...]:
+        """What its files leave open, have wrong or have passed over, in one line each."""
+        return (*self.remarks, *notes_of(self))
+
+    @cached_property
+    def followers(self) -> dict[str, Following]:
+        """The joints that follow others which move, by name."""
+        moving = (*self.joints, *self.springs)
+        followers = followers_of(self.description, self.held)
+        return {name: entry for name, entry in followers.items() if entry.leader in moving}
+
+    def held_position(self, joint: str) -> float:
+        """Where a joint is that neither is driven nor follows one that moves [rad or m]."""
+        return held_position(self.description, joint, self.held)
 
     @cached_property
     def description(self) -> Urdf:
@@ -217,7 +258,9 @@ class Robot:
     @cached_property
     def digest(self) -> str:
         """SHA-256 of all that it is made of."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+        content = asdict(self)
+        del content["remarks"]
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     def __hash__(self) -> int:
         return hash(self.digest)
@@ -232,9 +275,15 @@ class Robot:
         return f"Robot({self.description.name!r}, {self.digest[:12]!r})"
 
     def ranges(self) -> list[tuple[float, float]]:
-        """Least and largest position of every driven joint [rad or m]."""
-        joints = [self.description.joints[name] for name in self.joints]
-        return [(joint.lower, joint.upper) for joint in joints]
+        """Least and largest position of every driven joint, and of what follows it [rad or m]."""
+        joints = self.description.joints
+        ranges = {name: (joints[name].lower, joints[name].upper) for name in self.joints}
+        for name, follower in self.followers.items():
+            if follower.leader in ranges:
+                lower, upper = ranges[follower.leader]
+                least, most = follower.range_of_leader(joints[name].lower, joints[name].upper)
+                ranges[follower.leader] = (max(lower, least), min(upper, most))
+        return list(ranges.values())
 
     def fitted(self, path: GeometricPath) -> GeometricPath:
         """A path with its positions in the order of the driven joints.
@@ -264,9 +313,15 @@ class Robot:
                 at = int(beyond.argmax())
                 raise ValueError(
                     f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path; "
-                    f"its range is {least:g} to {most:g}, give a path within it"
+                    f"its range is {least:g} to {most:g}{self._with_followers(name)}, give a path "
+                    "within it"
                 )
         return path
+
+    def _with_followers(self, joint: str) -> str:
+        """Words on the joints that follow one, whose ranges bind it as well."""
+        names = [name for name, entry in self.followers.items() if entry.leader == joint]
+        return f" (with {' and '.join(names)}, following it)" if names else ""
 
     def frequencies(self, q: Sequence[float] | Array) -> Array:
         """Of all modes with the driven joints held at q [rad/s], under gravity.
@@ -309,6 +364,20 @@ class Robot:
             self._check_joint(entry, name)
         return {name: check(f"{entry} of {name}", value) for name, value in values.items()}
 
+    def _rubbing(self, entry: str, of_urdf: str) -> dict[str, float]:
+        """Friction as given, and the URDF's of all other joints that motors move."""
+        given = self._numbers(entry, getattr(self, entry), not_negative)
+        sizes = {
+            name: getattr(self.description.joints[name], of_urdf)
+            for name in self._moved_by_motors()
+        }
+        return {name: size for name, size in sizes.items() if size > 0} | given
+
+    def _moved_by_motors(self) -> list[str]:
+        """The driven joints, and those that follow them."""
+        followers = [name for name, led in self.followers.items() if led.leader in self.joints]
+        return [*self.joints, *followers]
+
     def _check_joint(self, entry: str, name: str) -> None:
         if name not in self.description.moving:
             raise ValueError(
@@ -316,20 +385,30 @@ class Robot:
             )
 
     def _driven(self) -> tuple[str, ...]:
-        """The driven joints; those that mimic others are held by name alone."""
-        moving = self.description.moving
+        """The driven joints; those that mimic others follow them."""
+        joints = self.description.joints
         passive = {*self.springs, *self.held}
-        names = tuple(self.joints) or tuple(name for name in moving if name not in passive)
-        for name in names:
+        names = tuple(self.joints) or tuple(
+            name
+            for name in self.description.moving
+            if name not in passive and joints[name].mimics is None
+        )
+        for name in (*names, *self.springs):
             self._check_joint("joints", name)
-            joint = self.description.joints[name]
-            if joint.mimics is not None:
+            mimic = joints[name].mimics
+            if mimic is not None:
+                entry = "joints" if name in names else "springs"
                 raise ValueError(
-                    f"joint {name!r} of the URDF mimics {joint.mimics!r}; hold both, as "
-                    f"held: {{{name}: 0}}, or leave them out of joints"
+                    f"joint {name!r} of the URDF mimics {mimic.joint!r} and follows it; leave it "
+                    f"out of {entry}, or <mimic> out of the URDF"
                 )
         if not names:
             raise ValueError("no joint of the robot is driven; name those that are, as joints")
+        if len(names) + len(self.springs) > _MOST_MOVING:
+            raise ValueError(
+                f"the robot has {len(names) + len(self.springs)} joints that move; give at most "
+                f"{_MOST_MOVING}, others as fixed ones or in held"
+            )
         return names
 
     def _check_names(self) -> None:
@@ -347,7 +426,7 @@ class Robot:
                 raise ValueError(f"joint {name!r} is held and in springs; leave one of them out")
         for entry in ("elastic_joints", "rotor_inertia", "friction", "coulomb"):
             for name in getattr(self, entry):
-                if name not in driven:
+                if name not in self._moved_by_motors():
                     raise ValueError(
                         has_no("the robot", f"driven joint, for {entry},", name, driven)
                     )
@@ -395,6 +474,13 @@ class Robot:
     def _check_inertias(self) -> None:
         """Every driven joint and every spring moves a mass."""
         mechanism = self.unscaled
+        links = self.description.links
+        for name, (number, _) in mechanism.links.items():
+            faulty = name in links and links[name].turns_backwards
+            if faulty and number != GROUND and mechanism.bodies[number].inertia.turns_backwards:
+                raise ValueError(
+                    f"link {name!r} of the URDF has {links[name].fault}; give what a body can have"
+                )
         dynamics = Dynamics(mechanism)
         x = np.random.default_rng(0).uniform(0.3, 1.0, dynamics.size)
         masses = dynamics.masses(x).full()
@@ -430,6 +516,7 @@ class RobotOnPath(Plant):
     steps_at_once: ClassVar[int] = 16
     path_range: ClassVar[tuple[float, float] | None] = reach()
     in_space: ClassVar[bool] = True
+    along_path: ClassVar[bool] = True
 
     robot: Robot = content("what moves")  # noqa: RUF009
     path: GeometricPath = content("where its joints go")  # noqa: RUF009
@@ -441,11 +528,37 @@ class RobotOnPath(Plant):
         self._check_multiples()
         object.__setattr__(self, "path", self.robot.fitted(self.path))
         _ = self.tables
+        self._check_rotors()
 
     @property
     def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
         """How many modal amplitudes it has."""
         return len(modes_on(self.robot, self.path))
+
+    def _check_rotors(self) -> None:
+        """Refuse motors without inertia where all that they move hangs on springs."""
+        robot = self.robot
+        without = [name for name in robot.elastic_joints if not robot.rotor_inertia.get(name)]
+        if without and self.tables.least_inertia < _NO_INERTIA:
+            raise ValueError(
+                f"elastic_joints needs rotor_inertia of {', '.join(without)} (motor's inertia "
+                "times the gear ratio squared)"
+            )
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What the robot's files leave open or have wrong."""
+        return self.robot.notes
+
+    @property
+    def followers(self) -> Mapping[str, tuple[int, Following]]:
+        """The joints that follow driven ones: by name the number of that one, and how."""
+        numbers = {name: number for number, name in enumerate(self.joint_names)}
+        return {
+            name: (numbers[entry.leader], entry)
+            for name, entry in self.robot.followers.items()
+            if entry.leader in numbers
+        }
 
     @property
     def label(self) -> str:
@@ -457,7 +570,8 @@ class RobotOnPath(Plant):
             *(["springs"] if robot.springs else []),
             *([f"beam at {robot.beam.at}"] if robot.beam is not None else []),
         ]
-        return f"{robot.description.name} ({len(robot.joints)} joints; {', '.join(bends)})"
+        joints = "1 joint" if len(robot.joints) == 1 else f"{len(robot.joints)} joints"
+        return f"{robot.description.name} ({joints}; {', '.join(bends)})"
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -652,16 +766,29 @@ def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:
 
 
 def coulomb_torques(robot: Robot, joints: Sequence[JointMotion]) -> list[Expression]:
-    """Coulomb friction of every driven joint by its speed [N m]; 0.0 where it has none."""
+    """Coulomb friction of every driven joint by its speed [N m]; 0.0 where it has none.
+
+    That of joints that follow it is felt by virtual work.
+    """
     torques = list[Expression]()
     for name, joint in zip(robot.joints, joints):
-        friction = robot.coulomb.get(name, 0.0)
-        speed = joint.speed
-        turning = 0.0 if friction == 0 else speed / ca.sqrt(speed * speed + _CREEP**2)
-        torques.append(friction * turning)
+        torque = _coulomb(robot.coulomb.get(name, 0.0), joint.speed)
+        for follower, entry in robot.followers.items():
+            friction = robot.coulomb.get(follower, 0.0)
+            if entry.leader == name and friction and entry.multiplier:
+                turning = _coulomb(friction, entry.multiplier * joint.speed)
+                torque = torque + entry.multiplier * turning
+        torques.append(torque)
     return torques
 
 
+def _coulomb(friction: float, speed: Expression) -> Expression:
+    turning = 0.0 if friction == 0 else speed / ca.sqrt(speed * speed + _CREEP**2)
+    return friction * turning
+
+
+_NO_INERTIA = 1e-6
+"""Share of the inertia along the path that is left where the springs let all links go."""
 _CREEP = 0.01
 """Speed [rad/s or m/s] at which Coulomb friction is 1 / sqrt(2) of itself."""
 
@@ -706,6 +833,11 @@ def _added(values: Array, factor: Expression, changes: Array) -> Array:
         if not is_zero(change):
             added[place] = added[place] + factor * change
     return added
+
+
+def counted_springs(count: int) -> str:
+    """So many springs, in words."""
+    return "1 spring" if count == 1 else f"{count} springs"
 
 
 def _vector(name: str, value: Any) -> tuple[float, float, float]:

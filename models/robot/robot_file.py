@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from quietarm.models.checks import has_no
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.files import read_text, read_yaml
 from quietarm.models.robot.flexibility import Base, Measured, Spring
+from quietarm.models.robot.following import followers_of, limits_with_followers
 from quietarm.models.robot.urdf import PRISMATIC, UrdfJoint, read_urdf
 from quietarm.models.units import parse_quantity
 
@@ -64,7 +65,20 @@ def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         given["held"] = _held(given["held"], given["urdf"])
     if "limits" in given:
         given["limits"] = _limits(given["limits"], given["urdf"], folder)
+    if "beam" in given:
+        _refuse_heavy(given["beam"], given["urdf"])
     return given
+
+
+def _refuse_heavy(beam: Beam, urdf: str) -> None:
+    """Refuse a bar that is heavier than the robot that carries it, whose sizes are in mm."""
+    mass = beam.line_mass * beam.length
+    of_robot = sum(link.mass for link in read_urdf(urdf).links.values())
+    if 0 < of_robot < mass:
+        raise ValueError(
+            f"the beam has {mass:.4g} kg, more than the robot's {of_robot:.4g} kg; are its sizes "
+            "in mm, as width: 5mm, or is density in kg/m^3?"
+        )
 
 
 def _held(entry: Any, urdf: str) -> dict[str, float]:
@@ -79,12 +93,31 @@ def _held(entry: Any, urdf: str) -> dict[str, float]:
     }
 
 
-def limits_of(urdf: str) -> dict[str, dict[str, float]]:
-    """The limits of torque and speed that a URDF has, by quantity and joint."""
-    joints = read_urdf(urdf).joints.values()
+def limits_of(urdf: str, held: Collection[str] = ()) -> dict[str, dict[str, float]]:
+    """The limits that a URDF has, by quantity and joint, those of followers bind who leads them.
+
+    Accelerations are kept within the URDF's limits of deceleration as well; torques of joints that
+    follow others have no limit of their own. Of the joints that are `held` none follows another.
+    """
+    description = read_urdf(urdf)
+    followers = followers_of(description, held)
+    entries = {
+        entry: limits_with_followers(description, entry, held)
+        for entry in ("velocity", "acceleration", "deceleration", "jerk")
+    }
+    slower = entries["deceleration"]
     by_quantity = {
-        "torque": {joint.name: joint.effort for joint in joints if joint.effort > 0},
-        "speed": {joint.name: joint.velocity for joint in joints if joint.velocity > 0},
+        "torque": {
+            joint.name: joint.effort
+            for joint in description.joints.values()
+            if joint.effort > 0 and joint.name not in followers
+        },
+        "speed": entries["velocity"],
+        "acceleration": {
+            name: min(entries["acceleration"].get(name, math.inf), slower.get(name, math.inf))
+            for name in {**entries["acceleration"], **slower}
+        },
+        "jerk": entries["jerk"],
     }
     return {quantity: limits for quantity, limits in by_quantity.items() if limits}
 

@@ -72,6 +72,24 @@ class Tables:
         return Place(self.knots, place, terms)
 
     @property
+    def least_inertia(self) -> float:
+        """Least share of the inertia along the path that remains where the modes give way."""
+        places = np.linspace(0.0, 1.0, NODES)
+        whole, left = np.array([self._inertias(float(place)) for place in places]).T
+        moving = whole > _STILL * whole.max()
+        return float((left[moving] / whole[moving]).min())
+
+    def _inertias(self, place: float) -> tuple[float, float]:
+        """Inertia against s'' at a place with the modes held, and with them free."""
+        at = self.at(place)
+        slopes = at.values(self.path[1]).astype(float)
+        torques = at.values(self.torques["a"]).astype(float)
+        given_way = at.values(self.torques["N"]).astype(float) @ at.values(self.modes["a"]).astype(
+            float
+        )
+        return float(slopes @ torques), float(slopes @ (torques - given_way))
+
+    @property
     def groups(self) -> dict[str, dict[str, Array]]:
         """Of the modes, the torques, and the tips' rows and their slopes."""
         return {
@@ -87,6 +105,8 @@ class Tables:
         return sum(int(np.count_nonzero(table)) for table in groups)
 
 
+_STILL = 1e-9
+"""Share of the largest inertia along a path, where its joints stand still."""
 EXCITED = "excited"
 """In the place of a number of modes."""
 MOST_MODES = 12
@@ -142,6 +162,7 @@ _EXCITED_SHARE = 1e-3
 def modes_on(robot: Robot, path: GeometricPath) -> tuple[int, ...]:
     """Numbers of the modes that are followed on a path: so many, or those that it excites."""
     if robot.modes != EXCITED:
+        assert robot.modes is not None
         return tuple(range(int(robot.modes)))
     swings = swings_of(robot, path)
     least = _EXCITED_SHARE * max(swing.leaves for swing in swings)

@@ -6,7 +6,6 @@ What quietarm does not follow is refused: loops, joints of several degrees of fr
 from __future__ import annotations
 
 import math
-import re
 import xml.etree.ElementTree as ElementTree
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -16,7 +15,8 @@ from functools import lru_cache
 import numpy as np
 
 from quietarm.models.joint_motion import Array
-from quietarm.models.robot.frames import Frame, rotation_of
+from quietarm.models.robot.frames import Frame, rotation_of, rotation_of_quaternion
+from quietarm.models.robot.urdf_text import parse
 
 REVOLUTE = "revolute"
 PRISMATIC = "prismatic"
@@ -24,17 +24,17 @@ FIXED = "fixed"
 _KINDS = {
     "revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC, "fixed": FIXED,
 }  # fmt: skip
-_READ = ("link", "joint", "inertial", "origin", "mass", "inertia", "parent", "child", "axis",
-         "limit", "mimic")  # fmt: skip
-"""Elements that the dynamics need; all others, as shapes for pictures, are left out."""
-_MOST_LINKS = 1000
-"""Humanoids with their hands have some two hundred."""
-_MOST_MOVING = 100
-"""Joints, whose equations are written in two seconds."""
 _LARGEST = 1e9
 """Of a mass, a moment or a place, in SI units: squares and products stay numbers."""
-_COMMENT = re.compile("<!--.*?-->", re.DOTALL)
-_XACRO = re.compile(r"<xacro:|\$\{")
+_LONG = 20.0
+"""From one joint to the next [m]: longer links are those of a URDF in millimetres."""
+_ROUNDED = 1e-9
+"""Share by which a moment of inertia may be below 0 for rounding."""
+_NO_MOMENT = 1e-12
+"""Moment of inertia [kg m^2] that rounding may leave or take."""
+_UNEVEN = 0.01
+"""Share by which a moment of inertia may be above the sum of the two others: URDFs have few digits
+of a plate's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,13 +63,48 @@ class Inertia:
         arm = self.centre - point
         return self.moments + self.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
 
+    @property
+    def principal(self) -> Array:
+        """Principal moments about the centre of mass, from the least [kg m^2]."""
+        return np.linalg.eigvalsh(self.moments)
+
+    @property
+    def turns_backwards(self) -> bool:
+        """Whether a moment is below 0 by more than rounding: a torque would turn it backwards."""
+        least, _, most = self.principal
+        return least < -_ROUNDED * max(1.0, most)
+
+    @property
+    def fault(self) -> str:
+        """Why no body has such an inertia; an empty text where one may."""
+        least, middle, most = self.principal
+        if least < -max(_ROUNDED * most, _NO_MOMENT):
+            return f"a moment of inertia of {least:.3g} kg m^2, below 0"
+        others = max(least + middle, 0.0)
+        if most > (1 + _UNEVEN) * others + _NO_MOMENT:
+            return (
+                f"a moment of inertia of {most:.3g} kg m^2, above the sum of the two others, "
+                f"{round(others, 15):.3g}"
+            )
+        return ""
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """A joint that follows another: its position is multiplier times that one's, plus offset."""
+
+    joint: str
+    multiplier: float
+    offset: float
+
 
 @dataclass(frozen=True, eq=False)
 class UrdfJoint:
     """A joint: which links it joins, where it stands in the parent's frame, what it allows.
 
-    Positions are in rad or m, the effort in N m or N, the velocity in rad/s or m/s; infinite, or
-    0 for effort and velocity, where the URDF has none.
+    Positions are in rad or m, the effort in N m or N, the velocity in rad/s or m/s, and so on;
+    infinite, or 0 for all but the positions, where the URDF has none. Damping is viscous
+    [N m s/rad or N s/m], friction Coulomb's [N m or N].
     """
 
     name: str
@@ -78,11 +113,22 @@ class UrdfJoint:
     child: str
     frame: Frame
     axis: Array
-    lower: float
-    upper: float
-    effort: float
-    velocity: float
-    mimics: str | None
+    lower: float = -math.inf
+    upper: float = math.inf
+    effort: float = 0.0
+    velocity: float = 0.0
+    acceleration: float = 0.0
+    deceleration: float = 0.0
+    jerk: float = 0.0
+    damping: float = 0.0
+    friction: float = 0.0
+    mimics: Mimic | None = None
+    continuous: bool = False
+
+    @property
+    def endless(self) -> bool:
+        """Whether no range binds it."""
+        return self.lower == -math.inf and self.upper == math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +145,15 @@ class Urdf:
         """Names of the joints that can move, in the order of the file."""
         return tuple(name for name, joint in self.joints.items() if joint.kind != FIXED)
 
+    @property
+    def hint_of_size(self) -> str:
+        """A question where links are as long as their millimetres; else an empty text."""
+        lengths = {
+            joint.child: np.linalg.norm(joint.frame.origin) for joint in self.joints.values()
+        }
+        longest = max(lengths.values(), default=0.0)
+        return f"links are {longest:.4g} m long; are origins in mm?" if longest > _LONG else ""
+
     def outwards(self) -> Iterator[UrdfJoint]:
         """Every joint after that of its parent."""
         by_parent = dict[str, list[UrdfJoint]]()
@@ -111,27 +166,6 @@ class Urdf:
                 waiting.append(joint.child)
 
 
-def dynamics_of(text: str) -> str:
-    """The URDF without what the dynamics do not need: pictures, collisions, transmissions.
-
-    ValueError where it is no URDF.
-    """
-    root = _parsed(text)
-    for element in list(root.iter()):
-        for child in list(element):
-            if child.tag not in _READ:
-                element.remove(child)
-    for element in root.iter():
-        element.text = None
-        element.tail = None
-    try:
-        return ElementTree.tostring(root, encoding="unicode")
-    except RecursionError:
-        raise ValueError(
-            "the URDF is nested too deeply; give links and joints beside each other"
-        ) from None
-
-
 @lru_cache(maxsize=32)
 def read_urdf(text: str) -> Urdf:
     """Read a URDF.
@@ -141,12 +175,10 @@ def read_urdf(text: str) -> Urdf:
     ValueError
         When it is no URDF, has XML entities, or what quietarm cannot follow.
     """
-    root = _parsed(text)
+    root = parse(text)
     links = {_name(element): _inertia(element) for element in root.findall("link")}
     if not links:
         raise ValueError("the URDF has no links; give one of a robot, with its links' inertias")
-    if len(links) > _MOST_LINKS:
-        raise ValueError(f"the URDF has {len(links)} links; give at most {_MOST_LINKS}")
     joints = {_name(element): _joint(element) for element in root.findall("joint")}
     for joint in joints.values():
         for link in (joint.parent, joint.child):
@@ -155,6 +187,7 @@ def read_urdf(text: str) -> Urdf:
                     f"joint {joint.name!r} of the URDF joins {link!r}, which is no link of it; "
                     "add the link, or mend its name"
                 )
+        _check_mimic(joint, joints)
     children = Counter(joint.child for joint in joints.values())
     for child, count in children.items():
         if count > 1:
@@ -169,29 +202,21 @@ def read_urdf(text: str) -> Urdf:
     urdf = Urdf(root.get("name") or "robot", links, joints, roots[0])
     if len(list(urdf.outwards())) != len(joints):
         raise ValueError("the URDF has a closed loop beside its tree; give a tree alone")
-    if len(urdf.moving) > _MOST_MOVING:
-        raise ValueError(
-            f"the URDF has {len(urdf.moving)} joints that move; give at most {_MOST_MOVING}, "
-            "others as fixed ones"
-        )
     return urdf
 
 
-def _parsed(text: str) -> ElementTree.Element:
-    if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise ValueError(
-            "the URDF has a document type or XML entities, which are not read; write out what they "
-            "stand for"
-        )
-    try:
-        root = ElementTree.fromstring(text.removeprefix("\ufeff").encode())
-    except ElementTree.ParseError as error:
-        raise ValueError(f"the URDF is no valid XML ({error}); export it again") from None
-    if root.tag != "robot":
-        raise ValueError(f"the URDF begins with <{root.tag}>; give one of <robot>")
-    if _XACRO.search(_COMMENT.sub("", text)):
-        raise ValueError("the URDF has xacro's macros; run xacro on it first, and give its output")
-    return root
+def _check_mimic(joint: UrdfJoint, joints: Mapping[str, UrdfJoint]) -> None:
+    """Refuse a joint that follows itself in the end."""
+    chain = [joint.name]
+    while (mimic := joints[chain[-1]].mimics) is not None:
+        if mimic.joint not in joints:
+            return  # which is held, with a note
+        chain.append(mimic.joint)
+        if mimic.joint in chain[:-1]:
+            raise ValueError(
+                f"joints of the URDF mimic each other in a circle, {' and '.join(chain)}; let one "
+                "of them move by itself"
+            )
 
 
 def _name(element: ElementTree.Element) -> str:
@@ -218,12 +243,8 @@ def _inertia(link: ElementTree.Element) -> Inertia:
         [entries["ixy"], entries["iyy"], entries["iyz"]],
         [entries["ixz"], entries["iyz"], entries["izz"]],
     ])  # fmt: skip
-    least = float(np.linalg.eigvalsh(moments).min())
-    if mass < 0 or least < -1e-9 * max(1.0, float(np.abs(moments).max())):
-        raise ValueError(
-            f"{what} has a mass of {mass:g} kg and a least moment of inertia of {least:.3g} kg m^2;"
-            " give what a body can have"
-        )
+    if mass < 0:
+        raise ValueError(f"{what} has a mass of {mass:g} kg; give what a body can have")
     return Inertia(mass, np.zeros(3), moments).seen_from(frame)
 
 
@@ -236,30 +257,70 @@ def _joint(element: ElementTree.Element) -> UrdfJoint:
             f"{what} is {kind!r}; give revolute, continuous, prismatic or fixed joints alone, as "
             "a fixed one to the ground"
         )
+    ends = {end: _link(element, end, what) for end in ("parent", "child")}
+    frame = _origin(element, what)
+    if kind == FIXED:
+        return UrdfJoint(name, FIXED, **ends, frame=frame, axis=np.array([1.0, 0.0, 0.0]))
     axis = _numbers(element.find("axis"), "xyz", f"axis of {what}", "1 0 0")
     length = float(np.linalg.norm(axis))
     if length == 0:
-        raise ValueError(f"axis of {what} is 0 0 0; give a direction, as 0 0 1")
-    limit = element.find("limit")
-    turns = kind == "continuous"
+        raise ValueError(f"axis of {what} is 0 0 0; give a direction, such as 0 0 1")
+    lower, upper = _range(element.find("limit"), what) if kind != "continuous" else _UNLIMITED
     mimic = element.find("mimic")
-    ends = {
-        end: otherwise if turns else _number(limit, end, f"{end} limit of {what}", otherwise)
-        for end, otherwise in (("lower", -math.inf), ("upper", math.inf))
-    }
     return UrdfJoint(
         name=name,
         kind=_KINDS[kind],
-        parent=_link(element, "parent", what),
-        child=_link(element, "child", what),
-        frame=_origin(element, what),
+        **ends,
+        frame=frame,
         axis=axis / length,
-        lower=ends["lower"],
-        upper=ends["upper"],
-        effort=_number(limit, "effort", f"effort of {what}", 0.0),
-        velocity=_number(limit, "velocity", f"velocity of {what}", 0.0),
-        mimics=None if mimic is None else mimic.get("joint"),
+        lower=lower,
+        upper=upper,
+        **_sizes(element, "limit", ("effort", "velocity", "acceleration", "jerk"), what),
+        deceleration=abs(
+            _number(element.find("limit"), "deceleration", f"deceleration of {what}", 0.0)
+        ),
+        **_sizes(element, "dynamics", ("damping", "friction"), what),
+        mimics=None if mimic is None else _mimic(mimic, what),
+        continuous=kind == "continuous",
     )
+
+
+_UNLIMITED = (-math.inf, math.inf)
+
+
+def _range(limit: ElementTree.Element | None, what: str) -> tuple[float, float]:
+    """Least and largest position; 0 where only the other is given, and none without both."""
+    if limit is None or not {"lower", "upper"} & set(limit.attrib):
+        return _UNLIMITED
+    lower, upper = (
+        _number(limit, end, f"{end} limit of {what}", 0.0) for end in ("lower", "upper")
+    )
+    if lower > upper:
+        raise ValueError(
+            f"limit of {what}: lower {lower:g} is above upper {upper:g}; swap or mend them"
+        )
+    return lower, upper
+
+
+def _sizes(
+    joint: ElementTree.Element, tag: str, entries: tuple[str, ...], what: str
+) -> dict[str, float]:
+    """Numbers of 0 or more; 0 of those that the URDF does not have."""
+    sizes = dict[str, float]()
+    for entry in entries:
+        sizes[entry] = _number(joint.find(tag), entry, f"{entry} of {what}", 0.0)
+        if sizes[entry] < 0:
+            raise ValueError(f"{entry} of {what} is {sizes[entry]:g}; give 0 or more")
+    return sizes
+
+
+def _mimic(element: ElementTree.Element, what: str) -> Mimic:
+    leader = element.get("joint")
+    if not leader:
+        raise ValueError(f"{what} mimics no joint; name one, as <mimic joint='...'/>")
+    multiplier = _number(element, "multiplier", f"multiplier of {what}", 1.0, _LARGEST)
+    offset = _number(element, "offset", f"offset of {what}", 0.0, _LARGEST)
+    return Mimic(leader, multiplier, offset)
 
 
 def _link(joint: ElementTree.Element, end: str, what: str) -> str:
@@ -273,6 +334,13 @@ def _link(joint: ElementTree.Element, end: str, what: str) -> str:
 def _origin(element: ElementTree.Element, what: str) -> Frame:
     origin = element.find("origin")
     place = _numbers(origin, "xyz", f"origin of {what}", "0 0 0")
+    if origin is not None and "quat_xyzw" in origin.attrib:
+        if "rpy" in origin.attrib:
+            raise ValueError(f"origin of {what} has rpy and quat_xyzw; give one of them")
+        quaternion = _numbers(origin, "quat_xyzw", f"quat_xyzw of {what}", "0 0 0 1", count=4)
+        if not np.any(quaternion):
+            raise ValueError(f"quat_xyzw of {what} is 0 0 0 0; give a rotation, such as 0 0 0 1")
+        return Frame(rotation_of_quaternion(quaternion), place)
     angles = _numbers(origin, "rpy", f"rpy of {what}", "0 0 0")
     return Frame(rotation_of(*angles), place)
 
@@ -298,14 +366,19 @@ def _number(
     return number
 
 
-def _numbers(element: ElementTree.Element | None, entry: str, what: str, otherwise: str) -> Array:
+def _numbers(
+    element: ElementTree.Element | None, entry: str, what: str, otherwise: str, count: int = 3
+) -> Array:
     text = otherwise if element is None else element.get(entry, otherwise)
     try:
         numbers = np.array([float(word) for word in text.split()])
     except ValueError:
         numbers = np.zeros(0)
-    if len(numbers) != 3 or not np.all(np.isfinite(numbers)):
-        raise ValueError(f"{what} is {text!r}; give three numbers")
+    if len(numbers) != count or not np.all(np.isfinite(numbers)):
+        raise ValueError(f"{what} is {text!r}; give {_COUNTS[count]} numbers")
     if np.abs(numbers).max() > _LARGEST:
         raise ValueError(f"{what} is {text!r}; give numbers of at most {_LARGEST:g}")
     return numbers
+
+
+_COUNTS = {3: "three", 4: "four"}

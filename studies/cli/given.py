@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Collection
+from pathlib import Path
 from typing import Any
 
 import click
@@ -21,6 +22,7 @@ from quietarm.studies.cli.plants import (
     build_plant,
     build_uncertainty,
     choose_kind,
+    warn_of_notes,
     warn_of_payload,
 )
 from quietarm.studies.cli.quantities import (
@@ -157,6 +159,11 @@ class Given:
         warn_of_payload(kind, plant, parameters)
         return MoveGrid(task, tuple(axes))
 
+    def _shows_rows(self) -> bool:
+        """Whether the answer has rows of figures, beside which a plant's notes stand."""
+        name = self._context.command.name
+        return name == "plan" or (name == "evaluate" and not isinstance(self.coefficients, Path))
+
     def _read_robot(self, robot: Robot, **known: float) -> MoveGrid:
         """The task of a robot along its path; axes over durations and multiples of the robot's."""
         text: str | None = self._context.params["duration"]
@@ -168,6 +175,8 @@ class Given:
             durations = parse_of_plant("duration", str(text), "rotary", "m")
         multiples = parse_parameters(RobotOnPath, self.parameters)
         task = read_robot_task(self, robot, max(durations), multiples)
+        if not self._shows_rows():
+            warn_of_notes(task.plant)
         units = RobotOnPath.units() | {"duration": OF_MOVES["duration"]}
         axes = [
             Axis(name, values, units[name])

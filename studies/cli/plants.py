@@ -14,6 +14,7 @@ from quietarm.ocp.checks import unknown
 from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.identify import Identified
 from quietarm.studies.report.terminal import print_lines
+from quietarm.studies.report.words import note_lines
 
 Kind = type[Plant] | Identified | Robot
 """What PLANT names: a class of plants, an identified machine, or a robot."""
@@ -88,6 +89,13 @@ def build_uncertainty(
         kind.check_unchanged(changed)
         ranges = {**kind.errors, **ranges}
     return Uncertainty(ranges) if ranges else None
+
+
+def warn_of_notes(plant: Plant) -> None:
+    """Say before the work what a plant's files leave open or have wrong."""
+    lines = note_lines(plant)
+    if lines:
+        print_lines(Console(stderr=True), *lines)
 
 
 def warn_of_payload(kind: Kind, plant: Plant, changed: Collection[str]) -> None:

@@ -12,6 +12,7 @@ from quietarm.models.units import parse_quantity
 from quietarm.ocp import PointToPoint, Uncertainty
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.cli.quantities import once
+from quietarm.studies.report.words import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -116,13 +117,20 @@ def _numbers(
     return [parse_quantity(word, unit, f"a number of {option}") for word, unit in zip(words, units)]
 
 
+def _following_words(robot: Robot) -> str:
+    """Which joints have no position of their own."""
+    names = [f"{name} follows {entry.leader}" for name, entry in robot.followers.items()]
+    return f" ({', '.join(names)})" if names else ""
+
+
 def _positions(text: str, option: str, robot: Robot) -> list[float]:
     """A position of every joint: ``0,-80deg,97deg``."""
     words = text.split(",")
     if len(words) != len(robot.joints):
         raise ValueError(
-            f"{option} has {len(words)} positions, and the robot drives {len(robot.joints)} "
-            f"joints, {', '.join(robot.joints)}; give one of each"
+            f"{option} has {len(words)} positions, and the robot drives "
+            f"{counted(len(robot.joints), 'joint')}, {', '.join(robot.joints)}"
+            f"{_following_words(robot)}; give one of each"
         )
     slides = [robot.description.joints[name].kind == PRISMATIC for name in robot.joints]
     return [

@@ -23,7 +23,13 @@ from quietarm.studies.compare.judged_motions import (
     refuse_other_moves,
 )
 from quietarm.studies.report import Report
-from quietarm.studies.report.words import title_of, title_of_picture, unit_of_way, window_words
+from quietarm.studies.report.words import (
+    note_lines,
+    title_of,
+    title_of_picture,
+    unit_of_way,
+    window_words,
+)
 from quietarm.studies.tips import tip_scale
 
 _WHY = "why there is none"
@@ -173,7 +179,7 @@ def plans_report(
             "title": title_of(task),
             "shown": shown(table),
             "unsealed": unsealed,
-            "remarks": remarks(motions, unit_of_way(task.plant)),
+            "remarks": [*remarks(motions, unit_of_way(task.plant)), *note_lines(task.plant)],
             "errors": list(ranges),
             "window": window_words(
                 next((motion.window for motion in motions if motion.window), task.residual_window)

@@ -51,7 +51,7 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         figures += f", residuals {window_words(task.residual_window)}"
     move = dict(zip(OF_MOVES, map(repr, task.move)))
     plant = task.plant
-    names = plant.joint_names if len(plant.joint_names) > 1 else ()
+    names = plant.joint_names if plant.has_path else ()
     helpers, statements = _path_in_c(moves.profile, plant)
     ends = [_positions(plant, place) for place in (task.start, task.target)] if names else []
     texts = templates(keep_trailing_newline=True)

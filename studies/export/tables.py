@@ -71,8 +71,9 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     """Columns, as `columns_of` reads them, by their headings, as `angle_deg`, at a rate [Hz].
 
     The last row is the first tick at or after arrival. Each of several joints has columns of its
-    own, `elbow_angle_deg`. Each tip has one, or of a robot each axis of its tip's frame along which
-    that moves, `tip_x_mm`; of a robust plan in each scenario, which its heading names.
+    own, `elbow_angle_deg`, and so has each joint that follows one. Each tip has a column, or of a
+    robot each axis of its tip's frame along which that moves, `tip_x_mm`; of a robust plan in each
+    scenario, which its heading names.
     """
     linear_names = {"angle": "position", "torque": "force"}
     times = times_of(plan, rate)
@@ -90,14 +91,23 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
         "power": [motion.power],
     }
     names = {} if plant.joint == ROTARY else linear_names
+    following = {name: how.motion(sample.joints[at]) for name, (at, how) in plant.followers.items()}
+    of_followers: dict[str, dict[str, Array]] = {
+        "angle": {name: joint.angle for name, joint in following.items()},
+        "speed": {name: joint.speed for name, joint in following.items()},
+        "acceleration": {name: joint.acceleration for name, joint in following.items()},
+        "jerk": {name: joint.jerk for name, joint in following.items()},
+    }
 
     def by_heading(name: str) -> dict[tuple[str, str], Array]:
         """A column, or one for each joint, by what stands before and after the unit."""
         word = names.get(name, name)
         columns = values[name]
+        more = {(f"{joint}_{word}", ""): v for joint, v in of_followers.get(name, {}).items()}
         if len(columns) == 1:
-            return {(word, ""): columns[0]}
-        return {(f"{joint}_{word}", ""): v for joint, v in zip(plant.joint_names, columns)}
+            return {(word, ""): columns[0], **more}
+        of_joints = {(f"{joint}_{word}", ""): v for joint, v in zip(plant.joint_names, columns)}
+        return of_joints | more
 
     table: dict[str, Array] = {}
     for name, (unit, factor) in columns_of(columns, plan.task.plant).items():
@@ -149,8 +159,8 @@ def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
 def ros_text(plan: Plan, rate: float, joint: str) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, of all joints.
 
-    A single joint has the name that is given, several those of the plant. ValueError where a name
-    has letters that YAML cannot hold, as those of control.
+    A single joint has the name that is given, those of a robot and of several have the plant's.
+    ValueError where a name has letters that YAML cannot hold, as those of control.
     """
     motion = plan.sampled(times_of(plan, rate))
     orders = [
@@ -162,7 +172,7 @@ def ros_text(plan: Plan, rate: float, joint: str) -> str:
         for time, *moving in zip(motion.time, *orders)
     ]
     joint_names = plan.task.plant.joint_names
-    names = (joint,) if len(joint_names) == 1 else joint_names
+    names = joint_names if plan.task.plant.has_path else (joint,)
     for name in names:
         if not name.isprintable():
             raise ValueError(f"joint is {name!r}; give a name of letters, as shoulder_pan_joint")

@@ -16,6 +16,8 @@ from quietarm.models.robot.urdf import PRISMATIC
 from quietarm.ocp.limits import QUANTITIES
 
 Row = tuple[str, str]
+WARNING = "warning"
+"""The name of a row with a note on the robot."""
 _PLACES = (0.0, 0.5, 1.0)
 """Of a path, at which modes and sag are shown."""
 _MORE = 2
@@ -29,6 +31,7 @@ def robot_rows(robot: Robot, path: GeometricPath) -> list[Row]:
         *_joint_rows(robot),
         *_spring_rows(robot),
         *_limit_rows(robot),
+        *((WARNING, note.words) for note in robot.notes),
         *_path_rows(robot, path),
     ]
 
@@ -46,7 +49,8 @@ def usual_path(robot: Robot) -> GeometricPath:
 def _mass_rows(robot: Robot) -> list[Row]:
     links = {name: link.mass for name, link in robot.description.links.items() if link.mass > 0}
     words = ", ".join(f"{name} {mass:.4g}" for name, mass in links.items())
-    rows = [("masses [kg]", f"{sum(links.values()):.5g} of the URDF: {words}")]
+    listed = f"{sum(links.values()):.5g} of the URDF: {words}" if links else "none in the URDF"
+    rows = [("masses [kg]", listed)]
     beam = robot.beam
     if beam is not None:
         mass = beam.line_mass * beam.length
@@ -66,17 +70,37 @@ def _joint_rows(robot: Robot) -> list[Row]:
     others = [
         name
         for name in robot.description.moving
-        if name not in robot.joints and name not in robot.springs
+        if name not in (*robot.joints, *robot.springs, *robot.followers)
     ]
+    if robot.followers:
+        following = (
+            f"{name} = {entry.multiplier:.4g} {entry.leader}"
+            f"{f' {entry.offset:+.4g}' if entry.offset else ''}"
+            for name, entry in robot.followers.items()
+        )
+        rows.append(("following", ", ".join(following)))
     if others:
-        positions = (f"{name} at {robot.held.get(name, 0.0):.4g}" for name in others)
+        positions = (f"{name} at {robot.held_position(name):.4g}" for name in others)
         rows.append(("held", ", ".join(positions)))
-    for entry, unit in (("rotor_inertia", "kg m^2"), ("friction", "N m s/rad"), ("coulomb", "N m")):
-        values = getattr(robot, entry)
-        listed = ", ".join(f"{name} {value:.4g}" for name, value in values.items())
-        words = f"{listed} {unit}" if listed else "none: give it, as the URDF has none"
-        rows.append((entry.replace("_", " "), words))
+    for entry, unit, of_urdf in (
+        ("rotor_inertia", "kg m^2", ""),
+        ("friction", "N m s/rad", "damping"),
+        ("coulomb", "N m", "friction"),
+    ):
+        rows.append((entry.replace("_", " "), _by_joint(robot, entry, unit, of_urdf)))
     return rows
+
+
+def _by_joint(robot: Robot, entry: str, unit: str, of_urdf: str) -> str:
+    """Values by joint, and whether they are the URDF's."""
+    values = getattr(robot, entry)
+    if not values:
+        return "none: give it, as the URDF has none"
+    listed = ", ".join(f"{name} {value:.4g}" for name, value in values.items())
+    joints = robot.description.joints
+    taken = [bool(of_urdf) and getattr(joints[name], of_urdf) == values[name] for name in values]
+    origin = f" (the URDF's {of_urdf})" if all(taken) else ""
+    return f"{listed} {unit}{origin}"
 
 
 def _spring_rows(robot: Robot) -> list[Row]:

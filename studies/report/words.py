@@ -102,8 +102,13 @@ def move_of(task: PointToPoint) -> str:
 
 
 def unit_of_way(plant: Plant) -> str:
-    """What a way is in: "rad" or "m" of a joint, "of the path" of several."""
-    return "of the path" if len(plant.joint_names) > 1 else joint_unit("rad", plant.joint)
+    """What a way is in: "rad" or "m" of a joint, "of the path" of joints that follow one."""
+    return "of the path" if plant.has_path else joint_unit("rad", plant.joint)
+
+
+def note_lines(plant: Plant) -> list[str]:
+    """All notes on a plant, where no rows of figures are for them to stand beside."""
+    return [f"warning: {note.words}" for note in plant.notes]
 
 
 def state_words(state: ModalState, tip_unit: str) -> str:

@@ -43,6 +43,13 @@ def shipped_urdf(name: str) -> Path:
 
 
 @lru_cache
+def all_urdfs() -> list[Path]:
+    """Every URDF of example-robot-data."""
+    files = importlib.metadata.files("example-robot-data")
+    return sorted(Path(file.locate()) for file in files if file.suffix == ".urdf")
+
+
+@lru_cache
 def ur5_with_bar(**changes):
     """The UR5 whose flange carries the bar."""
     return qa.Robot(urdf=urdf_of("ur5_robot.urdf"), beam=qa.Beam(at="tool0", **BAR), **changes)

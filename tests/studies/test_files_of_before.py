@@ -32,7 +32,7 @@ from quietarm.studies.reading.saved import load_front, load_plans
 from quietarm.studies.sweep import MoveLibrary
 
 FIXTURES = Path(__file__).parents[1] / "fixtures"
-OF_PLANS = sorted(path.name for path in FIXTURES.iterdir() if path.is_dir())
+OF_PLANS = sorted(path.parent.name for path in FIXTURES.glob("*/plan.json"))
 DAYS = [name for name in OF_PLANS if (FIXTURES / name / "bench").is_dir()]
 """Folders with files of every kind; the others have those of the formats that changed."""
 OF_FLOORS = [name for name in OF_PLANS if (FIXTURES / name / "floor.json").is_file()]
@@ -129,6 +129,26 @@ def test_plans_are_saved_to_the_same(old_plans, name):
     assert (again.motion, again.worst, again.verification) == (
         plan.motion, plan.worst, plan.verification,
     )  # fmt: skip
+
+
+def test_a_robot_that_was_read_in_part_moves_as_it_did_then(tmp_path, call):
+    """Its URDF's damping, friction and a mimic were left out; a link and an inertial were twice."""
+    folder = FIXTURES / "2026-11-28-robots"
+    file = folder / "robot-plan.json"
+    plan = qa.Plan.load(file)
+    stated = json.loads(file.read_text())["stated"]
+    assert plan.energy == pytest.approx(stated["energy"], rel=SAME)
+    assert plan.residual == pytest.approx(stated["residual"], rel=SAME)
+    assert plan.verification.agrees
+    robot = plan.task.plant.robot
+    assert (robot.friction, robot.coulomb, robot.followers) == ({}, {}, {})
+    assert robot.description.links["finger"].mass == 0.1
+    plan.save(tmp_path / "again.json")
+    assert qa.Plan.load(tmp_path / "again.json") == plan
+    assert call(f"compare {file}")[0] == 0
+    # read today, its URDF is refused
+    with pytest.raises(ValueError, match="link 'finger' of the URDF has two <inertial>"):
+        qa.Robot(urdf=folder / "robot.urdf", elastic_joints={"a": 1e4})
 
 
 def test_floors_load_and_their_figures_are_those_that_they_state(old_floor, tmp_path):

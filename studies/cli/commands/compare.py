@@ -14,6 +14,7 @@ from rich.console import Console
 from quietarm.studies.cli.files import REPORT_OPTION, finish
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import ERROR, SOLVER, busy, command, option
+from quietarm.studies.cli.plants import warn_of_notes
 from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.types import INPUT, NAMES
 from quietarm.studies.compare.judged_motions import SAMPLES
@@ -108,6 +109,8 @@ def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
         paper_points(comparison.task, {run.front.profile.size for run in comparison.runs})
         for comparison in comparisons
     ]
+    for comparison in comparisons:
+        warn_of_notes(comparison.task.plant)
     return fronts_report(comparisons, of_paper, without_checksum(map(Path, fronts)))
 
 

@@ -46,7 +46,7 @@ def list_(given: Given) -> None:
     for name in names:
         if name.endswith(OF_ROBOTS):
             robot = Robot.load(name)
-            path = robot.fitted(path_of(given, robot) or usual_path(robot))
+            path = robot.along(path_of(given, robot) or usual_path(robot)).path
             shown += [f"{robot.description.name}:", robot_rows(robot, path)]
             continue
         title, rows = catalogue_rows(name, plants)

@@ -21,7 +21,10 @@ ROBOTS = {
 
 
 def _both(name, seed, **entries):
-    """Torques by quietarm and by Pinocchio at a random motion of the driven joints."""
+    """Torques by quietarm and by Pinocchio at a random motion of the driven joints.
+
+    Both with the viscous damping of the URDF, which Pinocchio reads and leaves to its user.
+    """
     robot = qa.Robot(urdf=urdf_of(name), base=STIFF, **entries)
     model = pinocchio.buildModelFromUrdf(str(urdf_of(name)))
     model.gravity.linear = np.array(robot.gravity)
@@ -32,7 +35,7 @@ def _both(name, seed, **entries):
     theirs[:, places] = motion
     for joint, position in entries.get("held", {}).items():
         theirs[0, model.joints[model.getJointId(joint)].idx_v] = position
-    torques = pinocchio.rnea(model, model.createData(), *theirs)
+    torques = pinocchio.rnea(model, model.createData(), *theirs) + model.damping * theirs[1]
     return mine[: len(robot.joints)], torques[places]
 
 
@@ -55,7 +58,7 @@ def test_sliding_joints_are_driven_as_turning_ones(tmp_path):
     model.gravity.linear = np.array(robot.gravity)
     motion = np.random.default_rng(2).uniform(-1, 1, (3, len(robot.joints)))
     mine = robot.dynamics.inverse(*np.hstack([motion, np.zeros((3, 2))])).full().ravel()
-    theirs = pinocchio.rnea(model, model.createData(), *motion)
+    theirs = pinocchio.rnea(model, model.createData(), *motion) + model.damping * motion[1]
     assert list(model.names)[1:] == list(robot.joints)
     assert mine[: len(robot.joints)] == pytest.approx(theirs, rel=1e-9, abs=1e-9)
 

@@ -1,0 +1,171 @@
+"""What a robot's URDF leaves open or has wrong, and what was taken in its place: one line each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from quietarm.models.notes import Note
+from quietarm.models.robot.following import held_position, limits_with_followers
+from quietarm.models.robot.urdf import PRISMATIC, Urdf
+from quietarm.models.robot.urdf_text import passed_over
+
+if TYPE_CHECKING:
+    from quietarm.models.robot.robot import Robot
+
+_MOST_NAMES = 5
+"""Of links or joints that a note names."""
+
+
+def notes_of(robot: Robot) -> tuple[Note, ...]:
+    """Return all notes that follow from what a robot is made of."""
+    return (
+        *_without_masses(robot),
+        *_faulty_inertias(robot.description),
+        *_millimetres(robot.description),
+        *_own_friction(robot),
+        *_damping_of_passive_joints(robot),
+        *_held_followers(robot),
+        *_without_leader(robot.description),
+        *_without_ranges(robot),
+        *_decelerations(robot),
+    )
+
+
+def notes_of_text(urdf: str) -> tuple[Note, ...]:
+    """Return the note on what a URDF has and is not read; none of one that is filtered already."""
+    names = passed_over(urdf)
+    if not names:
+        return ()
+    return (Note(f"not read of the URDF: {listed(names)}"),)
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first names, and how many more there are."""
+    shown = ", ".join(names[:_MOST_NAMES])
+    more = len(names) - _MOST_NAMES
+    return f"{shown} and {more} more" if more > 0 else shown
+
+
+def _without_masses(robot: Robot) -> Iterator[Note]:
+    """Of a robot whose motors move no mass of the URDF."""
+    urdf = robot.description
+    moved = set[str]()
+    for joint in urdf.outwards():
+        if joint.name in robot.joints or joint.parent in moved:
+            moved.add(joint.child)
+    if any(urdf.links[name].mass > 0 for name in moved):
+        return
+    if robot.base is None and not robot.elastic_joints and not robot.springs:
+        yield Note(
+            "the URDF has no masses of moving links: energy and torque are of the beam alone, and "
+            "only the residual holds; give links their inertial elements",
+            ("energy", "torque"),
+        )
+        return
+    yield Note(
+        "the URDF has no masses of moving links: energy, torque and residual leave them out; give "
+        "links their inertial elements",
+        ("energy", "torque", "residual"),
+    )
+
+
+def _faulty_inertias(urdf: Urdf) -> Iterator[Note]:
+    faults = {name: link.fault for name, link in urdf.links.items() if link.fault}
+    if faults:
+        name, fault = next(iter(faults.items()))
+        others = listed([f"{other!r}" for other in list(faults)[1:]])
+        also = f" (so have {others})" if others else ""
+        yield Note(f"link {name!r} of the URDF has {fault}, which no body has{also}; mend it")
+
+
+def _millimetres(urdf: Urdf) -> Iterator[Note]:
+    if urdf.hint_of_size:
+        yield Note(urdf.hint_of_size)
+
+
+def _own_friction(robot: Robot) -> Iterator[Note]:
+    """Where the robot's friction stands in place of the URDF's."""
+    joints = robot.description.joints
+    for entry, of_urdf, unit, unit_of_sliding in (
+        ("friction", "damping", "N m s/rad", "N s/m"),
+        ("coulomb", "friction", "N m", "N"),
+    ):
+        given: Mapping[str, float] = getattr(robot, entry)
+        differing = [
+            f"{name} {value:.4g} (URDF {getattr(joints[name], of_urdf):.4g}) "
+            f"{unit_of_sliding if joints[name].kind == PRISMATIC else unit}"
+            for name, value in given.items()
+            if 0 != getattr(joints[name], of_urdf) != value
+        ]
+        if differing:
+            yield Note(f"{entry} as given in place of the URDF's {of_urdf}: {listed(differing)}")
+
+
+def _damping_of_passive_joints(robot: Robot) -> Iterator[Note]:
+    joints = robot.description.joints
+    left_out = [
+        name
+        for name, spring in robot.springs.items()
+        if joints[name].friction > 0 or joints[name].damping not in (0.0, spring.damping)
+    ]
+    if left_out:
+        yield Note(
+            f"dynamics of {listed(left_out)} in the URDF are not used: joints with springs have "
+            "the damping that springs gives"
+        )
+
+
+def _held_followers(robot: Robot) -> Iterator[Note]:
+    """Joints that are held elsewhere than where the URDF has them follow another."""
+    for name, position in robot.held.items():
+        mimic = robot.description.joints[name].mimics
+        if mimic is None:
+            continue
+        others = {other: at for other, at in robot.held.items() if other != name}
+        moves = mimic.joint in (*robot.joints, *robot.springs, *robot.followers)
+        if moves or abs(held_position(robot.description, name, others) - position) > 1e-9:
+            yield Note(
+                f"{name} is held at {position:.4g}, where the URDF has it mimic {mimic.joint}; "
+                "leave it out of held and it follows"
+            )
+
+
+def _without_leader(urdf: Urdf) -> Iterator[Note]:
+    """Joints that mimic what the URDF does not have."""
+    missing = {
+        name: joint.mimics.joint
+        for name, joint in urdf.joints.items()
+        if joint.mimics is not None and joint.mimics.joint not in urdf.joints
+    }
+    if missing:
+        names = listed([f"{name} mimics {leader}" for name, leader in missing.items()])
+        yield Note(f"joints of the URDF are held, as it does not have what they mimic: {names}")
+
+
+def _without_ranges(robot: Robot) -> Iterator[Note]:
+    """Driven joints that end nowhere, although the URDF does not call them continuous."""
+    joints = robot.description.joints
+    names = [name for name in robot.joints if not joints[name].continuous and joints[name].endless]
+    if names:
+        yield Note(f"the URDF has neither lower nor upper of {listed(names)}: taken as endless")
+
+
+def _decelerations(robot: Robot) -> Iterator[Note]:
+    """Limits of the acceleration that are the URDF's smaller ones of the deceleration."""
+    urdf = robot.description
+    accelerations = limits_with_followers(urdf, "acceleration", robot.held)
+    decelerations = limits_with_followers(urdf, "deceleration", robot.held)
+    limits = robot.limits.get("acceleration", {})
+    taken = [
+        f"{name} {limit:.4g}"
+        for name, limit in limits.items()
+        if limit == decelerations.get(name) and limit < accelerations.get(name, np.inf)
+    ]
+    if taken:
+        yield Note(
+            "the URDF's limits of deceleration are smaller, and are kept while joints speed up as "
+            f"well: {listed(taken)}"
+        )
