@@ -6,6 +6,7 @@ import difflib
 import math
 import operator
 import re
+import reprlib
 from collections.abc import Collection
 from typing import Any
 
@@ -13,6 +14,28 @@ _ALIKE = 0.55
 """Share of letters in common from which on a name is asked for."""
 _PART = 3
 """So many letters of a longer name are enough."""
+MOST_QUOTED = 80
+"""Letters of a file that a message quotes: the file may be a stranger's, or a secret."""
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 4 * MOST_QUOTED
+
+
+def cut(text: str, most: int) -> str:
+    """A text of at most so many letters, without its middle where it is longer."""
+    if len(text) <= most:
+        return text
+    head = (most - 5) // 2
+    return f"{text[:head]} ... {text[-head:]}"
+
+
+def quoted(value: object, most: int = MOST_QUOTED) -> str:
+    """A value of a file as a message quotes it, without its middle where it is long."""
+    return cut(_SHORT.repr(value), most)
+
+
+def clipped(text: str, most: int = MOST_QUOTED) -> str:
+    """The words of a parser, which may quote all of a file, in one line and without the middle."""
+    return cut(" ".join(text.split()), most)
 
 
 def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:

@@ -15,6 +15,8 @@ from msgspec import Meta
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models.checks import (
+    clipped,
+    cut,
     finite,
     has_no,
     install,
@@ -22,6 +24,7 @@ from quietarm.models.checks import (
     nearest_name,
     not_negative,
     positive,
+    quoted,
     spelling,
     unknown,
     whole,
@@ -34,6 +37,7 @@ __all__ = [
     "NotNegative",
     "Positive",
     "Share",
+    "clipped",
     "cut",
     "finite",
     "has_no",
@@ -46,6 +50,7 @@ __all__ = [
     "not_negative",
     "positive",
     "printable",
+    "quoted",
     "several",
     "spelling",
     "table_of",
@@ -196,14 +201,6 @@ def _check_kind(name: str, value: Any, kind: Kind) -> None:
             instance(f"{name} {number}", entry, entry_kind)
     else:
         instance(name, value, kind)
-
-
-def cut(text: str, most: int) -> str:
-    """A text of at most so many letters, without its middle where it is longer."""
-    if len(text) <= most:
-        return text
-    head = (most - 5) // 2
-    return f"{text[:head]} ... {text[-head:]}"
 
 
 def printable(text: str) -> str:
