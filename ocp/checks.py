@@ -49,7 +49,6 @@ __all__ = [
     "nearest_name",
     "not_negative",
     "positive",
-    "printable",
     "quoted",
     "several",
     "spelling",
@@ -201,16 +200,6 @@ def _check_kind(name: str, value: Any, kind: Kind) -> None:
             instance(f"{name} {number}", entry, entry_kind)
     else:
         instance(name, value, kind)
-
-
-def printable(text: str) -> str:
-    """A text for a terminal, which would obey the control characters of a stranger's file."""
-    if text.isprintable():
-        return text
-    whitespace = "\n\t\N{NO-BREAK SPACE}"
-    return "".join(
-        letter if letter.isprintable() or letter in whitespace else "?" for letter in text
-    )
 
 
 def known(family: type[T]) -> dict[str, type[T]]:

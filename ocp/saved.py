@@ -9,7 +9,6 @@ from codecs import BOM_UTF8
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from enum import Enum
-from html import escape
 from pathlib import Path
 from typing import Any, ClassVar, Self, TypeVar, get_type_hints
 
@@ -20,6 +19,7 @@ from quietarm.models import Plant, file_of_plant, known_plants
 from quietarm.ocp.checks import clipped, known, quoted
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.errors import FileFormatError
+from quietarm.ocp.escapes import html_text
 from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.json_text import LEAVES, refuse_repeated, texts_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -29,8 +29,8 @@ from quietarm.ocp.record import Record
 
 def to_html(rows: Iterable[Iterable[str]], head: Iterable[str] = ()) -> str:
     """A table in HTML, of rows of text."""
-    cells = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows]
-    first = "".join(f"<th>{escape(cell)}</th>" for cell in head)
+    cells = ["".join(f"<td>{html_text(cell)}</td>" for cell in row) for row in rows]
+    first = "".join(f"<th>{html_text(cell)}</th>" for cell in head)
     lines = [first, *cells] if first else cells
     return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
 
@@ -202,7 +202,8 @@ def _check_file(name: str, path: str, sha256: str) -> None:
             here = f"of {_shown(loaded.digest)!r} in {loaded.path!r}"
         raise ValueError(
             f"its plant {quoted(name)} is of file {quoted(path)} with SHA-256 {_shown(sha256)!r}, "
-            f"and here {here}; give the file as it was, by --plant-file or load_plant_file, or compute anew"
+            f"and here {here}; give the file as it was, by --plant-file or load_plant_file, or "
+            "compute anew"
         )
 
 

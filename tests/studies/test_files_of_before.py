@@ -297,7 +297,7 @@ ALTERED = {
     "record/settings": {"starts": 3},
     "stated/energy": 0.016,
 }
-"""Entries that the files of plans and floors have in common, and other values that they may have."""
+"""Entries that the files of plans and floors have in common, and other values for them."""
 OF_KIND = {
     "plan": {"coefficients/0": 0.01, "steps": 97, "residual_limit": 0.001, "shadow_prices": {}},
     "floor": {"free/acceleration/3": 1.0, "solver_energy": 0.02, "tolerance": 0.1},
