@@ -155,7 +155,7 @@ class Markdown(str):
 
 
 _MARKS = re.compile(
-    r"[\\`*~](?!\s)|(?<![^\W_])_(?=\S)|(?<=\S)_(?![^\W_])|<(?=[A-Za-z/!?])|(?<=\])[(\[:]"
+    r"[\\`*~$](?!\s)|(?<![^\W_])_(?=\S)|(?<=\S)_(?![^\W_])|<(?=[A-Za-z/!?])|(?<=\])[(\[:]"
     r"|&(?=#?\w+;)|^[#>]|^(?:[-+]|\d+[.)])(?=\s|$)|\|"
 )
 """What Markdown would take for a mark: emphasis, code, a link, HTML, an entity, a cell's end."""

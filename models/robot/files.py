@@ -8,8 +8,6 @@ from quietarm.models.checks import install
 
 MOST_BYTES = 20_000_000
 """Of a file: URDFs have a few hundred thousand."""
-MOST_ENTRIES = 1_000_000
-"""Of a file in YAML, where an alias counts as what it repeats."""
 
 
 def read_text(path: str | Path, what: str) -> str:
@@ -34,34 +32,10 @@ def read_yaml(path: str | Path, what: str) -> object:
     """What a file in YAML holds; nothing in it is run."""
     text = read_text(path, what)
     try:
-        import yaml
+        from quietarm.models.robot.yaml_text import parse_yaml
     except ImportError:
         raise ValueError(f"{what} {path} is YAML, which needs PyYAML; {install('robot')}") from None
     try:
-        document = yaml.safe_load(text)
-        entries = _entries(document, {})
-    except yaml.YAMLError as error:
-        raise ValueError(
-            f"{what} {path} is no valid YAML: {' '.join(str(error).split())}; mend it"
-        ) from None
-    except RecursionError:
-        raise ValueError(f"{what} {path} is nested too deeply; write it flat") from None
-    # of what its tags and dates are made of
-    except (ValueError, TypeError, AttributeError, LookupError, OverflowError) as error:
-        raise ValueError(f"{what} {path} has a value that is none: {error}; mend it") from None
-    if entries > MOST_ENTRIES:
-        raise ValueError(
-            f"{what} {path} repeats its aliases to over {MOST_ENTRIES} entries; write them out"
-        )
-    return document
-
-
-def _entries(value: object, counted: dict[int, int]) -> int:
-    """How many values there are in one, an alias counted wherever it stands."""
-    if not isinstance(value, dict | list):
-        return 1
-    if id(value) not in counted:
-        counted[id(value)] = MOST_ENTRIES + 1  # until it is known: of what holds itself
-        contents = value.values() if isinstance(value, dict) else value
-        counted[id(value)] = 1 + sum(_entries(content, counted) for content in contents)
-    return counted[id(value)]
+        return parse_yaml(text)
+    except ValueError as error:
+        raise ValueError(f"{what} {path} {error}") from None

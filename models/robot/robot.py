@@ -17,7 +17,7 @@ from typing import Any, ClassVar, Literal
 import casadi as ca
 import numpy as np
 
-from quietarm.models.checks import finite, has_no, not_negative, positive, whole
+from quietarm.models.checks import clipped, finite, has_no, not_negative, positive, quoted, whole
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
 from quietarm.models.plant import Plant, content, parameter
@@ -65,7 +65,7 @@ class Robot:
     Parameters
     ----------
     urdf : str or Path
-        A file, or its text.
+        The text of a URDF, or a file as a Path: a text never names a file.
     joints : sequence of str, optional
         The driven joints, in the order of paths; by default all that move and have no spring.
     held : mapping of str to float, optional
@@ -121,9 +121,10 @@ class Robot:
     measured: Measured | None = None
 
     def __post_init__(self) -> None:
-        text = str(self.urdf)
-        if not text.lstrip("\ufeff \n\t").startswith("<"):
-            text = read_text(text, "URDF")
+        urdf: object = self.urdf
+        text = read_text(urdf, "URDF") if isinstance(urdf, Path) else urdf
+        if not isinstance(text, str):
+            raise TypeError(f"urdf is {quoted(text)}; give the text of a URDF, or a file as a Path")
         self._set("urdf", dynamics_of(text))
         self._set("springs", self._springs("springs", self.springs))
         self._set("elastic_joints", self._springs("elastic_joints", self.elastic_joints))
@@ -137,8 +138,8 @@ class Robot:
         if self.modes != EXCITED:
             if isinstance(self.modes, str):
                 raise ValueError(
-                    f"modes is {self.modes!r}; give a whole number, or {EXCITED} for those that "
-                    "the path excites"
+                    f"modes is {quoted(self.modes)}; give a whole number, or {EXCITED} for those "
+                    "that the path excites"
                 )
             self._set("modes", whole("modes", self.modes, 1, MOST_MODES))
         self._set("tip", self._tip())
@@ -263,8 +264,8 @@ class Robot:
             if beyond.max() > _OVER:
                 at = int(beyond.argmax())
                 raise ValueError(
-                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path; "
-                    f"its range is {least:g} to {most:g}, give a path within it"
+                    f"joint {quoted(name)} is at {column[at]:.5g} at s = {places[at]:.3g} of the "
+                    f"path; its range is {least:g} to {most:g}, give a path within it"
                 )
         return path
 
@@ -325,8 +326,8 @@ class Robot:
             joint = self.description.joints[name]
             if joint.mimics is not None:
                 raise ValueError(
-                    f"joint {name!r} of the URDF mimics {joint.mimics!r}; hold both, as "
-                    f"held: {{{name}: 0}}, or leave them out of joints"
+                    f"joint {quoted(name)} of the URDF mimics {quoted(joint.mimics)}; hold both, "
+                    f"as held: {{{clipped(name)}: 0}}, or leave them out of joints"
                 )
         if not names:
             raise ValueError("no joint of the robot is driven; name those that are, as joints")
@@ -335,16 +336,18 @@ class Robot:
     def _check_names(self) -> None:
         driven = self.joints
         for name in {name for name in driven if driven.count(name) > 1}:
-            raise ValueError(f"joint {name!r} is driven twice; name it once in joints")
+            raise ValueError(f"joint {quoted(name)} is driven twice; name it once in joints")
         for entry, names in (("held", self.held), ("springs", self.springs)):
             for name in names:
                 if name in driven:
                     raise ValueError(
-                        f"joint {name!r} is driven and in {entry}; leave one of them out"
+                        f"joint {quoted(name)} is driven and in {entry}; leave one of them out"
                     )
         for name in self.springs:
             if name in self.held:
-                raise ValueError(f"joint {name!r} is held and in springs; leave one of them out")
+                raise ValueError(
+                    f"joint {quoted(name)} is held and in springs; leave one of them out"
+                )
         for entry in ("elastic_joints", "rotor_inertia", "friction", "coulomb"):
             for name in getattr(self, entry):
                 if name not in driven:
@@ -403,8 +406,8 @@ class Robot:
         for name, inertia in zip(names, np.diag(masses)):
             if inertia <= 1e-12 * scale:
                 raise ValueError(
-                    f"joint {name!r} moves no mass; give the links beyond it an <inertial> in the "
-                    "URDF"
+                    f"joint {quoted(name)} moves no mass; give the links beyond it an <inertial> "
+                    "in the URDF"
                 )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp import FileFormatError
-from quietarm.ocp.checks import cut, nearest
+from quietarm.ocp.checks import cut, nearest, quoted
 from quietarm.ocp.files import MOST_BYTES, read_bytes
 from quietarm.studies.reading.matlab import read_matlab
 from quietarm.studies.reading.text import read_text
@@ -76,8 +76,8 @@ class Table:
             ]
             if len(places) > 1:
                 raise FileFormatError(
-                    f"{self.path}: {len(places)} columns are called {name!r}; give one's number, "
-                    f"{' or '.join(map(str, places))}"
+                    f"{self.path}: {len(places)} columns are called {quoted(name)}; give one's "
+                    f"number, {' or '.join(map(str, places))}"
                 )
             if places:
                 return self.columns[places[0]]
@@ -85,7 +85,7 @@ class Table:
             return self.columns[int(name)]
         names = [column.name for column in self.columns]
         near = nearest(name, names) if names else ""
-        raise FileFormatError(f"{self.path} has no column {name!r}{near}; {self._listed()}")
+        raise FileFormatError(f"{self.path} has no column {quoted(name)}{near}; {self._listed()}")
 
     def first(self, quantity: str, remedy: str) -> str:
         """The first column that is called as a time, an angle or a position is.
@@ -142,7 +142,7 @@ class Table:
             if by_options:
                 how = f"give the {quantity}'s by --units {quantity}:{usual}, or by --scale"
             raise FileFormatError(
-                f"{self.path}: is {column.written!r} of column {column.name} a unit? {how}"
+                f"{self.path}: is {quoted(column.written)} of column {column.name} a unit? {how}"
             )
         return column.values * known.get(normal(unit) or written, 1.0)
 
@@ -198,7 +198,7 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
     and in a text nothing but a heading above them. Nothing in a file is run.
     """
     # letters of a column's heading: more are no name, and would fill every message
-    longest_name = 100
+    longest_name = 80
     content = read_bytes(path)
     with reading(path):
         if path.suffix.lower() in ARRAYS:
