@@ -132,7 +132,7 @@ def typed(document: Any, kind: type[T]) -> T:
     if isinstance(document, dict):
         odd |= complete.keys() - _may_be_missing(value) - document.keys()
     if odd:
-        names = clipped(", ".join(sorted(odd)), _MOST_OF_PARSER)
+        names = clipped(", ".join(sorted(odd)))
         raise ValueError(f"entries that are missing, or not known here: {names}")
     return value
 
