@@ -6,6 +6,8 @@ import math
 import re
 from collections.abc import Mapping
 
+from quietarm.models.checks import quoted
+
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
 _WITH_UNIT = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%°/][a-zA-Zµ%°/^0-9]*|)")
@@ -48,6 +50,9 @@ Dividing by 1000 is exact where multiplying by 0.001 is not.
 def parse_quantity(text: str, unit: str, what: str) -> float:
     """Read a number in an SI unit, or with another unit of its kind: 0.6, 600mm, 3.2Hz, pi/6."""
     examples, others = UNITS.get(unit, (f"a number in {unit}, without the unit", {}))
+    longest = 100  # letters: of more the forms below would take time by their square
+    if len(text) > longest:
+        raise ValueError(f"{quoted(text)} is not {what}; give {examples}")
     plain = text.strip()
     if "^" in unit:
         plain = plain.removesuffix(unit.removeprefix("rad").removeprefix("m"))
@@ -63,7 +68,7 @@ def parse_quantity(text: str, unit: str, what: str) -> float:
         return float(plain)  # nan and inf, for the task to refuse in its own words
     if _COMMA.fullmatch(plain):
         examples = f"{plain.replace(',', '.')}, with a point"
-    raise ValueError(f"{text!r} is not {what}; give {examples}")
+    raise ValueError(f"{quoted(text)} is not {what}; give {examples}")
 
 
 def is_number(text: str) -> bool:

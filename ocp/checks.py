@@ -15,6 +15,8 @@ from msgspec import Meta
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models.checks import (
+    clipped,
+    cut,
     finite,
     has_no,
     install,
@@ -22,6 +24,7 @@ from quietarm.models.checks import (
     nearest_name,
     not_negative,
     positive,
+    quoted,
     spelling,
     unknown,
     whole,
@@ -34,6 +37,7 @@ __all__ = [
     "NotNegative",
     "Positive",
     "Share",
+    "clipped",
     "cut",
     "finite",
     "has_no",
@@ -45,7 +49,7 @@ __all__ = [
     "nearest_name",
     "not_negative",
     "positive",
-    "printable",
+    "quoted",
     "several",
     "spelling",
     "table_of",
@@ -101,7 +105,7 @@ def instance(name: str, value: Any, *kinds: type[T]) -> T:
 def several(name: str, value: Any, of: str) -> list[Any]:
     """A sequence as a list; ValueError where it is a single value, or text."""
     if isinstance(value, str) or not isinstance(value, Iterable):
-        raise ValueError(f"{name} is {value!r}; give a list of {of}")
+        raise ValueError(f"{name} is {quoted(value)}; give a list of {of}")
     return list(value)
 
 
@@ -125,7 +129,7 @@ def _instead_of(value: Any, kind: type[Any]) -> str:
     if meant is not None:
         return f"an object, as {_construction(meant)}"
     if isinstance(value, str | PathLike) and hasattr(kind, "load"):
-        return f"{kind.__name__}.load({str(value)!r})"
+        return f"{kind.__name__}.load({quoted(str(value))})"
     return getattr(kind, "example", f"an object of {kind.__name__}")
 
 
@@ -186,7 +190,7 @@ def _check_kind(name: str, value: Any, kind: Kind) -> None:
             example = f"{{'mine': {name[:-1]}}}"
             raise TypeError(f"{name} is {reprlib.repr(value)}; give them by name, as {example}")
         for key, entry in value.items():
-            instance(f"{name} {key!r}", entry, kind[str])
+            instance(f"{name} {quoted(key)}", entry, kind[str])
     elif isinstance(kind, list):
         (entry_kind,) = kind
         if isinstance(value, entry_kind | str) or not isinstance(value, Collection):
@@ -196,24 +200,6 @@ def _check_kind(name: str, value: Any, kind: Kind) -> None:
             instance(f"{name} {number}", entry, entry_kind)
     else:
         instance(name, value, kind)
-
-
-def cut(text: str, most: int) -> str:
-    """A text of at most so many letters, without its middle where it is longer."""
-    if len(text) <= most:
-        return text
-    head = (most - 5) // 2
-    return f"{text[:head]} ... {text[-head:]}"
-
-
-def printable(text: str) -> str:
-    """A text for a terminal, which would obey the control characters of a stranger's file."""
-    if text.isprintable():
-        return text
-    whitespace = "\n\t\N{NO-BREAK SPACE}"
-    return "".join(
-        letter if letter.isprintable() or letter in whitespace else "?" for letter in text
-    )
 
 
 def known(family: type[T]) -> dict[str, type[T]]:
@@ -229,7 +215,7 @@ def known(family: type[T]) -> dict[str, type[T]]:
             continue
         if name in classes and _ships(classes[name]) and not _ships(kind):
             raise ValueError(
-                f"name {name!r} of {kind.__name__} is that of quietarm's "
+                f"name {quoted(name)} of {kind.__name__} is that of quietarm's "
                 f"{classes[name].__name__}; give {kind.__name__} another"
             )
         classes[name] = kind

@@ -1,9 +1,11 @@
-"""Documents as JSON: as their files have them, and as their checksums are of; in one pass."""
+"""Documents as JSON: as their files have them, and as their checksums are of; and read back."""
 
 from __future__ import annotations
 
 import json
 from typing import Any, NamedTuple
+
+from quietarm.ocp.checks import quoted
 
 LEAVES = frozenset({float, int, str, bool, type(None)})
 """Of JSON, and as they are."""
@@ -52,3 +54,20 @@ def _with_whole_numbers(entry: Any) -> Any:
     if type(entry) is list:
         return [*map(_with_whole_numbers, entry)]
     return int(entry) if type(entry) is float and entry.is_integer() else entry
+
+
+def refuse_repeated(text: str | bytes) -> None:
+    """Refuse JSON that has an entry twice; ValueError names the entry.
+
+    Parsers disagree about such a text: most take the last entry, others the first.
+    """
+    json.loads(text, object_pairs_hook=_once, parse_float=str, parse_int=str)
+
+
+def _once(pairs: list[tuple[str, Any]]) -> None:
+    """Refuse a table in which a name comes twice."""
+    names = set[str]()
+    for name, _ in pairs:
+        if name in names:
+            raise ValueError(f"entry {quoted(name)} is given twice; give it once")
+        names.add(name)

@@ -33,18 +33,18 @@ class Stated:
 
     Attributes
     ----------
-    stated : MainFigures or None
-        None where the file states nothing.
+    stated : MainFigures
+        A file without them is refused.
     """
 
     worst: ClassVar[Worst | None] = None
 
-    stated: MainFigures | None = field(default=None, metadata=IF_STATED)
+    stated: MainFigures
 
     @property
     def figures(self) -> dict[str, float]:
         """The figures by name."""
-        return {} if self.stated is None else dataclasses.asdict(self.stated)
+        return dataclasses.asdict(self.stated)
 
 
 @dataclass(frozen=True)

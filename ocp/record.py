@@ -18,6 +18,7 @@ from quietarm.ocp.checks import (
     Positive,
     finite,
     positive,
+    quoted,
     whole,
 )
 from quietarm.ocp.simulation.objective import Motion
@@ -82,7 +83,7 @@ class Record:
 
     def __post_init__(self) -> None:
         if not self.method.strip():
-            raise ValueError(f"method is {self.method!r}; give the name of the method")
+            raise ValueError(f"method is {quoted(self.method)}; give the name of the method")
         longest = 300  # letters: a method may be called by a file, whose name has at most 255
         if len(self.method) > longest:
             raise ValueError(

@@ -9,7 +9,6 @@ from codecs import BOM_UTF8
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from enum import Enum
-from html import escape
 from pathlib import Path
 from typing import Any, ClassVar, Self, TypeVar, get_type_hints
 
@@ -17,11 +16,12 @@ import msgspec
 import numpy as np
 
 from quietarm.models import Plant, file_of_plant, known_plants
-from quietarm.ocp.checks import known
+from quietarm.ocp.checks import clipped, known, quoted
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.errors import FileFormatError
+from quietarm.ocp.escapes import html_text
 from quietarm.ocp.files import read_bytes, write_whole
-from quietarm.ocp.json_text import LEAVES, texts_of
+from quietarm.ocp.json_text import LEAVES, refuse_repeated, texts_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.term_profile import import_profiles
 from quietarm.ocp.record import Record
@@ -29,8 +29,8 @@ from quietarm.ocp.record import Record
 
 def to_html(rows: Iterable[Iterable[str]], head: Iterable[str] = ()) -> str:
     """A table in HTML, of rows of text."""
-    cells = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows]
-    first = "".join(f"<th>{escape(cell)}</th>" for cell in head)
+    cells = ["".join(f"<td>{html_text(cell)}</td>" for cell in row) for row in rows]
+    first = "".join(f"<th>{html_text(cell)}</th>" for cell in head)
     lines = [first, *cells] if first else cells
     return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
 
@@ -42,6 +42,8 @@ PLANT_FILE = "plant_file"
 """Entry of a plant: the file it was loaded from."""
 CHECKSUM = "checksum"
 """Entry of an answer's file: a digest of all the others."""
+_MOST_OF_PARSER = 120
+"""Letters of a parser's message: its own words, and what it quotes of a file."""
 
 
 def plain(value: Any, whole: bool = False) -> Any:
@@ -123,13 +125,15 @@ def typed(document: Any, kind: type[T]) -> T:
     try:
         value = msgspec.convert(document, kind, dec_hook=_known_here)
     except msgspec.ValidationError as error:
-        raise ValueError(str(error)) from None
+        ours = error.__cause__ is not None  # words of a constructor, which quote little
+        raise ValueError(str(error) if ours else clipped(str(error), _MOST_OF_PARSER)) from None
     complete = plain(value, whole=True)
     odd = _unknown(document, complete)
     if isinstance(document, dict):
         odd |= complete.keys() - _may_be_missing(value) - document.keys()
     if odd:
-        raise ValueError(f"entries that are missing, or not known here: {', '.join(sorted(odd))}")
+        names = clipped(", ".join(sorted(odd)))
+        raise ValueError(f"entries that are missing, or not known here: {names}")
     return value
 
 
@@ -154,7 +158,7 @@ def _known_here(kind: Any, entry: Any) -> Any:
     if kind not in _FAMILIES:
         return np.array(msgspec.convert(entry, list[float]))
     if not isinstance(entry, dict) or "name" not in entry:
-        raise ValueError(f"{kind.__name__} is {entry!r}; give a table with its name")
+        raise ValueError(f"{kind.__name__} is {quoted(entry)}; give a table with its name")
     if entry["name"] == Mix.name:
         return typed(entry, Mix)
     family = _FAMILIES[kind]
@@ -167,13 +171,13 @@ def _known_here(kind: Any, entry: Any) -> Any:
     if name not in classes:
         by_file = ", or name it by --plant-file" if kind is Plant else ""
         raise ValueError(
-            f"its {family} {name!r} is not known here (known: {', '.join(sorted(classes))}); "
+            f"its {family} {quoted(name)} is not known here (known: {', '.join(sorted(classes))}); "
             f"import the file that defines it first{by_file}"
         )
     try:
         return classes[name](**_with_content(classes[name], table))
     except TypeError as error:  # an entry too many or too few
-        raise ValueError(f"its {family} {name!r}: {error}") from None
+        raise ValueError(f"its {family} {name!r}: {clipped(str(error), _MOST_OF_PARSER)}") from None
 
 
 def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
@@ -203,8 +207,9 @@ def _check_file(name: str, path: str, sha256: str) -> None:
         if loaded is not None:
             here = f"of {_shown(loaded.digest)!r} in {loaded.path!r}"
         raise ValueError(
-            f"its plant {name!r} is of file {path!r} with SHA-256 {_shown(sha256)!r}, and here "
-            f"{here}; give the file as it was, by --plant-file or load_plant_file, or compute anew"
+            f"its plant {quoted(name)} is of file {quoted(path)} with SHA-256 {_shown(sha256)!r}, "
+            f"and here {here}; give the file as it was, by --plant-file or load_plant_file, or "
+            "compute anew"
         )
 
 
@@ -215,8 +220,9 @@ def _shown(digest: str) -> str:
 
 def read_document(path: str | Path, kind: str) -> Any:
     """What the JSON of a file says; FileFormatError where it is none."""
+    content = read_bytes(path).removeprefix(BOM_UTF8)
     try:
-        return msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
+        document = msgspec.json.decode(content)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         if odd := _no_json_number(path):
             raise FileFormatError(
@@ -227,6 +233,11 @@ def read_document(path: str | Path, kind: str) -> Any:
             f"{path} is not a {kind}: it is not whole, valid JSON in UTF-8 ({error}); "
             f"write the {kind} again, or save it so"
         ) from None
+    try:
+        refuse_repeated(content)
+    except (ValueError, RecursionError) as error:
+        raise FileFormatError(f"{path} is not a valid {kind}: {error}") from None
+    return document
 
 
 def stated_part(value: Any, document: Any) -> Any:
@@ -250,19 +261,25 @@ def read_content(
     path: str | Path, kind: str, version: int, earlier: Collection[int] = ()
 ) -> tuple[dict[str, Any], int]:
     """What a file holds beside format and checksum, and its version; both are checked."""
-    document = read_document(path, kind)
+    return _content_of(read_document(path, kind), path, kind, version, earlier)
+
+
+def _content_of(
+    document: Any, path: str | Path, kind: str, version: int, earlier: Collection[int]
+) -> tuple[dict[str, Any], int]:
+    """What a document holds beside format and checksum, and its version; both are checked."""
     content = dict(document) if isinstance(document, dict) else {}
     content.pop(CHECKSUM, None)
     stated_format = content.pop("format", None)
     stated_version = content.pop("version", None)
     if stated_format != f"quietarm-{kind}":
         raise FileFormatError(
-            f"{path} is not a {kind}: its format is {stated_format!r}; give a {kind} file"
+            f"{path} is not a {kind}: its format is {quoted(stated_format)}; give a {kind} file"
         )
     if stated_version not in (version, *earlier):
         raise FileFormatError(
-            f"{path} has version {stated_version!r} of the {kind} format and this quietarm reads "
-            f"{version}; find the {kind} again, or install the quietarm that wrote it"
+            f"{path} has version {quoted(stated_version)} of the {kind} format and this quietarm "
+            f"reads {version}; find the {kind} again, or install the quietarm that wrote it"
         )
     return content, stated_version
 
@@ -273,7 +290,7 @@ def _no_json_number(path: str | Path) -> str:
     odd: list[str] = []
 
     def take(pairs: list[tuple[str, Any]]) -> None:
-        odd.extend(f"{name} is {entry}" for name, entry in pairs if entry in no_numbers)
+        odd.extend(f"{clipped(name)} is {entry}" for name, entry in pairs if entry in no_numbers)
 
     with suppress(ValueError, RecursionError):
         text = read_bytes(path).removeprefix(BOM_UTF8).decode()
@@ -287,7 +304,11 @@ def keeps_checksum(path: str | Path, name: str) -> bool | None:
     It tells changes of what no evaluation tells: candidates, iterations, time, method. Whoever
     computes the checksum again can write what they like.
     """
-    document = read_document(path, name)
+    return _is_unchanged(read_document(path, name))
+
+
+def _is_unchanged(document: Mapping[str, Any]) -> bool | None:
+    """Whether a document has the checksum of its entries; None where it has none."""
     stated = document.get(CHECKSUM)
     return None if stated is None else stated == _checksum_of(document)
 
@@ -349,9 +370,16 @@ class Saved:
         FileFormatError
             When the file holds something else, is not whole, or of another version.
         """
-        content, version = read_content(path, cls.kind, cls.version, cls.earlier)
+        document = read_document(path, cls.kind)
+        content, version = _content_of(document, path, cls.kind, cls.version, cls.earlier)
         with refusals(path, cls.kind):
-            return typed(cls._entries_of(content, version), cls)
+            answer = typed(cls._entries_of(content, version), cls)
+            cls._check_document(document, version)
+        return answer
+
+    @classmethod
+    def _check_document(cls, document: Mapping[str, Any], version: int) -> None:
+        """Refuse a document that was changed since it was written, where its format tells."""
 
     @classmethod
     def _entries_of(cls, content: Mapping[str, Any], version: int) -> Mapping[str, Any]:
@@ -361,9 +389,23 @@ class Saved:
 
 
 class Answer(Saved):
-    """What a method found. A subclass is a dataclass with the entry below."""
+    """What a method found. A subclass is a dataclass with the entry below.
+
+    Its file has a checksum, and is refused without: only versions before had none.
+    """
 
     record: Record
+
+    @classmethod
+    def _check_document(cls, document: Mapping[str, Any], version: int) -> None:
+        unchanged = _is_unchanged(document)
+        if unchanged or (unchanged is None and version in cls.earlier):
+            return
+        why = "it has no checksum" if unchanged is None else "its checksum is of other entries"
+        raise ValueError(
+            f"it was changed since it was written, as {why}; find the {cls.kind} again, or "
+            "evaluate its coefficients by quietarm evaluate"
+        )
 
     def _text(self) -> str:
         texts = texts_of(self._document())

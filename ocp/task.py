@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import LINEAR, joint_unit
 from quietarm.models.validation import check_along, check_contract
-from quietarm.ocp.checks import finite, has_no, instance, positive, several, takes
+from quietarm.ocp.checks import finite, has_no, instance, positive, quoted, several, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
 from quietarm.ocp.limits import (
     QUANTITIES,
@@ -322,10 +322,10 @@ def _check_bounds(quantity: Quantity, value: Any, plant: Plant) -> Bounds:
         return _check_sides(name, quantity.unit, value)
     if not quantity.of_joints:
         raise ValueError(
-            f"{name} is {value!r}; give one for all, as {quantity.label}s have no joint"
+            f"{name} is {quoted(value)}; give one for all, as {quantity.label}s have no joint"
         )
     if not value:
-        raise ValueError(f"{name} is {value!r}; give a limit of one joint or more, by name")
+        raise ValueError(f"{name} is {quoted(value)}; give a limit of one joint or more, by name")
     for joint in value:
         if joint not in plant.joint_names:
             raise ValueError(has_no(plant.name, "joint", joint, plant.joint_names))
@@ -343,7 +343,9 @@ def _check_sides(name: str, unit: str, value: Any) -> Sides:
         return positive(name, value, unit)
     bounds: list[Any] = list(value)
     if len(bounds) != 2:
-        raise ValueError(f"{name} is {value!r}; give one number, or the least and the largest")
+        raise ValueError(
+            f"{name} is {quoted(value)}; give one number, or the least and the largest"
+        )
     lower, upper = (finite(name, side, unit) for side in bounds)
     if not lower < 0 < upper:
         raise ValueError(

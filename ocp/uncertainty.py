@@ -17,7 +17,7 @@ from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Modes
 from quietarm.models.validation import check_contract, outputs_of
-from quietarm.ocp.checks import has_no, positive, takes
+from quietarm.ocp.checks import has_no, positive, quoted, takes
 
 FREQUENCY = "frequency"
 DAMPING = "damping"
@@ -222,8 +222,8 @@ def _check_symbols(plant: Plant, name: str, value: float) -> None:
         atol=0.0,
     ):
         raise ValueError(
-            f"plant {plant.name!r} computes with {name} outside its equations or by Python's math; "
-            f"compute in them, from self.{name}, with casadi.sqrt and its like"
+            f"plant {quoted(plant.name)} computes with {name} outside its equations or by Python's "
+            f"math; compute in them, from self.{name}, with casadi.sqrt and its like"
         )
 
 

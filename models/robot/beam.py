@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from quietarm.models.beam_modes import beam_modes
-from quietarm.models.checks import not_negative, positive, whole
+from quietarm.models.checks import not_negative, positive, quoted, whole
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.spectra import spectrum
 from quietarm.models.robot.urdf import Inertia
@@ -71,7 +71,7 @@ class Beam:
 
     def __post_init__(self) -> None:
         if not isinstance(self.at, str) or not self.at:
-            raise ValueError(f"at of the beam is {self.at!r}; give the name of a link")
+            raise ValueError(f"at of the beam is {quoted(self.at)}; give the name of a link")
         object.__setattr__(self, "length", _size("length of the beam", self.length, "m"))
         for name, unit in _OF_MATERIAL.items():
             value = getattr(self, name)

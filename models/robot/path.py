@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from quietarm.models.checks import quoted
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.cartesian import Pose, kinematics_of, straight_positions
 from quietarm.models.robot.files import read_text, read_yaml
@@ -348,7 +349,7 @@ def _row(name: str, values: ArrayLike) -> Array:
     except (TypeError, ValueError):
         row = np.zeros((0, 0))
     if row.ndim != 1 or not len(row) or not np.all(np.isfinite(row)):
-        raise ValueError(f"{name} is {values!r}; give a finite number for each joint")
+        raise ValueError(f"{name} is {quoted(values)}; give a finite number for each joint")
     return row
 
 

@@ -17,7 +17,7 @@ from typing import Any, ClassVar, Literal
 import casadi as ca
 import numpy as np
 
-from quietarm.models.checks import finite, has_no, not_negative, positive, whole
+from quietarm.models.checks import finite, has_no, not_negative, positive, quoted, whole
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
 from quietarm.models.notes import Note
@@ -73,7 +73,7 @@ class Robot:
     Parameters
     ----------
     urdf : str or Path
-        A file, or its text.
+        The text of a URDF, or a file as a Path: a text never names a file.
     joints : sequence of str, optional
         The driven joints, in the order of paths; by default all that move, have no spring and
         mimic none. Those that mimic one follow it, or the motor of it where its gear gives.
@@ -136,9 +136,10 @@ class Robot:
     remarks: tuple[Note, ...] = field(default=(), metadata={"if_stated": True})
 
     def __post_init__(self) -> None:
-        text = str(self.urdf)
-        if not text.lstrip("\ufeff \n\t").startswith("<"):
-            text = read_text(text, "URDF")
+        urdf: object = self.urdf
+        text = read_text(urdf, "URDF") if isinstance(urdf, Path) else urdf
+        if not isinstance(text, str):
+            raise TypeError(f"urdf is {quoted(text)}; give the text of a URDF, or a file as a Path")
         self._set("urdf", dynamics_of(text))
         self._set("remarks", (*notes_of_text(text), *self.remarks))
         self._set("springs", self._springs("springs", self.springs))
@@ -153,8 +154,8 @@ class Robot:
         if self.modes is not None and self.modes != EXCITED:
             if isinstance(self.modes, str):
                 raise ValueError(
-                    f"modes is {self.modes!r}; give a whole number, or {EXCITED} for those that "
-                    "the path excites"
+                    f"modes is {quoted(self.modes)}; give a whole number, or {EXCITED} for those "
+                    "that the path excites"
                 )
             self._set("modes", whole("modes", self.modes, 1, MOST_MODES))
         self._set("tip", self._tip())
@@ -312,9 +313,9 @@ class Robot:
             if beyond.max() > _OVER:
                 at = int(beyond.argmax())
                 raise ValueError(
-                    f"joint {name!r} is at {column[at]:.5g} at s = {places[at]:.3g} of the path; "
-                    f"its range is {least:g} to {most:g}{self._with_followers(name)}, give a path "
-                    "within it"
+                    f"joint {quoted(name)} is at {column[at]:.5g} at s = {places[at]:.3g} of the "
+                    f"path; its range is {least:g} to {most:g}{self._with_followers(name)}, give a "
+                    "path within it"
                 )
         return path
 
@@ -399,8 +400,8 @@ class Robot:
             if mimic is not None:
                 entry = "joints" if name in names else "springs"
                 raise ValueError(
-                    f"joint {name!r} of the URDF mimics {mimic.joint!r} and follows it; leave it "
-                    f"out of {entry}, or <mimic> out of the URDF"
+                    f"joint {quoted(name)} of the URDF mimics {quoted(mimic.joint)} and follows "
+                    f"it; leave it out of {entry}, or <mimic> out of the URDF"
                 )
         if not names:
             raise ValueError("no joint of the robot is driven; name those that are, as joints")
@@ -414,16 +415,18 @@ class Robot:
     def _check_names(self) -> None:
         driven = self.joints
         for name in {name for name in driven if driven.count(name) > 1}:
-            raise ValueError(f"joint {name!r} is driven twice; name it once in joints")
+            raise ValueError(f"joint {quoted(name)} is driven twice; name it once in joints")
         for entry, names in (("held", self.held), ("springs", self.springs)):
             for name in names:
                 if name in driven:
                     raise ValueError(
-                        f"joint {name!r} is driven and in {entry}; leave one of them out"
+                        f"joint {quoted(name)} is driven and in {entry}; leave one of them out"
                     )
         for name in self.springs:
             if name in self.held:
-                raise ValueError(f"joint {name!r} is held and in springs; leave one of them out")
+                raise ValueError(
+                    f"joint {quoted(name)} is held and in springs; leave one of them out"
+                )
         for entry in ("elastic_joints", "rotor_inertia", "friction", "coulomb"):
             for name in getattr(self, entry):
                 if name not in self._moved_by_motors():
@@ -479,7 +482,7 @@ class Robot:
             faulty = name in links and links[name].turns_backwards
             if faulty and number != GROUND and mechanism.bodies[number].inertia.turns_backwards:
                 raise ValueError(
-                    f"link {name!r} of the URDF has {links[name].fault}; give what a body can have"
+                    f"link {quoted(name)} of the URDF has {links[name].fault}; give what a body can have"
                 )
         dynamics = Dynamics(mechanism)
         x = np.random.default_rng(0).uniform(0.3, 1.0, dynamics.size)
@@ -489,8 +492,8 @@ class Robot:
         for name, inertia in zip(names, np.diag(masses)):
             if inertia <= 1e-12 * scale:
                 raise ValueError(
-                    f"joint {name!r} moves no mass; give the links beyond it an <inertial> in the "
-                    "URDF"
+                    f"joint {quoted(name)} moves no mass; give the links beyond it an <inertial> "
+                    "in the URDF"
                 )
 
 

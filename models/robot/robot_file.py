@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from quietarm.models.checks import has_no
+from quietarm.models.checks import clipped, has_no, quoted
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.files import read_text, read_yaml
 from quietarm.models.robot.flexibility import Base, Measured, Spring
@@ -84,11 +84,15 @@ def _refuse_heavy(beam: Beam, urdf: str) -> None:
 def _held(entry: Any, urdf: str) -> dict[str, float]:
     """Positions of joints that are not driven, of one that slides in metres."""
     if not isinstance(entry, dict):
-        raise ValueError(f"held is {entry!r}; give positions by joint, as {{finger_joint: 20mm}}")
+        raise ValueError(
+            f"held is {quoted(entry)}; give positions by joint, as {{finger_joint: 20mm}}"
+        )
     joints = read_urdf(urdf).joints
     slides = {name for name, joint in joints.items() if joint.kind == PRISMATIC}
     return {
-        str(joint): _number(value, f"held position of {joint}", "m" if joint in slides else "rad")
+        str(joint): _number(
+            value, f"held position of {clipped(str(joint))}", "m" if joint in slides else "rad"
+        )
         for joint, value in entry.items()
     }
 
@@ -125,7 +129,9 @@ def limits_of(urdf: str, held: Collection[str] = ()) -> dict[str, dict[str, floa
 def _limits(entry: Any, urdf: str, folder: Path) -> dict[str, dict[str, float]]:
     """Limits by quantity and joint: of the URDF, or those and what MoveIt's file has of them."""
     if not isinstance(entry, str):
-        raise ValueError(f"limits is {entry!r}; give a joint_limits.yaml of MoveIt, or {OF_URDF}")
+        raise ValueError(
+            f"limits is {quoted(entry)}; give a joint_limits.yaml of MoveIt, or {OF_URDF}"
+        )
     limits = limits_of(urdf)
     if entry == OF_URDF:
         return limits
@@ -142,7 +148,7 @@ def _limits(entry: Any, urdf: str, folder: Path) -> dict[str, dict[str, float]]:
             raise ValueError(has_no("the URDF", "joint, for limits,", str(joint), known))
         if not isinstance(entries, dict):
             raise ValueError(
-                f"limits of {joint} are {entries!r}; give has_velocity_limits and so on"
+                f"limits of {joint} are {quoted(entries)}; give has_velocity_limits and so on"
             )
         _refuse_narrower(known[joint], entries)
         for theirs, quantity in _LIMITS.items():
@@ -233,7 +239,7 @@ def _spring(entry: Any, what: str) -> Spring:
 
 def _table(entry: Any, what: str, readers: Mapping[str, Read]) -> dict[str, Any]:
     if not isinstance(entry, dict):
-        raise ValueError(f"{what} is {entry!r}; give a table of {', '.join(readers)}")
+        raise ValueError(f"{what} is {quoted(entry)}; give a table of {', '.join(readers)}")
     for name in entry:
         if name not in readers:
             raise ValueError(has_no(what, "entry", str(name), list(readers)))
@@ -246,8 +252,13 @@ def _table(entry: Any, what: str, readers: Mapping[str, Read]) -> dict[str, Any]
 
 def _by_joint(entry: Any, what: str, read: Read) -> dict[str, Any]:
     if not isinstance(entry, dict):
-        raise ValueError(f"{what} is {entry!r}; give values by joint, as {{elbow_joint: 1.0}}")
-    return {str(joint): read(value, f"{what} of {joint}") for joint, value in entry.items()}
+        raise ValueError(
+            f"{what} is {quoted(entry)}; give values by joint, as {{elbow_joint: 1.0}}"
+        )
+    return {
+        str(joint): read(value, f"{what} of {clipped(str(joint))}")
+        for joint, value in entry.items()
+    }
 
 
 def _several(entry: Any, what: str, unit: str) -> Any:
@@ -258,13 +269,13 @@ def _several(entry: Any, what: str, unit: str) -> Any:
 
 def _names(entry: Any, what: str) -> tuple[str, ...]:
     if not isinstance(entry, list):
-        raise ValueError(f"{what} is {entry!r}; give a list of names")
+        raise ValueError(f"{what} is {quoted(entry)}; give a list of names")
     return tuple(_name(name, what) for name in entry)
 
 
 def _name(entry: Any, what: str) -> str:
     if not isinstance(entry, str):
-        raise ValueError(f"{what} is {entry!r}; give a name")
+        raise ValueError(f"{what} is {quoted(entry)}; give a name")
     return entry
 
 
@@ -275,10 +286,10 @@ def _quantity(unit: str) -> Read:
 def _number(entry: Any, what: str, unit: str) -> float:
     """A number in SI units, or with another unit."""
     if isinstance(entry, bool) or not isinstance(entry, int | float | str):
-        raise ValueError(f"{what} is {entry!r}; give a number in {unit}")
+        raise ValueError(f"{what} is {quoted(entry)}; give a number in {unit}")
     number = parse_quantity(entry, unit, what) if isinstance(entry, str) else float(entry)
     if not math.isfinite(number):
-        raise ValueError(f"{what} is {entry}; give a finite number")
+        raise ValueError(f"{what} is {quoted(entry)}; give a finite number")
     return number
 
 

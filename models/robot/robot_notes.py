@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quietarm.models.checks import quoted
 from quietarm.models.notes import Note
 from quietarm.models.robot.following import held_position, limits_with_followers
 from quietarm.models.robot.urdf import PRISMATIC, Urdf
@@ -78,7 +79,7 @@ def _faulty_inertias(urdf: Urdf) -> Iterator[Note]:
         name, fault = next(iter(faults.items()))
         others = listed([f"{other!r}" for other in list(faults)[1:]])
         also = f" (so have {others})" if others else ""
-        yield Note(f"link {name!r} of the URDF has {fault}, which no body has{also}; mend it")
+        yield Note(f"link {quoted(name)} of the URDF has {fault}, which no body has{also}; mend it")
 
 
 def _millimetres(urdf: Urdf) -> Iterator[Note]:

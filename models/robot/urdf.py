@@ -14,6 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from quietarm.models.checks import listed, quoted
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.frames import Frame, rotation_of, rotation_of_quaternion
 from quietarm.models.robot.urdf_text import parse
@@ -184,20 +185,20 @@ def read_urdf(text: str) -> Urdf:
         for link in (joint.parent, joint.child):
             if link not in links:
                 raise ValueError(
-                    f"joint {joint.name!r} of the URDF joins {link!r}, which is no link of it; "
-                    "add the link, or mend its name"
+                    f"joint {quoted(joint.name)} of the URDF joins {quoted(link)}, which is no "
+                    "link of it; add the link, or mend its name"
                 )
         _check_mimic(joint, joints)
     children = Counter(joint.child for joint in joints.values())
     for child, count in children.items():
         if count > 1:
             raise ValueError(
-                f"link {child!r} of the URDF hangs on {count} joints, a closed loop; give a tree, "
-                "with the loop cut open"
+                f"link {quoted(child)} of the URDF hangs on {count} joints, a closed loop; give a "
+                "tree, with the loop cut open"
             )
     roots = [link for link in links if link not in children]
     if len(roots) != 1:
-        number = f"{len(roots)} roots ({', '.join(roots)})" if roots else "no root, a closed loop"
+        number = f"{len(roots)} roots ({listed(roots)})" if roots else "no root, a closed loop"
         raise ValueError(f"the URDF has {number}; give one tree, joined by fixed joints")
     urdf = Urdf(root.get("name") or "robot", links, joints, roots[0])
     if len(list(urdf.outwards())) != len(joints):
@@ -231,7 +232,7 @@ def _inertia(link: ElementTree.Element) -> Inertia:
     inertial = link.find("inertial")
     if inertial is None:
         return Inertia()
-    what = f"link {_name(link)!r} of the URDF"
+    what = f"link {quoted(_name(link))} of the URDF"
     frame = _origin(inertial, what)
     mass = _number(inertial.find("mass"), "value", f"mass of {what}", None, _LARGEST)
     entries = {
@@ -250,12 +251,12 @@ def _inertia(link: ElementTree.Element) -> Inertia:
 
 def _joint(element: ElementTree.Element) -> UrdfJoint:
     name = _name(element)
-    what = f"joint {name!r} of the URDF"
+    what = f"joint {quoted(name)} of the URDF"
     kind = element.get("type") or ""
     if kind not in _KINDS:
         raise ValueError(
-            f"{what} is {kind!r}; give revolute, continuous, prismatic or fixed joints alone, as "
-            "a fixed one to the ground"
+            f"{what} is {quoted(kind)}; give revolute, continuous, prismatic or fixed joints "
+            "alone, as a fixed one to the ground"
         )
     ends = {end: _link(element, end, what) for end in ("parent", "child")}
     frame = _origin(element, what)
@@ -360,7 +361,7 @@ def _number(
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise ValueError(f"{what} is {text!r}; give a number")
+        raise ValueError(f"{what} is {quoted(text)}; give a number")
     if abs(number) > largest:
         raise ValueError(f"{what} is {number:g}; give at most {largest:g}")
     return number
@@ -375,9 +376,9 @@ def _numbers(
     except ValueError:
         numbers = np.zeros(0)
     if len(numbers) != count or not np.all(np.isfinite(numbers)):
-        raise ValueError(f"{what} is {text!r}; give {_COUNTS[count]} numbers")
+        raise ValueError(f"{what} is {quoted(text)}; give {_COUNTS[count]} numbers")
     if np.abs(numbers).max() > _LARGEST:
-        raise ValueError(f"{what} is {text!r}; give numbers of at most {_LARGEST:g}")
+        raise ValueError(f"{what} is {quoted(text)}; give numbers of at most {_LARGEST:g}")
     return numbers
 
 

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from difflib import get_close_matches
 
-from quietarm.models.checks import spelling
+from quietarm.models.checks import clipped, quoted, spelling
 
 CHILDREN: Mapping[str, tuple[str, ...]] = {
     "robot": ("link", "joint"),
@@ -65,7 +65,7 @@ def parse(text: str) -> ElementTree.Element:
     """
     root = _parse_xml(text)
     if root.tag != "robot":
-        raise ValueError(f"the URDF begins with <{root.tag}>; give one of <robot>")
+        raise ValueError(f"the URDF begins with <{clipped(root.tag)}>; give one of <robot>")
     if root.find("robot") is not None:
         raise ValueError("the URDF holds several robots; give a file for each, or one tree of all")
     links = len(root.findall("link"))
@@ -82,7 +82,7 @@ def parse(text: str) -> ElementTree.Element:
             if name and count > 1:
                 number = "two" if count == 2 else str(count)
                 raise ValueError(
-                    f"{number} {kind}s are called {name!r} in the URDF; give each its own name"
+                    f"{number} {kind}s are called {quoted(name)} in the URDF; give each its own name"
                 )
     return root
 
@@ -175,7 +175,9 @@ def _parse_xml(text: str) -> ElementTree.Element:
             raise ValueError(
                 "the URDF goes on after </robot>, as with several robots; give a file for each"
             ) from None
-        raise ValueError(f"the URDF is no valid XML ({error}); export it again") from None
+        raise ValueError(
+            f"the URDF is no valid XML ({clipped(str(error))}); export it again"
+        ) from None
 
 
 def _filtered(root: ElementTree.Element) -> str:
@@ -215,7 +217,7 @@ def _refuse_mistyped(element: ElementTree.Element, owner: ElementTree.Element) -
         near = _mistyped(name, ATTRIBUTES.get(element.tag, ()), others)
         if near:
             raise ValueError(
-                f"<{element.tag}> of {_words(owner)} has no {name!r}; did you mean {near!r}?"
+                f"<{element.tag}> of {_words(owner)} has no {quoted(name)}; did you mean {near!r}?"
             )
 
 
@@ -239,4 +241,4 @@ def _words(owner: ElementTree.Element) -> str:
     """What an error calls a robot, link or joint."""
     if owner.tag == "robot":
         return "the URDF"
-    return f"{owner.tag} {owner.get('name')!r} of the URDF"
+    return f"{owner.tag} {quoted(owner.get('name'))} of the URDF"

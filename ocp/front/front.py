@@ -22,6 +22,7 @@ from quietarm.ocp.checks import (
     takes,
     whole,
 )
+from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import (
     Entries,
@@ -206,11 +207,7 @@ class Front(Answer):
 
         ValueError when the file cannot be written.
         """
-        columns = self.columns()
-        rows = zip(*(column.tolist() for column in columns.values()))
-        header = ",".join(columns)
-        lines = [header, *(",".join(map(repr, row)) for row in rows)]
-        write_whole(path, "\n".join(lines) + "\n")
+        write_whole(path, csv_table(self.columns()))
 
     @classmethod
     @takes(task=PointToPoint, profile=JointProfile)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 import time
 from collections.abc import Mapping
@@ -18,6 +17,7 @@ from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, NotNegative, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
+from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.motion_answer import MotionAnswer
@@ -241,9 +241,7 @@ class Plan(MotionAnswer):
         table = np.column_stack(
             [sampled.time, *moving, sampled.tips, *sample.torques, sampled.power]
         )
-        text = io.StringIO()
-        np.savetxt(text, table, delimiter=",", header=",".join(header), comments="", fmt="%.10g")
-        write_whole(path, text.getvalue())
+        write_whole(path, csv_table(dict(zip(header, table.T)), "%.10g"))
 
 
 @takes(task=PointToPoint, profile=JointProfile)

@@ -15,7 +15,7 @@ from typing import ClassVar, NamedTuple, Self
 import casadi as ca
 
 from quietarm.models import Expression
-from quietarm.ocp.checks import finite, positive, several
+from quietarm.ocp.checks import finite, positive, quoted, several
 from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
 TOLERATED = 0.05
@@ -174,7 +174,7 @@ class ShapedCycloid(JointProfile):
 
     def __post_init__(self) -> None:
         if self.shaper not in SHAPERS:
-            raise ValueError(f"shaper is {self.shaper!r}; give {', '.join(SHAPERS)}")
+            raise ValueError(f"shaper is {quoted(self.shaper)}; give {', '.join(SHAPERS)}")
         numbers = "numbers, one for each mode"
         frequencies = tuple(
             positive("frequency", frequency, "rad/s")

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.files import write_whole
 
 Array = NDArray[np.float64]
@@ -136,11 +137,7 @@ def write_histories(
         for problem, method, seed, history in histories
     ]
     columns = ["problem", "method", "seed", *History._fields]
-    text = pd.concat(tables)[columns].to_csv(
-        index=False,
-        lineterminator="\n",
-        float_format="%.9g",
-    )
+    text = csv_table(pd.concat(tables)[columns], "%.9g")
     content = text.encode()
     if Path(path).suffix == ".gz":
         import gzip

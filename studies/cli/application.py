@@ -14,7 +14,8 @@ import click
 
 from quietarm.models.interrupts import STOPS
 from quietarm.ocp import QuietarmError
-from quietarm.ocp.checks import cut, printable, unknown
+from quietarm.ocp.checks import cut, unknown
+from quietarm.ocp.escapes import one_line
 
 BAD_INPUT = 2
 NOT_SOLVED = 1
@@ -178,6 +179,6 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 def _complain(message: str, status: int) -> int:
     # a name in it may have a hundred thousand letters; the remedy stands at its end
-    line = cut(printable(" ".join(message.split())), 2000)
+    line = cut(one_line(" ".join(message.split())), 2000)
     click.echo(f"quietarm: {line}", err=True)
     return status

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +29,7 @@ from jinja2 import Environment, PackageLoader
 
 from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
+from quietarm.ocp.escapes import html_text
 from quietarm.studies.explore.move import FILES, Dial, Explored
 from quietarm.studies.explore.plots import PANELS, Plots
 from quietarm.studies.figures.grammar import INK, RED
@@ -67,9 +67,9 @@ class Page:
         save = CustomJS(args={"file": self._file}, code=(_HERE / "save.js").read_text())
         self._file.js_on_change("data", save)
         self._shape = Column(name="shape")
-        self._figures = Div(name="figures")
-        self._key = Div(name="key", styles={"color": "#57606a", "font-size": ".85rem"})
-        self._said = Div(name="said", tags=[self._file])  # it is part of the document as a tag
+        self._figures = _words("figures")
+        self._key = _words("key", styles={"color": "#57606a", "font-size": ".85rem"})
+        self._said = _words("said", tags=[self._file])  # it is part of the document as a tag
         self._buttons = [
             _button(
                 "Plan", partial(self._begin, Explored.solve, "solving ..."), button_type="primary"
@@ -203,7 +203,7 @@ class Page:
         return colour == INK
 
     def _say(self, words: str, colour: str = INK) -> None:
-        self._said.text = f'<span style="color: {colour}">{escape(words)}</span>'
+        self._said.text = f'<span style="color: {colour}">{html_text(words)}</span>'
 
     def _show(self) -> None:
         """Bring everything on the page to the motion in hand."""
@@ -241,7 +241,8 @@ def _facts(explored: Explored) -> str:
     if explored.of_front:
         facts["status"] = "a point of the front"
     lines = (
-        f"<div><b>{escape(name)}</b> {escape(raised(value))}</div>" for name, value in facts.items()
+        f"<div><b>{html_text(name)}</b> {html_text(raised(value))}</div>"
+        for name, value in facts.items()
     )
     return "".join(lines)
 
@@ -260,6 +261,11 @@ def _key(explored: Explored) -> str:
     limits = "limits that the motion comes near, and " if explored.task.limits else ""
     words.append(f"dotted: {limits}5 % of the plain cycloid's residual, over the frequency error")
     return "; ".join(words) + ". After arrival curves are lighter."
+
+
+def _words(name: str, **look: Any) -> Div:
+    """A place for words, in which a dollar is no formula."""
+    return Div(name=name, disable_math=True, **look)
 
 
 def _button(label: str, pressed: Callable[[], Any], **look: Any) -> Button:

@@ -11,6 +11,7 @@ import numpy as np
 from quietarm.models import Plant
 from quietarm.models.joint_motion import JointMotion, joint_unit
 from quietarm.ocp import Plan
+from quietarm.ocp.escapes import c_comment, c_string
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.report.templates import templates
 from quietarm.studies.report.words import limit_words, move_of, moved, window_words
@@ -55,10 +56,10 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
     helpers, statements = _path_in_c(moves.profile, plant)
     ends = [_positions(plant, place) for place in (task.start, task.target)] if names else []
     texts = templates(keep_trailing_newline=True)
-    texts.filters["row"] = _row
+    texts.filters |= {"row": _row, "string": c_string, "comment": c_comment}
     header, source = (
         texts.get_template(f"export/templates/move.{kind}").render(
-            name=name, upper=name.upper(), size=moves.profile.size, title=title.replace("*/", ""),
+            name=name, upper=name.upper(), size=moves.profile.size, title=title,
             figures=figures[0].upper() + figures[1:], version=versions.get("quietarm", ""),
             unit=joint_unit("rad", task.plant.joint), axes=axes, between=between, most=max(ORDERS),
             move=move | {axis.name: axis.name for axis in axes if axis.name in move},

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 from collections.abc import Mapping
 from math import degrees
 from typing import Any
@@ -15,6 +14,7 @@ from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
+from quietarm.ocp.escapes import csv_table, matlab_names, yaml_string
 from quietarm.ocp.planning.plan import ticks_of_move
 from quietarm.studies.report.templates import templates
 
@@ -136,22 +136,26 @@ def times_of(plan: Plan, rate: float) -> Array:
 
 def csv_text(plan: Plan, columns: str, rate: float) -> str:
     """Comma-separated values under a heading."""
-    import pandas  # not at the top: it takes half a second to load
-
-    rows = pandas.DataFrame(table(plan, columns, rate))
-    return rows.to_csv(index=False, float_format="%.12g", lineterminator="\n")
+    return csv_table(table(plan, columns, rate), "%.12g")
 
 
 def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
-    """A MATLAB v5 file: a column vector for each column, the coefficients and the duration."""
+    """A MATLAB v5 file: a column vector for each column, the coefficients and the duration.
+
+    Names of several joints are a cell array as well, as they are.
+    """
     from scipy.io import savemat  # slow to load
 
     file = io.BytesIO()
-    vectors = dict[str, Any]()
-    for name, column in table(plan, columns, rate).items():
-        words = name.replace("-", "minus ").replace("+", "plus ").replace(" %", "")
-        vectors[re.sub(r"\W+", "_", words)] = column
-    facts = {"coefficients": plan.coefficients, "duration_s": plan.task.duration}
+    rows = table(plan, columns, rate)
+    vectors = dict(zip(matlab_names(rows), rows.values()))
+    facts: dict[str, Any] = {
+        "coefficients": plan.coefficients,
+        "duration_s": plan.task.duration,
+    }
+    joints = plan.task.plant.joint_names
+    if len(joints) > 1:
+        facts["joint_names"] = np.array(joints, dtype=object)
     savemat(file, {**facts, **vectors}, oned_as="column")
     return file.getvalue()
 
@@ -160,7 +164,6 @@ def ros_text(plan: Plan, rate: float, joint: str) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, of all joints.
 
     A single joint has the name that is given, those of a robot and of several have the plant's.
-    ValueError where a name has letters that YAML cannot hold, as those of control.
     """
     motion = plan.sampled(times_of(plan, rate))
     orders = [
@@ -173,12 +176,9 @@ def ros_text(plan: Plan, rate: float, joint: str) -> str:
     ]
     joint_names = plan.task.plant.joint_names
     names = joint_names if plan.task.plant.has_path else (joint,)
-    for name in names:
-        if not name.isprintable():
-            raise ValueError(f"joint is {name!r}; give a name of letters, as shoulder_pan_joint")
-    quoted = ["'" + name.replace("'", "''") + "'" for name in names]  # as YAML reads it back
     texts = templates(keep_trailing_newline=True)
-    return texts.get_template("export/templates/move.yaml").render(joints=quoted, points=points)
+    scalars = [yaml_string(name) for name in names]
+    return texts.get_template("export/templates/move.yaml").render(joints=scalars, points=points)
 
 
 def _decimal(value: float) -> str:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.models.checks import quoted
 from quietarm.models.joint_motion import ROTARY, joint_label
 from quietarm.ocp import FileFormatError
 from quietarm.studies.identify import Recording
@@ -145,7 +146,7 @@ def _without_unit(table: Table, named: Mapping[str, Sequence[str]], columns: Col
             ending = "" if column.written else unknown_ending(column.name)
             if ending and quantity not in given and label not in given:
                 notes.append(
-                    f"{ending!r} in column {column.name} is not a known unit, so its values are "
+                    f"{quoted(ending)} in column {column.name} is not a known unit, so its values are "
                     f"read in {next(iter(UNITS[label]))}; set another by --units {quantity}:..."
                 )
     return notes

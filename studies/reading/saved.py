@@ -46,7 +46,6 @@ def load_front(path: Path) -> Front:
     if not front.points:
         raise ValueError(f"{path}: {front.why_empty()}")
     check_figures(front, str(path))
-    _refuse_changed(path, Front)
     return front
 
 
@@ -72,7 +71,6 @@ def load_runs(paths: Sequence[Path]) -> tuple[dict[Path, Front], list[str]]:
             left_out.append(f"{error}: left out")
     for file, run in runs.items():
         check_figures(run, str(file))
-        _refuse_changed(file, Front)
     return runs, left_out
 
 
@@ -105,17 +103,7 @@ def _named(paths: Sequence[Path], what: str) -> dict[str, Path]:
 def _load_plan(path: Path) -> Plan:
     plan = Plan.load(path)
     check_plan(plan, path)
-    _refuse_changed(path, Plan)
     return plan
-
-
-def _refuse_changed(path: Path, answer: type[Front | Plan]) -> None:
-    """FileFormatError where what a file says of method and effort is not what was written."""
-    if keeps_checksum(path, answer.kind) is False:
-        raise FileFormatError(
-            f"{path} was changed since it was written, in what no evaluation tells: its checksum "
-            f"is of other entries; find the {answer.kind} again"
-        )
 
 
 def without_checksum(paths: Iterable[Path]) -> list[Path]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp import FileFormatError
-from quietarm.ocp.checks import cut, nearest
+from quietarm.ocp.checks import cut, nearest, quoted
 from quietarm.ocp.files import MOST_BYTES, read_bytes
 from quietarm.studies.reading.matlab import read_matlab
 from quietarm.studies.reading.text import read_text
@@ -83,8 +83,8 @@ class Table:
             ]
             if len(places) > 1:
                 raise FileFormatError(
-                    f"{self.path}: {len(places)} columns are called {name!r}; give one's number, "
-                    f"{' or '.join(map(str, places))}"
+                    f"{self.path}: {len(places)} columns are called {quoted(name)}; give one's "
+                    f"number, {' or '.join(map(str, places))}"
                 )
             if places:
                 return self.columns[places[0]]
@@ -92,7 +92,7 @@ class Table:
             return self.columns[int(name)]
         names = [column.name for column in self.columns]
         near = nearest(name, names) if names else ""
-        raise FileFormatError(f"{self.path} has no column {name!r}{near}; {self._listed()}")
+        raise FileFormatError(f"{self.path} has no column {quoted(name)}{near}; {self._listed()}")
 
     def first(self, quantity: str, remedy: str) -> str:
         """The first column that is called as a time, an angle or a position is.
@@ -159,10 +159,12 @@ class Table:
         kind = kind_of(written)
         if kind:
             raise FileFormatError(
-                f"{self.path}: {written!r} of column {column.name} is a unit of {kind}, and not of "
-                f"{KINDS.get(quantity, quantity)}; {how}"
+                f"{self.path}: {quoted(written)} of column {column.name} is a unit of {kind}, and "
+                f"not of {KINDS.get(quantity, quantity)}; {how}"
             )
-        raise FileFormatError(f"{self.path}: is {written!r} of column {column.name} a unit? {how}")
+        raise FileFormatError(
+            f"{self.path}: is {quoted(written)} of column {column.name} a unit? {how}"
+        )
 
     def unused(self, names: Collection[str]) -> tuple[str, ...]:
         """Columns that are none of these, by their names in words."""
@@ -244,7 +246,7 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
     and in a text nothing but a heading above them. Nothing in a file is run.
     """
     # letters of a column's heading: more are no name, and would fill every message
-    longest_name = 100
+    longest_name = 80
     content = read_bytes(path)
     words = list[str]()
     with reading(path):

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp import FileFormatError
+from quietarm.ocp.checks import quoted
 from quietarm.studies.reading.cells import is_clock, is_number, numbers_of, seconds_of
 from quietarm.studies.reading.units import is_unit
 
@@ -58,8 +59,8 @@ def read_text(content: bytes, strict: bool) -> TextColumns:
             begins = {mark: begin for mark, begin in by_mark.items() if begin}
     if not begins:
         raise FileFormatError(
-            f"no rows of numbers in it (its first line: {lines[filled[0]][:60]!r}); give columns "
-            "of numbers, with semicolons between numbers with decimal commas"
+            f"no rows of numbers in it (its first line: {quoted(lines[filled[0]][:60])}); give "
+            "columns of numbers, with semicolons between numbers with decimal commas"
         )
     separator = min(begins, key=lambda mark: begins[mark][:2])
     above = data[: begins[separator][2]]
@@ -230,7 +231,7 @@ def _numbers(
     if wrong.any(axis=None):
         row, column = np.argwhere(wrong.to_numpy())[0]
         raise FileFormatError(
-            f"line {rows[row][0] + 1}: {cells[wrong.columns[column]].iloc[row]!r} is no number; "
-            "mend it, or leave the cell empty"
+            f"line {rows[row][0] + 1}: {quoted(cells[wrong.columns[column]].iloc[row])} is no "
+            "number; mend it, or leave the cell empty"
         )
     return {k: ("s" if k in clocks else "", numbers[k].to_numpy(float)) for k in wrong.columns}

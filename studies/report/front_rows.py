@@ -26,12 +26,12 @@ from quietarm.studies.report.words import (
 from quietarm.studies.tips import tip_words
 
 
-def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> str:
+def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> list[str]:
     """A front by the gradient, of which so many points were asked for."""
     levels = {level: front.least_energy(level) for level in LEVELS}
     record = front.record
     tip_unit = front.task.plant.tip_unit
-    return "\n".join([
+    return [
         *energy_words(front.task),
         f"{record.method}: {counted(len(front.points), 'point')}, "
         f"{counted(record.iterations, 'iteration')} of the solver in {record.seconds:.1f} s",
@@ -51,10 +51,10 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
             f"{tip_words(end, tip_unit)}: the front is not convex there"
             for begin, end in front.gaps
         ),
-    ])  # fmt: skip
+    ]  # fmt: skip
 
 
-def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
+def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> list[str]:
     """Fronts of searches or tables, and the spread over several seeds."""
     lines = energy_words(fronts[0].task)
     tip_unit = fronts[0].task.plant.tip_unit
@@ -81,10 +81,10 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> str:
             f"energy at {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles); "
             f"{energies.count} of {energies.seeds} seeds reach {level}",
         ]
-    return "\n".join([*lines, *notes])
+    return [*lines, *notes]
 
 
-def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
+def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> list[str]:
     """What the points of a front gained by the gradient."""
     # points that the list of gains shows
     rows = 10
@@ -92,7 +92,7 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
     tip_unit = given.task.plant.tip_unit
     dominated = len(given.points) - len(polished.points)
     shown = np.linspace(0, len(gains) - 1, min(rows, len(gains))).round().astype(int)
-    return "\n".join([
+    return [
         f"{polished.record.method}: {counted(len(given.points), 'point')}, "
         f"{polished.record.iterations - given.record.iterations} iterations of the solver in "
         f"{polished.record.seconds - given.record.seconds:.1f} s",
@@ -106,7 +106,7 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> str:
         f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}",
         *([f"{counted(dominated, 'point')} dropped, dominated by another now"] * (dominated > 0)),
         *failure_lines(polished, len(given.points)),
-    ])  # fmt: skip
+    ]  # fmt: skip
 
 
 def failure_lines(front: Front, asked_for: int) -> list[str]:

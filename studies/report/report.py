@@ -10,6 +10,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from quietarm.ocp.escapes import (
+    Markdown,
+    code,
+    csv_table,
+    markdown,
+    one_line,
+    words_of_markdown,
+)
 from quietarm.ocp.files import write_whole
 from quietarm.studies.report.saving import File, drawing, inside
 from quietarm.studies.report.templates import templates
@@ -63,13 +71,14 @@ class Report:
         html = html.replace("</table>", "</table></div>")
         for name, draw in self.figures.items():
             html = html.replace(f'src="{name}"', f'src="{_svg(draw())}"')
-        title = text.partition("\n")[0].lstrip("# ")
-        return _environment().get_template("report/page.html").render(title=title, body=html)
+        title = words_of_markdown(text.partition("\n")[0].lstrip("# "))
+        page = templates(autoescape=True).get_template("report/page.html")
+        return page.render(title=title, body=html)
 
     def latex(self) -> str:
         """Every table for a text that loads booktabs; names of tables are captions and labels."""
         return "\n".join(
-            table.to_latex(
+            _in_lines(table).to_latex(
                 index=False, float_format="%.4g", na_rep="-", escape=True,
                 caption=name.replace("_", " "), label=f"tab:{name}",
             )
@@ -89,18 +98,22 @@ class Report:
             "report.md": lambda path: write_whole(path, self.markdown())
         }
         for key, table in self.tables.items():
-            writes[f"{key}.csv"] = lambda path, table=table: write_whole(
-                path, table.to_csv(index=False, lineterminator="\n")
-            )
+            writes[f"{key}.csv"] = lambda path, table=table: write_whole(path, csv_table(table))
         writes |= {picture: drawing(draw) for picture, draw in self.figures.items()}
         return inside(path, writes)
 
 
+def _in_lines(table: DataFrame) -> DataFrame:
+    """A table whose texts are of one line each."""
+    cells = table.map(lambda cell: one_line(cell) if isinstance(cell, str) else cell)
+    return cells.rename(columns=lambda name: one_line(str(name)))
+
+
 def table_in_markdown(table: DataFrame) -> str:
     """A table in Markdown: four digits, a dash where there is no value."""
-    cells = table.map(lambda cell: cell.replace("|", "/") if isinstance(cell, str) else cell)
-    cells = cells.astype(object).where(table.notna(), None)
-    return cells.to_markdown(index=False, floatfmt=".4g", missingval="-")
+    cells = table.map(lambda cell: markdown(cell) if isinstance(cell, str) else cell)
+    cells = cells.astype(object).where(table.notna(), None).rename(columns=markdown)
+    return Markdown(cells.to_markdown(index=False, floatfmt=".4g", missingval="-"))
 
 
 def turned(table: DataFrame, names: str) -> str:
@@ -125,13 +138,20 @@ def listed(words: Sequence[str]) -> str:
 
 
 def _environment() -> Environment:
-    environment = templates()
+    environment = templates(finalize=_words)
     filters: dict[str, Any] = {
         "table": table_in_markdown, "turned": turned, "mm": millimetres, "percents": percents,
-        "listed": listed, "counted": counted,
+        "listed": listed, "counted": counted, "code": code,
     }  # fmt: skip
     environment.filters.update(filters)
     return environment
+
+
+def _words(value: Any) -> Any:
+    """What a template names, within its Markdown."""
+    if isinstance(value, int | float):
+        return value
+    return markdown(value if isinstance(value, str) else str(value))
 
 
 def _svg(figure: Figure) -> str:

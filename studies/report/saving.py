@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
+from quietarm.ocp.escapes import printable
 from quietarm.ocp.files import check_writable, write_whole
 
 if TYPE_CHECKING:
@@ -64,11 +65,16 @@ def save_figure(figure: Figure, path: str | Path) -> None:
 
 @contextmanager
 def as_written(figure: Figure) -> Iterator[None]:
-    """Let the block draw names as they are: no formula at a dollar, a box for what no font has."""
+    """Let the block draw names as they are: no formula at a dollar, a box for what no font has.
+
+    What is not printed, as marks that turn the direction of writing round, is a question mark.
+    """
     from matplotlib.text import Text
 
-    for text in figure.findobj(Text):
-        cast("Text", text).set_parse_math(False)
+    for found in figure.findobj(Text):
+        text = cast("Text", found)
+        text.set_parse_math(False)
+        text.set_text(printable(text.get_text()))
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from font")
         yield

@@ -49,15 +49,15 @@ def sweep_rows(store: Store) -> list[tuple[str, str]]:
     return rows
 
 
-def cells_along(store: Store) -> str:
-    """The trade-off along the only axis, a line a cell; empty where there are more or many."""
+def cells_along(store: Store) -> list[str]:
+    """The trade-off along the only axis, a line a cell; none where there are more or many."""
     # cells along one axis that are listed
     most_lines = 30
     import pandas  # not at the top: it takes long to load
 
     axis, *more_axes = store.definition.grid.axes
     if more_axes or len(axis.values) > most_lines:
-        return ""
+        return []
     status, energy, residual = (store.read(name) for name in (STATUS, "energy", "residual"))
     shown, factor = tip_scale(store.definition.grid.task.plant.tip_unit)
     residuals = [
@@ -70,4 +70,4 @@ def cells_along(store: Store) -> str:
         f"residual [{shown}]": np.where(known, residuals, "-"),
         "status": [STATES[k] for k in status.tolist()],
     }
-    return "\n" + pandas.DataFrame(cells).to_string(index=False)
+    return ["\n", *pandas.DataFrame(cells).to_string(index=False).splitlines()]

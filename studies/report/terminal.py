@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from quietarm.ocp.checks import printable
+from quietarm.ocp.escapes import one_line, printable
 
 if TYPE_CHECKING:
     from quietarm.studies.report.report import Report
@@ -27,16 +27,16 @@ def show_all(console: Console, *parts: Report | Sequence[tuple[str, str]] | str)
 
 
 def print_lines(console: Console, *lines: str) -> None:
-    """Print lines as they are, however narrow the console."""
-    text = "\n".join(lines)
-    console.print(printable(text), markup=False, highlight=False, soft_wrap=True)
+    """Print lines as they are, however narrow the console; a line stays one, whatever is in it."""
+    text = "\n".join(one_line(line) if line.strip() else "" for line in lines)
+    console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
     """Print names and values in two columns, or one below the other on a narrow console."""
     # least width of the column of values; below it they would be broken up
     least_value = 30
-    rows = [(printable(name), printable(value)) for name, value in rows]
+    rows = [(one_line(name), one_line(value)) for name, value in rows]
     if console.width < max(len(name) for name, _ in rows) + least_value:
         for name, value in rows:
             print_lines(console, name, f"  {value}")

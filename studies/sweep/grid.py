@@ -13,7 +13,7 @@ import numpy as np
 from quietarm.models import Plant
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.checks import finite, has_no
+from quietarm.ocp.checks import finite, has_no, quoted
 from quietarm.ocp.window import DefaultWindow, default_window
 
 OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
@@ -70,7 +70,8 @@ class MoveGrid:
                 raise ValueError(f"the axis {axis.name} is given twice; give it once")
             if axis.unit != units[axis.name]:
                 raise ValueError(
-                    f"the axis {axis.name} is in {axis.unit!r}; give it in {units[axis.name]!r}"
+                    f"the axis {axis.name} is in {quoted(axis.unit)}; give it in "
+                    f"{quoted(units[axis.name])}"
                 )
         if self.cells > MOST_CELLS:
             raise ValueError(

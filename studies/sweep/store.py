@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from quietarm.models.interrupts import note_interrupts
 from quietarm.ocp import FileFormatError, QuietarmError
-from quietarm.ocp.checks import cut, install
+from quietarm.ocp.checks import cut, install, quoted
+from quietarm.ocp.json_text import refuse_repeated
 from quietarm.ocp.record import versions
 from quietarm.ocp.saved import plain, typed
 from quietarm.studies.sweep.definition import COEFFICIENTS, DIGEST, JUMP, STATUS, Definition
@@ -152,9 +153,11 @@ class Store:
     def note(self, name: str) -> Any:
         """What an attribute holds; empty where there is none, and FileFormatError if it is none."""
         with _damage_told(self.path):
-            note = json.loads(self.dataset.attrs.get(name, "{}"))
+            text = self.dataset.attrs.get(name, "{}")
+            note = json.loads(text)
+            refuse_repeated(text)
             if not isinstance(note, dict):
-                raise ValueError(f"{name} is {note!r}")
+                raise ValueError(f"{name} is {quoted(note)}")
             return note
 
     def kept(self, name: str) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from quietarm.metaheuristics.score import (
     scores_on_the_way,
     shares_of_box,
 )
-from quietarm.ocp import Floor
+from quietarm.ocp import FileFormatError, Floor
 from quietarm.studies.bench.results import Results
 from quietarm.studies.identify import Identified
 from quietarm.studies.reading.saved import load_front, load_plans
@@ -287,15 +287,91 @@ def test_what_a_plan_of_before_states_is_checked(
     assert (code, f"{name}.json states {words}" in " ".join(err.split())) == (2, True), err
 
 
-def test_a_plan_that_states_nothing_is_compared(tmp_path, monkeypatch, call):
+@pytest.mark.parametrize("missing", [("stated", "checksum"), ("stated",), ("checksum",)])
+def test_a_plan_that_states_nothing_is_refused(tmp_path, monkeypatch, call, missing):
+    """Files of 2.0.0 have both; without them changed coefficients would pass."""
     folder = _copy("2026-11-27-plans", tmp_path, monkeypatch)
     document = json.loads((folder / "plan.json").read_text())
-    wrong = document | {"stated": document["stated"] | {"energy": 1.0}}
-    Path("wrong.json").write_text(json.dumps(wrong))
-    code, _, err = call("compare wrong.json")
-    assert (code, "wrong.json states energy 1 J" in err) == (2, True), err
-    # without its checksum, which another program does not know either
-    silent = {name: entry for name, entry in document.items() if name not in ("stated", "checksum")}
+    silent = {name: entry for name, entry in document.items() if name not in missing}
     Path("silent.json").write_text(json.dumps(silent))
     code, _, err = call("compare silent.json")
-    assert code == 0, err
+    assert code == 2
+    assert "silent.json is not a valid plan: " in " ".join(err.split())
+
+
+def test_a_figure_that_a_plan_states_is_computed_again(tmp_path, monkeypatch, call):
+    _copy("2026-11-27-plans", tmp_path, monkeypatch)
+    edit("plan.json", "stated/energy", 1.0)
+    code, _, err = call("compare plan.json")
+    assert (code, "plan.json states energy 1 J" in err) == (2, True), err
+
+
+OF_TASK = {"duration": 0.81, "target": 0.5, "torque_limit": 9.0, "residual_window": 0.5}
+ALTERED = {
+    **{f"task/{name}": value for name, value in OF_TASK.items()},
+    "task/plant/zeta": 0.02,
+    "profile/terms": 7,
+    "status": "not optimised",
+    "record/seconds": 1e-3,
+    "record/method": "mine",
+    "record/iterations": 1,
+    "record/versions/casadi": "0",
+    "record/settings": {"starts": 3},
+    "stated/energy": 0.016,
+}
+"""Entries that the files of plans and floors have in common, and other values for them."""
+OF_KIND = {
+    "plan": {"coefficients/0": 0.01, "steps": 97, "residual_limit": 0.001, "shadow_prices": {}},
+    "floor": {"free/acceleration/3": 1.0, "solver_energy": 0.02, "tolerance": 0.1},
+}
+
+
+@pytest.mark.parametrize(
+    ("kind", "place", "value"),
+    [
+        (kind, place, value)
+        for kind, own in OF_KIND.items()
+        for place, value in {**ALTERED, **own}.items()
+        if (kind, place) != ("floor", "profile/terms")
+    ],
+)
+def test_an_answer_of_2_0_0_that_was_altered_is_refused(tmp_path, kind, place, value):
+    file = tmp_path / f"{kind}.json"
+    shutil.copy(FIXTURES / "2026-11-27-plans" / file.name, file)
+    loader = {"plan": qa.Plan, "floor": Floor}[kind]
+    assert loader.load(file).record.method
+    edit(file, place, value, seal=False)
+    with pytest.raises(FileFormatError, match="is not a valid"):
+        loader.load(file)
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        ("points/0/coefficients/0", 0.0012),
+        ("points/0/energy", 0.04),
+        ("task/plant/zeta", 0.02),
+        ("record/evaluations", 10**6),
+        ("reference/0", 1.0),
+        ("failed", 7),
+    ],
+)
+def test_so_is_a_front(tmp_path, place, value):
+    qa.Front.load(FIXTURES / "2026-11-27" / "front.json").save(tmp_path / "front.json")
+    edit(tmp_path / "front.json", place, value, seal=False)
+    with pytest.raises(FileFormatError, match="not a valid front"):
+        qa.Front.load(tmp_path / "front.json")
+
+
+@pytest.mark.parametrize("kind", ["plan", "floor", "front", "machine"])
+@pytest.mark.parametrize("depth", ["outer", "inner"])
+def test_an_entry_that_is_given_twice_is_refused(tmp_path, kind, depth):
+    """Python's and others' parsers take the last of two, and some the first."""
+    day = "2026-11-27-plans" if kind in ("plan", "floor") else "2026-11-27"
+    text = (FIXTURES / day / f"{kind}.json").read_text()
+    name = "version" if depth == "outer" else "name"
+    (line, *_) = (line for line in text.splitlines() if line.lstrip().startswith(f'"{name}":'))
+    (tmp_path / "twice.json").write_text(text.replace(line, f"{line.rstrip(',')},\n{line}", 1))
+    loader = {"plan": qa.Plan, "floor": Floor, "front": qa.Front, "machine": Identified}[kind]
+    with pytest.raises(FileFormatError, match=f"entry '{name}' is given twice"):
+        loader.load(tmp_path / "twice.json")

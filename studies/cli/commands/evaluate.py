@@ -127,4 +127,4 @@ def _evaluate_table(given: Given) -> None:
     with busy("evaluating"):
         front, notes = import_front(given.coefficients, task, family, **stated)
     files = answer_files(given.output, lambda: figures.front_figure([front]), front)
-    finish(files, search_lines([front], notes))
+    finish(files, *search_lines([front], notes))

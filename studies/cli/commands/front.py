@@ -119,7 +119,7 @@ def front(given: Given) -> None:
         with counting(checked_points, "checked points") as report:
             checked = cross_check(solution, checked_points=checked_points, report=report)
     files = answer_files(given.output, lambda: figures.front_figure([solution]), solution)
-    return finish(files, gradient_lines(solution, points, checked))
+    return finish(files, *gradient_lines(solution, points, checked))
 
 
 def _polish(given: Given) -> None:
@@ -135,4 +135,4 @@ def _polish(given: Given) -> None:
     files = answer_files(
         given.output, lambda: figures.polish_figure(before, polished), polished.front, [before]
     )
-    finish(files, lines)
+    finish(files, *lines)

@@ -220,7 +220,7 @@ def finish_motion(answer: Answer, output: Sequence[Path], *, sensitivities: bool
         shown.append(plan_rows(motion))
         draw = partial(figures.motion_figure, motion)
         if sensitivities:
-            shown.append("\nwhat a parameter that is 1 % larger adds to residual and energy:")
+            shown += ["\n", "what a parameter that is 1 % larger adds to residual and energy:"]
             shown.append(sensitivity_rows(motion))
     shown += answer.notes
     files = answer_files(output, draw, motion)

@@ -2,7 +2,7 @@
 {% set places %}{% for one in names %}{{ ", " if loop.index > 1 }}double at_{{ one }}{% endfor %}{% endset %}
 {% set given %}{% if axes %}const double coefficients[{{ size }}], {% for one in names if one in move %}double {{ one }}, {% endfor %}{% endif %}{% endset %}
 {% set moving = move.values() | list %}
-/* {{ name }}: {{ title }}. By quietarm {{ version }}. */
+/* {{ name }}: {{ title | comment }}. By quietarm {{ version | comment }}. */
 #include "{{ name }}.h"
 
 #include <math.h>
@@ -104,7 +104,7 @@ static const double target[] = { {{- ends[1] | row -}} };
 {% endif %}
 const char *const {{ name }}_joints[{{ upper }}_JOINTS] = {
 {% for joint in joints %}
-    "{{ joint }}",
+    {{ joint | string }},
 {% endfor %}
 };
 

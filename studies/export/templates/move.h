@@ -2,15 +2,15 @@
 {% set places %}{% for one in names %}{{ ", " if loop.index > 1 }}double at_{{ one }}{% endfor %}{% endset %}
 {% set given %}{% if axes %}const double coefficients[{{ size }}], {% for one in names if one in move %}double {{ one }}, {% endfor %}{% endif %}{% endset %}
 {% set moving = move.values() | list %}
-/* {{ name }}: {{ title }}. By quietarm {{ version }}.
-   {{ figures }}. */
+/* {{ name }}: {{ title | comment }}. By quietarm {{ version | comment }}.
+   {{ figures | comment }}. */
 #ifndef QUIETARM_{{ upper }}_H
 #define QUIETARM_{{ upper }}_H
 
 {% if axes %}
 #define {{ upper }}_COEFFICIENTS {{ size }}
 
-/* Coefficients of the move at {% for axis in axes %}{{ ", " if loop.index > 1 }}{{ axis.name }} [{{ axis.unit }}]{% endfor %}.
+/* Coefficients of the move at {% for axis in axes %}{{ ", " if loop.index > 1 }}{{ axis.name | comment }} [{{ axis.unit | comment }}]{% endfor %}.
    Returns 0; or, without writing any, 1 beyond the grid and 2 next to a cell without a plan or
    at a change of motion. */
 int {{ name }}_plan({{ places }}, double coefficients[{{ size }}]);

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp import Front, Plan
 from quietarm.ocp.checks import instance, positive
+from quietarm.ocp.escapes import one_line, script_json
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.record import REST
 from quietarm.studies.export.tradeoff.moves import (
@@ -77,10 +78,10 @@ class TradeOffPage:
     def html(self) -> str:
         """The page."""
         environment = templates(autoescape=True)
-        environment.filters["in_script"] = _in_script
+        environment.filters["in_script"] = script_json
         template = environment.get_template("export/tradeoff/page.html")
         page = template.render(
-            title=self.title, data={"moves": self.moves}, light=_colours(dark=False),
+            title=one_line(self.title), data={"moves": self.moves}, light=_colours(dark=False),
             dark=_colours(dark=True), scripts=_SCRIPTS,
         )  # fmt: skip
         return page.lstrip()
@@ -198,12 +199,6 @@ def _mixed(colour: str, towards: float, share: float) -> str:
     """A colour on its way to black, 0, or white, 1."""
     red, green, blue = ((1 - share) * channel + share * towards for channel in to_rgb(colour))
     return to_hex((red, green, blue))
-
-
-def _in_script(value: Any) -> str:
-    """JSON that ends no script, whatever the names in it are."""
-    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def _shown(move: Move, scale: float | None, budget: float) -> dict[str, Any]:

@@ -189,10 +189,3 @@ def test_the_tips_of_a_robust_plan_are_named_by_their_scenarios(tmp_path):
 def test_a_film_is_not_written_as_a_table(plan, tmp_path):
     with pytest.raises(ValueError, match=r"is a film; make it by animate\(plan\)"):
         export_plan(plan, tmp_path / "move.gif")
-
-
-@pytest.mark.parametrize("name", ["a\nb", "\x1b[31mred", "a\0b"])
-def test_a_name_that_yaml_cannot_hold_is_refused(plan, tmp_path, name):
-    with pytest.raises(ValueError, match=r"^joint is '.*'; give a name of letters"):
-        export_plan(plan, tmp_path / "move.yaml", joint=name, rate=30)
-    assert not [*tmp_path.iterdir()]

@@ -1,13 +1,18 @@
 """`quietarm compare`: fronts, plans, folders; what it shows, writes and refuses."""
 
 import json
+import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import pandas as pd
 import pytest
-from saved_files import edit
+from saved_files import edit, make_earlier
 
 import quietarm.studies.reading.saved
+
+OLD_PLAN = Path(__file__).parents[4] / "fixtures" / "2026-11-27" / "plan.json"
+"""Of a version that knew no checksum."""
 
 
 @pytest.fixture
@@ -34,8 +39,11 @@ EFFORT = ("record/evaluations", "record/seconds", "record/method", "record/itera
 
 @pytest.mark.parametrize("place", EFFORT)
 def test_the_effort_of_a_front_is_what_was_written(refused, files, place):
-    edit("poor.json", place, lambda value: f"{value}x" if isinstance(value, str) else value + 1)
-    words = "poor.json was changed since it was written, in what no evaluation tells: its checksum"
+    def other(value):
+        return f"{value}x" if isinstance(value, str) else value + 1
+
+    edit("poor.json", place, other, seal=False)
+    words = "poor.json is not a valid front: it was changed since it was written, as its checksum"
     assert words in refused("compare good.json poor.json --no-free-motion")
     assert words in refused("compare good.json --reference poor.json")
 
@@ -43,8 +51,12 @@ def test_the_effort_of_a_front_is_what_was_written(refused, files, place):
 @pytest.mark.parametrize("place", ["record/seconds", "status", "steps"])
 def test_so_is_that_of_a_plan(refused, folder, plan, place):
     plan.save("mine.json")
-    edit("mine.json", place, lambda value: "not optimised" if isinstance(value, str) else value + 1)
-    words = "mine.json was changed since it was written"
+
+    def other(value):
+        return "not optimised" if isinstance(value, str) else value + 1
+
+    edit("mine.json", place, other, seal=False)
+    words = "mine.json is not a valid plan: it was changed since it was written"
     assert words in refused("compare mine.json")
     assert words in refused("export mine.json --output mine.csv")
 
@@ -53,10 +65,10 @@ def test_a_file_of_before_is_read_and_the_report_says_what_it_is_believed(done, 
     assert "no checksum" not in done("compare good.json poor.json --no-free-motion")
     plan.save("plan.json")
     assert "no checksum" not in done("compare plan.json")
-    for name in ("poor.json", "plan.json"):
-        document = json.loads((files / name).read_text())
-        del document["checksum"]  # as a quietarm wrote it that knew none
-        (files / name).write_text(json.dumps(document))
+    document = json.loads((files / "poor.json").read_text())
+    make_earlier(document)
+    (files / "poor.json").write_text(json.dumps(document))
+    shutil.copy(OLD_PLAN, "plan.json")
     out = " ".join(done("compare good.json poor.json --no-free-motion").split())
     assert "1 of the files has no checksum (as poor.json)" in out
     assert "candidates, iterations and time are as they state them" in out
