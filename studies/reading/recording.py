@@ -146,7 +146,7 @@ def _without_unit(table: Table, named: Mapping[str, Sequence[str]], columns: Col
             ending = "" if column.written else unknown_ending(column.name)
             if ending and quantity not in given and label not in given:
                 notes.append(
-                    f"{quoted(ending)} in column {column.name} is not a known unit, so its values are "
-                    f"read in {next(iter(UNITS[label]))}; set another by --units {quantity}:..."
+                    f"{quoted(ending)} in column {column.name} is not a known unit, so its values "
+                    f"are read in {next(iter(UNITS[label]))}; set another by --units {quantity}:..."
                 )
     return notes

@@ -247,7 +247,7 @@ def test_a_bar_heavier_than_its_robot_is_refused(tmp_path):
 
 
 def test_many_joints_are_listed_in_a_line_of_some_length():
-    with pytest.raises(ValueError, match=r"'finger' .* and \d+ more\)") as refusal:
+    with pytest.raises(ValueError, match=r"'finger' .* \.\.\. ") as refusal:
         robot_of(urdf_of("tiago_dual.urdf"), joints=["finger"])
     assert len(str(refusal.value)) < 1000
 
