@@ -482,7 +482,8 @@ class Robot:
             faulty = name in links and links[name].turns_backwards
             if faulty and number != GROUND and mechanism.bodies[number].inertia.turns_backwards:
                 raise ValueError(
-                    f"link {quoted(name)} of the URDF has {links[name].fault}; give what a body can have"
+                    f"link {quoted(name)} of the URDF has {links[name].fault}; give what a body "
+                    "can have"
                 )
         dynamics = Dynamics(mechanism)
         x = np.random.default_rng(0).uniform(0.3, 1.0, dynamics.size)

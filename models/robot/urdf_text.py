@@ -82,7 +82,8 @@ def parse(text: str) -> ElementTree.Element:
             if name and count > 1:
                 number = "two" if count == 2 else str(count)
                 raise ValueError(
-                    f"{number} {kind}s are called {quoted(name)} in the URDF; give each its own name"
+                    f"{number} {kind}s are called {quoted(name)} in the URDF; give each its own "
+                    "name"
                 )
     return root
 
