@@ -32,7 +32,7 @@ from quietarm.metaheuristics.user_method import (
     why_not_sent,
 )
 from quietarm.ocp import FileFormatError, Front, QuietarmError
-from quietarm.ocp.checks import unknown, whole
+from quietarm.ocp.checks import unknown, whole, words_of_error
 from quietarm.ocp.objectives import refuse_more_objectives
 from quietarm.ocp.record import Setting
 
@@ -436,4 +436,4 @@ def _reason(error: BaseException) -> str:
     text = " ".join(str(error).split())
     if isinstance(error, QuietarmError | ValueError) and text:
         return text
-    return f"{type(error).__name__}{': ' if text else ''}{text}"
+    return words_of_error(error)

@@ -97,6 +97,14 @@ def whole(name: str, value: Any, least: int, most: int | None = None, because: s
     return number
 
 
+def words_of_error(error: BaseException) -> str:
+    """What went wrong in a user's own lines, in one line; also where they end the process."""
+    text = " ".join(str(error).split())
+    if isinstance(error, SystemExit):
+        return f"it calls sys.exit({text}), which would end quietarm as well; leave that out"
+    return f"{type(error).__name__}{': ' if text else ''}{text}"
+
+
 def listed(names: Iterable[str]) -> str:
     """Names that a message lists, which may be a file's: each short, and not a page of them."""
     most = 40  # letters of a name

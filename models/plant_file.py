@@ -13,6 +13,7 @@ from inspect import isabstract
 from pathlib import Path
 from types import ModuleType
 
+from quietarm.models.checks import words_of_error
 from quietarm.models.plant import Plant
 
 
@@ -116,15 +117,19 @@ def _run(file: PlantFile) -> dict[str, type[Plant]]:
     try:
         code = compile(file.source, file.path, "exec", dont_inherit=True)
         exec(code, vars(module))
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         del sys.modules[module.__name__]
         frames = traceback.extract_tb(error.__traceback__)
         lines = [frame.lineno for frame in frames if frame.filename == file.path]
         line = (lines or [getattr(error, "lineno", None)])[-1]  # of a SyntaxError
-        text = " ".join(f"{type(error).__name__}: {error}".split())
+        remedy = (
+            ""
+            if isinstance(error, SystemExit)
+            else ("; mend it: what it imports stands beside it or is installed")
+        )
         raise ValueError(
-            f"plant file {file.path}{f', line {line}' if line else ''}: {text}; mend it: what it "
-            "imports stands beside it or is installed"
+            f"plant file {file.path}{f', line {line}' if line else ''}: {words_of_error(error)}"
+            f"{remedy}"
         ) from None
     finally:
         sys.path.remove(folder)

@@ -22,6 +22,7 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models import at_rest
+from quietarm.models.checks import words_of_error
 from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Array, Expression, JointMotion
 
@@ -225,12 +226,12 @@ def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
                 FutureWarning,
             )
             result: Any = getattr(plant, method)(*arguments)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         inside = traceback.extract_tb(error.__traceback__)[1:2]
         at = "".join(f" at line {frame.lineno} of {Path(frame.filename).name}" for frame in inside)
-        text = str(error).strip().partition("\n")[0]
+        text = str(error)
         of_symbol = "to_double" in text or "truth value" in text  # casadi's own words say little
-        why = "a symbol is no number" if of_symbol else f"{type(error).__name__}: {text}"
+        why = "a symbol is no number" if of_symbol else _first_line(error)
         raise _wrong(plant, method, f"fails{at} ({why})") from None
     entries = [result] if method == "torque" else result
     entries = list(entries) if isinstance(entries, list | tuple) else []
@@ -239,6 +240,14 @@ def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
     if len(entries) != count or not all(isinstance(entry, kinds) for entry in entries):
         raise _wrong(plant, method, f"returns {reprlib.repr(result)}")
     return entries
+
+
+def _first_line(error: BaseException) -> str:
+    """What went wrong in a method, of casadi's many lines the first."""
+    if isinstance(error, SystemExit):
+        return words_of_error(error)
+    text = str(error).strip().partition("\n")[0]
+    return f"{type(error).__name__}: {text}"
 
 
 def _wrong(plant: Plant, method: str, what: str, remedy: str = "") -> ValueError:

@@ -28,6 +28,7 @@ from quietarm.models.checks import (
     spelling,
     unknown,
     whole,
+    words_of_error,
 )
 
 __all__ = [
@@ -56,6 +57,7 @@ __all__ = [
     "takes",
     "unknown",
     "whole",
+    "words_of_error",
 ]
 
 T = TypeVar("T")

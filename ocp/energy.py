@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from quietarm.models import Expression
 from quietarm.models.compiled import Compiled
-from quietarm.ocp.checks import hashable, instance, not_negative, positive
+from quietarm.ocp.checks import hashable, instance, not_negative, positive, words_of_error
 
 
 def power_of(torque: Any, speed: Any) -> Any:
@@ -191,8 +191,8 @@ def _integrand(energy: Energy, torques: NDArray[np.float64], speeds: NDArray[np.
         outputs = [ca.densify(integrand)]
         smooth = Compiled(lambda: ca.Function("smooth", [torque, speed], outputs))
         return smooth(torques, speeds)[0].ravel()
-    except Exception as error:  # of any kind: a user's own lines
-        text = " ".join(f"{type(error).__name__}: {error}".split())
+    except (Exception, SystemExit) as error:  # of any kind: a user's own lines
+        text = words_of_error(error)
         raise ValueError(
             f"energy {energy.name!r}: its smooth fails ({text}); write (self, torque, speed) that "
             "returns one expression, with casadi.exp and its like"

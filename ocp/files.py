@@ -6,7 +6,8 @@ import errno
 import os
 import shutil
 import tempfile
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
 
@@ -72,17 +73,76 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
 
     A file that was there keeps its permissions.
     """
-    target = check_writable(path).resolve()  # a link stays a link, to the new content
-    temporary = target.parent / f".quietarm-{uuid4().hex}"
+    write_together({path: content})
+
+
+def write_together(contents: Mapping[str | Path, str | bytes]) -> None:
+    """Write files that need each other, all or none; ValueError names one that cannot be."""
+    # a link stays a link, to the new content
+    targets = {check_writable(path).resolve(): content for path, content in contents.items()}
+    prepared = dict[Path, Path]()
     try:
-        with open(temporary, "xb") as file:
-            file.write(content.encode() if isinstance(content, str) else content)
-            file.flush()
-            os.fsync(file.fileno())
-        if target.exists():
-            shutil.copymode(target, temporary)
-        os.replace(temporary, target)
+        for target, content in targets.items():
+            prepared[target] = _beside(target)
+            with _named(target):
+                _write_through(prepared[target], content)
+                if target.exists():
+                    shutil.copymode(target, prepared[target])
+        _put_in_place(prepared)
+    finally:
+        for temporary in prepared.values():
+            temporary.unlink(missing_ok=True)
+
+
+def _beside(target: Path) -> Path:
+    """A name that no other file has, in the folder of a file."""
+    return target.parent / f".quietarm-{uuid4().hex}"
+
+
+@contextmanager
+def _named(target: Path) -> Iterator[None]:
+    """Name a file in what the system says of it."""
+    try:
+        yield
     except OSError as error:
         raise unwritable(target, error) from error
+
+
+def _write_through(path: Path, content: str | bytes) -> None:
+    """Write a new file to the disk itself; letters that UTF-8 does not have are question marks."""
+    with open(path, "xb") as file:
+        file.write(content.encode(errors="replace") if isinstance(content, str) else content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _put_in_place(prepared: Mapping[Path, Path]) -> None:
+    """Rename files to their places; where one fails, those before are as they were."""
+    alone = len(prepared) == 1  # there is nothing before it
+    before = dict[Path, Path | None]()
+    try:
+        for target, temporary in prepared.items():
+            with _named(target):
+                if not alone:
+                    before[target] = _kept(target)
+                os.replace(temporary, target)
+    except ValueError:
+        for target, kept in before.items():
+            with suppress(OSError):
+                if kept is None:
+                    target.unlink(missing_ok=True)
+                else:
+                    os.replace(kept, target)
+        raise
     finally:
-        temporary.unlink(missing_ok=True)
+        for kept in filter(None, before.values()):
+            kept.unlink(missing_ok=True)
+
+
+def _kept(target: Path) -> Path | None:
+    """What a file holds, under another name; None where there is no file."""
+    if not target.exists():
+        return None
+    kept = _beside(target)
+    shutil.copy2(target, kept)
+    return kept

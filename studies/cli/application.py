@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import traceback
 import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
+from pathlib import Path
 
 import click
 
 from quietarm.models.interrupts import STOPS
 from quietarm.ocp import QuietarmError
-from quietarm.ocp.checks import cut, unknown
+from quietarm.ocp.checks import cut, unknown, words_of_error
 from quietarm.ocp.escapes import one_line
 
 BAD_INPUT = 2
@@ -166,6 +168,8 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _complain(str(error), NOT_SOLVED)
     except (KeyboardInterrupt, click.Abort):
         return _complain("interrupted; what was written until then is kept", NOT_SOLVED)
+    except SystemExit as error:  # click's own comes as another: it is of a user's lines
+        return _complain(f"{_place_of(error)}{words_of_error(error)}", BAD_INPUT)
     except MemoryError:
         return _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
     except BrokenPipeError:  # the reader has read enough, as head does
@@ -173,8 +177,28 @@ def _run(arguments: Sequence[str] | None) -> int:
         return 0
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
-        place = f"{error.filename}: " if error.filename else "standard output: "
+        place = f"{error.filename}: " if error.filename else _stream_of(error)
         return _complain(f"{place}{reason}; choose another place", BAD_INPUT)
+
+
+def _stream_of(error: OSError) -> str:
+    """Standard output, where what prints to it has failed; nothing else is said without its name.
+
+    What writes files names them where the system does not.
+    """
+    last = Path(traceback.extract_tb(error.__traceback__)[-1].filename)
+    printed = last == Path(__file__) or bool({"rich", "click"} & {*last.parts})
+    return "standard output: " if printed else "a file: "
+
+
+def _place_of(error: BaseException) -> str:
+    """The last line of a file of the user's own that led to an error, for a message."""
+    ours = (Path(__file__).parents[3], *map(Path, {sys.prefix, sys.base_prefix}))
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        is_file = Path(frame.filename).suffix == ".py"
+        if is_file and not any(Path(frame.filename).is_relative_to(place) for place in ours):
+            return f"{frame.filename}, line {frame.lineno}: "
+    return ""
 
 
 def _complain(message: str, status: int) -> int:

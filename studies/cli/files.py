@@ -137,7 +137,8 @@ def finish(
             try:
                 _save(path, write)
             except OSError as error:  # the system's own may leave the name out
-                failures.append(unwritable(path, error))
+                place = Path("standard output") if path == STDOUT else path
+                failures.append(unwritable(place, error))
             except Exception as error:  # of any kind: the next file may be saved all the same
                 failures.append(error)
             else:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from quietarm.ocp.checks import positive, whole
-from quietarm.ocp.files import write_whole
+from quietarm.ocp.files import unwritable, write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, WIDTHS, format_of
 from quietarm.studies.figures.axes import TITLE, new_figure
 from quietarm.studies.figures.grammar import AFTER_ARRIVAL, FAINT, GREY, INK
@@ -96,14 +96,17 @@ class Film:
             )
         figure, update = _draw(self)
         writer = _WRITERS[name](fps=self.rate)
-        with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
-            place = Path(folder) / f"film.{name}"
-            with writer.saving(figure, str(place), figure.dpi):
-                for k in range(self.frames):
-                    update(k)
-                    writer.grab_frame()
-                    report(k + 1, self.frames)
-            return place.read_bytes()
+        try:
+            with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
+                place = Path(folder) / f"film.{name}"
+                with writer.saving(figure, str(place), figure.dpi):
+                    for k in range(self.frames):
+                        update(k)
+                        writer.grab_frame()
+                        report(k + 1, self.frames)
+                return place.read_bytes()
+        except OSError as error:
+            raise unwritable(Path(tempfile.gettempdir()) / f"film.{name}", error) from error
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a gif, so that it needs no server."""

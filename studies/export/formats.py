@@ -9,7 +9,7 @@ from typing import Any
 
 from quietarm.ocp import InfeasibleTaskError, Plan
 from quietarm.ocp.checks import positive
-from quietarm.ocp.files import write_whole
+from quietarm.ocp.files import write_together, write_whole
 from quietarm.studies.export.tables import csv_text, mat_bytes, ros_text
 
 COLUMNS = "time,angle,speed,acceleration"
@@ -140,10 +140,9 @@ def export_moves(dataset: Path, path: Path) -> list[Path]:
 
 
 def _write_c(moves: Any, path: Path) -> list[Path]:
-    """Write header and source, the header first."""
+    """Write header and source, both or neither."""
     from quietarm.studies.export.c_source import c_files
 
     files = [path.with_suffix(".h"), path]
-    for file, content in zip(files, c_files(moves, path.stem)):
-        write_whole(file, content)
+    write_together(dict(zip(files, c_files(moves, path.stem))))
     return files

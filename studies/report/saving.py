@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -34,7 +34,12 @@ def inside(folder: Path, writes: Mapping[str, Callable[[Path], object]]) -> list
 
     def write_inside(write: Callable[[Path], object], path: Path) -> None:
         path.parent.mkdir(exist_ok=True)
-        write(path)
+        try:
+            write(path)
+        except ValueError:
+            with suppress(OSError):  # it has other files, and stays
+                path.parent.rmdir()
+            raise
 
     return [(folder / name, partial(write_inside, write)) for name, write in writes.items()]
 

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from quietarm.models.interrupts import note_interrupts
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import cut, install, quoted
+from quietarm.ocp.files import unwritable
 from quietarm.ocp.json_text import refuse_repeated
 from quietarm.ocp.record import versions
 from quietarm.ocp.saved import plain, typed
@@ -56,7 +57,8 @@ class Store:
     def of(cls, path: Path, definition: Definition) -> Store:
         """The store of a sweep, made where there is none; FileFormatError if it is of another."""
         if not path.exists():
-            _lay_out(path, definition)
+            with _refusal_told(path):
+                _lay_out(path, definition)
         store = cls(path)
         if differing := definition.difference(store.definition):
             raise FileFormatError(
@@ -176,7 +178,8 @@ class Store:
         import zarr
 
         text = json.dumps({**entries, DIGEST: self._digest_of_note(entries)})
-        zarr.open_group(self.path, mode="r+").attrs[name] = text
+        with _refusal_told(self.path):
+            zarr.open_group(self.path, mode="r+").attrs[name] = text
         self.dataset.attrs[name] = text
 
 
@@ -240,6 +243,15 @@ def _undisturbed() -> Iterator[None]:
         yield
     if came:
         raise KeyboardInterrupt
+
+
+@contextmanager
+def _refusal_told(path: Path) -> Iterator[None]:
+    """Name the dataset where the system refuses to write it: a full disk says no name."""
+    try:
+        yield
+    except OSError as error:
+        raise unwritable(path, error) from error
 
 
 @contextmanager

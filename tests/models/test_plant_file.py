@@ -37,6 +37,12 @@ OWN = "from quietarm.models import Plant, SingleLinkManipulator\nclass S(Plant):
         ("crane.py", OWN.partition("class")[0], "no plant"),
         ("crane.py", "\n\nx = 1 / 0\n", ", line 3: ZeroDivisionError"),
         ("crane.py", "\nx = (\n", ", line 2: SyntaxError"),
+        (
+            "crane.py",
+            "import sys\nsys.exit(3)\n",
+            ", line 2: it calls sys.exit(3), which would end",
+        ),
+        ("crane.py", "raise SystemExit", ", line 1: it calls sys.exit(), which would end"),
         ("crane.py", OWN + "name, modes = 's', 1", "with a name, modes, modal_acc"),
         ("crane.py", OWN + "name = 'single-link'", "quietarm's own; give S another"),
         ("plan.json", "raise RuntimeError('run')", "is not called .py"),

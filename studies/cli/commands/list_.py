@@ -14,6 +14,7 @@ from quietarm.studies.cli.plants import OF_ROBOTS
 from quietarm.studies.cli.robots import path_of
 from quietarm.studies.report.catalogue import KINDS, catalogue_rows
 from quietarm.studies.report.robots import robot_rows, usual_path
+from quietarm.studies.report.saving import inside
 from quietarm.studies.report.words import counted
 
 
@@ -55,12 +56,12 @@ def list_(given: Given) -> None:
     if given.output and not problems:
         raise ValueError("--output is for the reference fronts of problems; name one")
     for folder in given.output:
-        folder.mkdir(exist_ok=True)
         fronts = dict[str, Front]()
         for name in problems:
             fronts |= zip(PROBLEMS[name].tasks(), PROBLEMS[name].fronts())
             fronts[name] = PROBLEMS[name].front()  # of all objectives
-        for name, front in fronts.items():
-            front.save(folder / f"{name}.json")
+        saves = {f"{name}.json": front.save for name, front in fronts.items()}
+        for path, save in inside(folder, saves):
+            save(path)
         shown.append(f"wrote {counted(len(fronts), 'front')} to {folder}")
     finish([], *shown)

@@ -55,6 +55,24 @@ def test_a_profile_beside_a_plant_in_the_plant_file(done, call, refused, crane_f
     assert "did you mean 'minimum-jerk'" in told
 
 
+EXITS = """
+
+class Leaves(qa.TermProfile):
+    name = "leaves"
+
+    def angle(self, coefficients, fraction):
+        raise SystemExit("enough")
+"""
+
+
+def test_a_profile_that_ends_the_process_is_an_error_with_its_line(refused, crane_file):
+    crane_file.write_text(f"{crane_file.read_text()}\n\n{PROFILE}{EXITS}")
+    line = len(crane_file.read_text().splitlines())
+    move = "--target 60deg --duration 3 --profile leaves"
+    told = refused(f"plan --plant-file crane.py {move}")
+    assert f"crane.py, line {line}: it calls sys.exit(enough), which would end quietarm" in told
+
+
 @pytest.mark.slow
 def test_workers_know_the_profile_of_a_plant_file(call, crane_file):
     crane_file.write_text(f"{crane_file.read_text()}\n\n{PROFILE}")
