@@ -67,7 +67,7 @@ class Inertia:
     @property
     def principal(self) -> Array:
         """Principal moments about the centre of mass, from the least [kg m^2]."""
-        return np.linalg.eigvalsh(self.moments)
+        return np.asarray(np.linalg.eigvalsh(self.moments), float)
 
     @property
     def turns_backwards(self) -> bool:
@@ -258,29 +258,34 @@ def _joint(element: ElementTree.Element) -> UrdfJoint:
             f"{what} is {quoted(kind)}; give revolute, continuous, prismatic or fixed joints "
             "alone, as a fixed one to the ground"
         )
-    ends = {end: _link(element, end, what) for end in ("parent", "child")}
+    parent = _link(element, "parent", what)
+    child = _link(element, "child", what)
     frame = _origin(element, what)
     if kind == FIXED:
-        return UrdfJoint(name, FIXED, **ends, frame=frame, axis=np.array([1.0, 0.0, 0.0]))
+        return UrdfJoint(name, FIXED, parent, child, frame, axis=np.array([1.0, 0.0, 0.0]))
     axis = _numbers(element.find("axis"), "xyz", f"axis of {what}", "1 0 0")
     length = float(np.linalg.norm(axis))
     if length == 0:
         raise ValueError(f"axis of {what} is 0 0 0; give a direction, such as 0 0 1")
     lower, upper = _range(element.find("limit"), what) if kind != "continuous" else _UNLIMITED
     mimic = element.find("mimic")
+    deceleration = f"deceleration of {what}"
     return UrdfJoint(
         name=name,
         kind=_KINDS[kind],
-        **ends,
+        parent=parent,
+        child=child,
         frame=frame,
         axis=axis / length,
         lower=lower,
         upper=upper,
-        **_sizes(element, "limit", ("effort", "velocity", "acceleration", "jerk"), what),
-        deceleration=abs(
-            _number(element.find("limit"), "deceleration", f"deceleration of {what}", 0.0)
-        ),
-        **_sizes(element, "dynamics", ("damping", "friction"), what),
+        effort=_size(element, "limit", "effort", what),
+        velocity=_size(element, "limit", "velocity", what),
+        acceleration=_size(element, "limit", "acceleration", what),
+        deceleration=abs(_number(element.find("limit"), "deceleration", deceleration, 0.0)),
+        jerk=_size(element, "limit", "jerk", what),
+        damping=_size(element, "dynamics", "damping", what),
+        friction=_size(element, "dynamics", "friction", what),
         mimics=None if mimic is None else _mimic(mimic, what),
         continuous=kind == "continuous",
     )
@@ -303,16 +308,12 @@ def _range(limit: ElementTree.Element | None, what: str) -> tuple[float, float]:
     return lower, upper
 
 
-def _sizes(
-    joint: ElementTree.Element, tag: str, entries: tuple[str, ...], what: str
-) -> dict[str, float]:
-    """Numbers of 0 or more; 0 of those that the URDF does not have."""
-    sizes = dict[str, float]()
-    for entry in entries:
-        sizes[entry] = _number(joint.find(tag), entry, f"{entry} of {what}", 0.0)
-        if sizes[entry] < 0:
-            raise ValueError(f"{entry} of {what} is {sizes[entry]:g}; give 0 or more")
-    return sizes
+def _size(joint: ElementTree.Element, tag: str, entry: str, what: str) -> float:
+    """A number of 0 or more; 0 where the URDF has none."""
+    size = _number(joint.find(tag), entry, f"{entry} of {what}", 0.0)
+    if size < 0:
+        raise ValueError(f"{entry} of {what} is {size:g}; give 0 or more")
+    return size
 
 
 def _mimic(element: ElementTree.Element, what: str) -> Mimic:

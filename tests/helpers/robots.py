@@ -81,5 +81,6 @@ def panda_with_bar(modes=2):
         held={"panda_finger_joint1": 0.01, "panda_finger_joint2": 0.01},
         beam=qa.Beam(at="panda_hand", **STEEL_BAR),
         elastic_joints={joint: (gear, 5.0) for joint, gear in zip(joints, PANDA_GEARS)},
+        friction=dict.fromkeys(joints, 0.0),  # as in MuJoCo's twin, in place of 0.003 of the URDF
         modes=modes,
     )
