@@ -1,7 +1,6 @@
 """Joints that mimic others: in dynamics, limits, exports and pictures."""
 
 import numpy as np
-import pinocchio
 import pytest
 from robots import urdf_of
 from two_links import BASE, ELBOW, INERTIAL, SHOULDER, URDF, robot_of, with_elbow, words_of
@@ -43,8 +42,10 @@ def test_inertias_and_torques_are_those_of_the_joints_by_virtual_work():
     assert _torques(following, motion) == pytest.approx([expected], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_fingers_of_a_gripper_are_pinocchios():
     """Pinocchio follows <mimic> itself where it is asked to."""
+    pinocchio = pytest.importorskip("pinocchio")
     robot = qa.Robot(urdf=urdf_of("panda.urdf"), base=BASE)
     assert len(robot.joints) == 8
     model = pinocchio.buildModelFromUrdf(str(urdf_of("panda.urdf")), True)
@@ -111,6 +112,7 @@ def _lift():
     )
 
 
+@pytest.mark.slow
 def test_a_follower_that_is_held_by_name_stays_there_and_it_is_said():
     robot = robot_of(MIMIC, held={"elbow": 0.1})
     assert robot.followers == {}

@@ -3,7 +3,6 @@
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
-import pinocchio
 import pytest
 from robots import all_urdfs, urdf_of
 
@@ -12,6 +11,9 @@ from quietarm.models import Base
 from quietarm.models.robot.frames import Frame, rotation_about
 from quietarm.models.robot.urdf import FIXED, PRISMATIC, Inertia, read_urdf
 from quietarm.models.robot.urdf_text import dynamics_of
+
+pinocchio = pytest.importorskip("pinocchio")
+pytestmark = pytest.mark.slow
 
 STIFF = Base(stiffness=(1e9, 1e9))  # something has to bend; it adds nothing with the base still
 EMPTY = {"ur3.urdf": "has no links"}

@@ -246,6 +246,7 @@ def test_a_bar_heavier_than_its_robot_is_refused(tmp_path):
         qa.Robot.load(file)
 
 
+@pytest.mark.slow
 def test_many_joints_are_listed_in_a_line_of_some_length():
     with pytest.raises(ValueError, match=r"'finger' .* \.\.\. ") as refusal:
         robot_of(urdf_of("tiago_dual.urdf"), joints=["finger"])
