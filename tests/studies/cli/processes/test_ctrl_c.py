@@ -35,6 +35,6 @@ def test_what_is_stopped_writes_nothing(at_a_terminal, stop, folder, plan, line,
     process = at_a_terminal(line)
     begin(process, words)
     out, err = stop(process, number)
-    assert (process.returncode, out) == (1, "")
+    assert (process.returncode, out) == (128 + number, "")  # as shells have it
     assert err.splitlines()[-1] == INTERRUPTED
     assert [path.name for path in folder.iterdir()] == ["plan.json"]
