@@ -42,6 +42,7 @@ _EVALUATIONS = {"call", "__call__"}
 """Functions of CasADi's wrapper that evaluate, and end early where the handler raises."""
 _doors = set[CodeType]()
 """Functions of quietarm that call CasADi's C++ without its wrapper."""
+_operations = set[CodeType]()
 _IN_C: Any = import_module("_signal")
 """Its functions take a tenth of the time of those of `signal`, which make enumerations."""
 _MAIN = threading.main_thread().ident
@@ -89,24 +90,35 @@ def interruptible(work: Callable[P, R]) -> Callable[P, R]:
             return work(*args, **kwargs)
         return _outermost(handler, work, args, kwargs)
 
+    _operations.add(operation.__code__)
     return operation
+
+
+def is_interruptible(work: object) -> bool:
+    """Whether a function is marked so."""
+    return getattr(work, "__code__", None) in _operations
 
 
 def _outermost(handler: Any, work: Callable[..., R], args: Any, kwargs: Any) -> R:
     kept: list[BaseException] = []
     try:
         _install(handler, kept)
-        _state.acts = True
-        if kept:
-            raise kept.pop()
-        try:
-            return _inner(work, args, kwargs)
-        finally:
-            _state.acts = False
+        return _act(work, args, kwargs)
     finally:
         _put_back(handler)
         if kept:
             raise kept.pop()
+
+
+def _act(work: Callable[..., R], args: Any, kwargs: Any) -> R:
+    """Do the work, in which the handler may raise."""
+    try:
+        _state.acts = True
+        if _state.kept:
+            raise _state.kept.pop()
+        return _inner(work, args, kwargs)
+    finally:
+        _state.acts = False
 
 
 def _install(handler: Any, kept: list[BaseException]) -> None:
@@ -157,14 +169,14 @@ class note_interrupts:  # noqa: N801  # a context manager, used as a function
 
     def __enter__(self) -> list[BaseException]:
         self._handler: Any = None
-        self._acted = False
+        self._kept: list[BaseException] | None = None
         came: list[BaseException] = []
         if threading.get_ident() != _MAIN:
             return came
         handler = _IN_C.getsignal(signal.SIGINT)
         if handler is defer:
             if _state.acts:
-                self._acted = True
+                self._kept = _state.kept
                 _state.kept = came
                 _state.acts = False
         elif callable(handler):
@@ -180,8 +192,9 @@ class note_interrupts:  # noqa: N801  # a context manager, used as a function
     ) -> Literal[False]:
         if self._handler is not None:
             _put_back(self._handler)
-        elif self._acted:
+        elif self._kept is not None:
             _state.acts = True
+            _state.kept = self._kept
         return False
 
 
@@ -242,8 +255,8 @@ def defer(number: int, frame: FrameType | None) -> None:
     if outside is not frame:
         _state.waits_since = time.monotonic()
         _raise_at(outside, stop)
-        if not _may_end_early(frame, within):
-            return
+        if not all(map(_evaluates, within)):
+            return  # CasADi's evaluations end early where the handler raises
     raise stop
 
 
@@ -283,12 +296,8 @@ def _is_impatient() -> bool:
     return since is not None and time.monotonic() - since > _IMPATIENT_SECONDS
 
 
-def _may_end_early(frame: FrameType | None, within: list[FrameType]) -> bool:
-    """Whether the handler is called from CasADi's C++ that evaluates, and nothing else is lost."""
-    return within[:1] == [frame] and all(_evaluates(one) for one in within)
-
-
 def _evaluates(frame: FrameType) -> bool:
+    """Whether CasADi evaluates a function, be it with callbacks."""
     if frame.f_code in _doors:
         return True
     return _module(frame).startswith("casadi") and frame.f_code.co_name in _EVALUATIONS

@@ -132,5 +132,7 @@ def run_sweep(
     except LostWorkersError as error:
         raise QuietarmError(f"{error}; {remedy}") from None
     if not store.missing():
-        with note_interrupts():
+        with note_interrupts() as came:
             store.mark_jumps()
+        if came:
+            raise came[0]
