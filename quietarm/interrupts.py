@@ -90,7 +90,8 @@ def interruptible(work: Callable[P, R]) -> Callable[P, R]:
             return work(*args, **kwargs)
         return _outermost(handler, work, args, kwargs)
 
-    _operations.add(operation.__code__)
+    marked: Any = operation
+    _operations.add(marked.__code__)
     return operation
 
 
@@ -147,17 +148,19 @@ def _inner(work: Callable[..., R], args: Any, kwargs: Any) -> R:
     try:
         result = work(*args, **kwargs)
     except Exception as error:
-        if _was_lost(before, error):
-            raise _state.raised from None
+        if lost := _lost_since(before, error):
+            raise lost from None
         raise
-    if _was_lost(before):
-        raise _state.raised
+    if lost := _lost_since(before):
+        raise lost
     return result
 
 
-def _was_lost(before: BaseException | None, error: Exception | None = None) -> bool:
+def _lost_since(
+    before: BaseException | None, error: Exception | None = None
+) -> BaseException | None:
     raised = _state.raised
-    return raised is not None and raised is not before and raised is not error
+    return None if raised is before or raised is error else raised
 
 
 class note_interrupts:  # noqa: N801  # a context manager, used as a function
