@@ -5,6 +5,6 @@ file; the rooms below are `objective`, `problems` and `algorithms`. It may impor
 `models`.
 """
 
-import lazy_loader
+from quietarm.loading import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

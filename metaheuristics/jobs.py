@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
 from quietarm.metaheuristics.gradient import (
     GRADIENT,
@@ -277,6 +278,7 @@ JobReport = Callable[[Job, Front, int, int], None]
 """Called with a job, its front, and how many of how many are done."""
 
 
+@interruptible
 def run_jobs(
     jobs: Sequence[Job],
     folder: str | Path,
@@ -365,6 +367,7 @@ def run_jobs(
     return ordered
 
 
+@interruptible
 def finished_jobs(jobs: Sequence[Job], folder: str | Path) -> dict[Job, Front]:
     """The fronts of those jobs whose files are in a folder, which may be missing.
 

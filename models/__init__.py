@@ -1,9 +1,10 @@
 """What moves: plants as symbolic equations; and the door to CasADi's functions (`compiled`)."""
 
 import casadi
-import lazy_loader
+
+from quietarm.loading import attach
 
 if not hasattr(casadi, "SX"):  # a script's own file of that name was imported in its place
     raise ImportError(f"{casadi.__file__} hides the library casadi; give that file another name")
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

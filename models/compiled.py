@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from quietarm.models.interrupts import Watch
+from quietarm.interrupts import calls_casadi, interruptible
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -27,10 +27,10 @@ _TURN = RLock()
 class Compiled:
     """A function of CasADi, built when it is first needed.
 
-    What CasADi does here waits for other threads that do the same, and Ctrl-C during it raises
-    KeyboardInterrupt after it: CasADi loses the signal, a solve seems to have failed, or a value is
-    missing and any error follows. Arrays are read and written without passing every number through
-    a list of Python, which is a third of a simulation by CVODES.
+    What CasADi does here waits for other threads that do the same, and no Ctrl-C is lost in it, as
+    in CasADi alone, where a solve then seems to have failed, or a value is missing and any error
+    follows. Arrays are read and written without passing every number through a list of Python,
+    which is a third of a simulation by CVODES.
 
     Parameters
     ----------
@@ -52,10 +52,11 @@ class Compiled:
         self._idle: list[_Buffer] = []
 
     @property
+    @interruptible
     def function(self) -> ca.Function:
         """The function, to build others of."""
         if self._function is None:
-            with _TURN, self._muted(), Watch(holds=False):
+            with _TURN, self._muted():
                 self._function = self._function or self._build()
         return self._function
 
@@ -64,13 +65,14 @@ class Compiled:
         columns = [np.asarray(values, dtype=float).T for values in inputs]
         return self.run(columns, _transposed)
 
+    @interruptible
     def run(self, inputs: Sequence[ArrayLike], read: Callable[[list[Array]], T]) -> T:
         """What is read of the outputs; these and the inputs are transposed.
 
         The next call overwrites the outputs: read copies of them.
         """
         function = self.function
-        with self._turn, self._muted(), Watch(holds=False):
+        with self._turn, self._muted():
             try:
                 buffer = self._idle.pop()
             except IndexError:  # all are in use by other threads, or there is none yet
@@ -79,10 +81,11 @@ class Compiled:
             self._idle.append(buffer)
         return result
 
+    @interruptible
     def solve(self, **inputs: Any) -> tuple[dict[str, Array], dict[str, Any]]:
         """Columns of the outputs by name, and statistics, of a function that is a solver."""
         function = self.function
-        with _TURN, self._muted(), Watch(holds=False):
+        with _TURN, self._muted():
             outputs: dict[str, ca.DM] = function(**inputs)
             columns = {name: values.full().ravel() for name, values in outputs.items()}
             return columns, function.stats()
@@ -91,9 +94,10 @@ class Compiled:
         return silent_errors() if self._silent else nullcontext()
 
     @staticmethod
+    @interruptible
     def guard(work: Callable[[], T]) -> T:
         """What comes of work with CasADi that is no single function, guarded in the same way."""
-        with _TURN, Watch(holds=False):
+        with _TURN:
             return work()
 
 
@@ -110,6 +114,7 @@ class _Buffer:
         for i, values in enumerate(self._outputs):
             self._buffer.set_res(i, values.data)
 
+    @calls_casadi
     def run(self, inputs: Sequence[ArrayLike]) -> list[Array]:
         for memory, values in zip(self._inputs, inputs):
             memory[...] = values

@@ -13,6 +13,7 @@ from inspect import isabstract
 from pathlib import Path
 from types import ModuleType
 
+from quietarm.interrupts import interruptible
 from quietarm.models.checks import words_of_error
 from quietarm.models.plant import Plant
 
@@ -33,6 +34,7 @@ class PlantFile:
 _file_of: dict[type[Plant], PlantFile] = {}
 
 
+@interruptible
 def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
     """Run a Python file that you trust, and make its plants known by name.
 

@@ -6,6 +6,6 @@ What is asked: `task` with its limits, and how a joint may move, `profiles`. Wha
 What a user needs is here.
 """
 
-import lazy_loader
+from quietarm.loading import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

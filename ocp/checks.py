@@ -14,6 +14,7 @@ import numpy as np
 from msgspec import Meta
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.models.checks import (
     clipped,
     cut,
@@ -157,7 +158,10 @@ Kind = type[Any] | list[type[Any]] | dict[type[str], type[Any]]
 
 
 def takes(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Check arguments of a public function by name: each is of its kind, or the default."""
+    """Check arguments of a public function by name: each is of its kind, or the default.
+
+    No Ctrl-C is lost in it.
+    """
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
         parameters = inspect.signature(function)
@@ -173,15 +177,9 @@ def takes(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
                 value = arguments.get(name, default)
                 if value is not default:
                     _check_kind(name, value, kind)
-            try:
-                return function(*args, **kwargs)
-            except SystemError as error:
-                # casadi before 3.8 turns a Ctrl-C within a sum or a product into one
-                if isinstance(error.__cause__, KeyboardInterrupt):
-                    raise error.__cause__ from None
-                raise
+            return function(*args, **kwargs)
 
-        return checked
+        return interruptible(checked)
 
     return decorate
 

@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Self, TypeVar, get_type_hints
 import msgspec
 import numpy as np
 
+from quietarm.interrupts import interruptible
 from quietarm.models import Plant, file_of_plant, known_plants
 from quietarm.ocp.checks import clipped, known, quoted
 from quietarm.ocp.energy import Energy, Mix
@@ -346,6 +347,7 @@ class Saved:
     earlier: ClassVar[tuple[int, ...]] = ()
     """Versions that are read as well; files of any other are refused."""
 
+    @interruptible
     def save(self, path: str | Path) -> None:
         """Write the answer as JSON, whole or not at all; ValueError where that cannot be."""
         write_whole(path, self._text() + "\n")
@@ -362,6 +364,7 @@ class Saved:
         return plain(self)
 
     @classmethod
+    @interruptible
     def load(cls, path: str | Path) -> Self:
         """Read an answer that `save` wrote, to a value equal to it.
 

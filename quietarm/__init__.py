@@ -12,7 +12,7 @@ are rooms of `qa.studies`. Each is imported with the first of its names that is 
 
 from pathlib import Path
 
-import lazy_loader
+from quietarm.loading import attach
 
 _FOLDER = Path(__file__).parent
 if not (_FOLDER / "ocp").is_dir():  # in a checkout without the links of an editable installation
@@ -20,4 +20,4 @@ if not (_FOLDER / "ocp").is_dir():  # in a checkout without the links of an edit
 
 __version__ = "2.0.0"
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -5,6 +5,6 @@ Rooms: `cli` has the commands; `bench`, `compare`, `reproduce`, `sweep`, `identi
 call things. All of them may import the other three packages.
 """
 
-import lazy_loader
+from quietarm.loading import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import quietarm as qa
+from quietarm.interrupts import is_interruptible
 from quietarm.models import LinearAxis
+from quietarm.models.compiled import Compiled
 
 # Of these classes; `Motions` is what the pictures of motions take.
 KINDS = (
@@ -317,3 +319,28 @@ def test_a_notebook_shows_forces_of_a_linear_axis():
     assert "<td>limits</td><td>force 90 N</td>" in shown
     assert re.search(r"<td>peak force</td><td>[\d.]+ N</td>", shown)
     assert "torque" not in shown
+
+
+PLAIN = {
+    "deg", "parameter", "joint_unit", "known_plants", "file_of_plant", "flexible_link",
+    "rigid_link", "non_dominated", "look", "looks", "quartiles",
+}  # fmt: skip
+"""Functions of a few lines of arithmetic, or of drawing into what is there."""
+
+
+def test_in_no_public_function_is_ctrl_c_lost():
+    functions = {name: one for name, one in _public().items() if inspect.isfunction(one)}
+    marked = {name for name, one in functions.items() if is_interruptible(one)}
+    assert functions.keys() - marked == PLAIN
+
+
+@pytest.mark.parametrize(
+    "method",
+    [
+        qa.Plan.save, qa.Plan.load, qa.Plan.save_csv, qa.Front.save_csv, qa.Robot.load,
+        qa.ocp.profiles.joint_profile.JointPath.__call__, Compiled.run, Compiled.solve,
+        qa.__getattr__, qa.ocp.__getattr__,
+    ],
+)  # fmt: skip
+def test_in_no_method_that_works_is_ctrl_c_lost(method):
+    assert is_interruptible(getattr(method, "__func__", method))

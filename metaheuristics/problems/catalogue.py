@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
 from quietarm.ocp import (
@@ -257,6 +258,7 @@ def front_by_gradient(
     )
 
 
+@interruptible
 def problem_of(name: str) -> NamedProblem:
     """A named problem; ValueError suggests the nearest one."""
     if name not in PROBLEMS:

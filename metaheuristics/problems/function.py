@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.objective.population import (
     measured_figures,
     replace_failures,
@@ -93,6 +94,7 @@ class MoveFunction:
         self._evaluator = search_evaluator(measured, profile, steps, threads)
         self._limited = [limit.name for limit in task.limits]
 
+    @interruptible
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
         """Evaluate candidates.
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.archive import Archive
 from quietarm.metaheuristics.objective.noise import Noise, times_evaluated
 from quietarm.metaheuristics.objective.population import UNUSABLE
@@ -89,6 +90,7 @@ class RecordedFunction(MoveFunction):
         self.lower.flags.writeable = False
         self.upper.flags.writeable = False
 
+    @interruptible
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
         """Evaluate candidates, as `MoveFunction` does, and keep them.
 
@@ -184,6 +186,7 @@ class RecordedFunction(MoveFunction):
             infeasible=self.infeasible,
         )
 
+    @interruptible
     def save(self, path: str | Path, method: str, seed: int | None = None) -> None:
         """Write the run as a file for ``quietarm bench --import``; arguments as for `front`."""
         self.front(method, seed).save(path)

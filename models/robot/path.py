@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from quietarm.interrupts import interruptible
 from quietarm.models.checks import quoted
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.cartesian import Pose, kinematics_of, straight_positions
@@ -218,6 +219,7 @@ class GeometricPath:
         return cls(*_plain(found), tuple(joints))
 
     @classmethod
+    @interruptible
     def load(cls, path: str | Path, *, degree: int = 5) -> GeometricPath:
         """Through the points of a file: csv, or a trajectory_msgs/JointTrajectory as YAML.
 

@@ -17,6 +17,7 @@ from typing import Any, ClassVar, Literal
 import casadi as ca
 import numpy as np
 
+from quietarm.interrupts import interruptible
 from quietarm.models.checks import finite, has_no, not_negative, positive, quoted, whole
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
@@ -176,6 +177,7 @@ class Robot:
             )
 
     @classmethod
+    @interruptible
     def load(cls, path: str | Path) -> Robot:
         """Read a robot's file, in YAML; docs/robots.md has its entries.
 

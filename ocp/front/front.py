@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import (
     IF_STATED,
@@ -202,6 +203,7 @@ class Front(Answer):
 
         return pd.DataFrame(self.columns())
 
+    @interruptible
     def save_csv(self, path: str | Path) -> None:
         """Write the `columns` as a table, by increasing residual, with every digit.
 

@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, NotNegative, positive, takes
@@ -216,6 +217,7 @@ class Plan(MotionAnswer):
             rows["residual limit"] = f"{self.residual_limit:.3g} {unit}"
         return rows
 
+    @interruptible
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
         """Write the move as a table to drive a joint with, so many rows a second [Hz].
 

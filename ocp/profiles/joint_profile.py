@@ -13,6 +13,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.models import Expression, JointMotion
 from quietarm.models.final import refuse_overridden
 from quietarm.ocp.checks import finite
@@ -240,6 +241,7 @@ class JointPath:
     target: float
     duration: float
 
+    @interruptible
     def __call__(self, time: ArrayLike, order: int = 0) -> NDArray[np.float64]:
         """The angle [rad], or its derivative of an order up to 3 [rad/s^order].
 

@@ -14,6 +14,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.models.compiled import RECENT
 from quietarm.ocp.checks import instance, table_of, takes, whole
 from quietarm.ocp.cost import COST
@@ -154,6 +155,7 @@ class Evaluator:
         """Of each scenario, the rows that give the residual of a state on arrival, to 5e-5."""
         return [vibration.rows for vibration in self.vibrations]
 
+    @interruptible
     def __call__(self, coefficients: ArrayLike, errors: ArrayLike | None = None) -> Evaluation:
         """Evaluate candidates.
 

@@ -3,6 +3,6 @@
 Runs are files in a folder; whatever is measured, tested and drawn is worked out from these alone.
 """
 
-import lazy_loader
+from quietarm.loading import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.score import HYPERVOLUME, INDICATORS, Indicator
 from quietarm.ocp.front.points import LEVELS
@@ -41,6 +42,7 @@ _STILL = f"within {1e3 * LEVELS[0]:g} mm"
 _COST = ("evaluations", "gradients", "hessians", "seconds")
 
 
+@interruptible
 def bench_report(results: Results, line: str, template: str | Path = "bench/report.md") -> Report:
     """The report of a bench that a line made.
 

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import traceback
 import warnings
 from collections.abc import Sequence
-from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
 import click
 
-from quietarm.models.interrupts import STOPS
+from quietarm.interrupts import INTERRUPTED, exit_status_of
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.checks import cut, unknown, words_of_error
 from quietarm.ocp.escapes import one_line
+from quietarm.studies.cli.interrupted import InterruptedCommandError
 
 BAD_INPUT = 2
 NOT_SOLVED = 1
@@ -103,22 +102,21 @@ def quietarm() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command and end the process with its status."""
-    if arguments is None:  # pictures go to files: no window, whatever the user's notebooks use
-        os.environ["MPLBACKEND"] = "agg"
-        warnings.filterwarnings("ignore", ".* more than a turn")  # they had a unit
-        sys.unraisablehook = _unless_ctrl_c
-        _open_what_is_closed()
-        _take_ends_as_ctrl_c()
-    if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
-        del os.environ["COLUMNS"]
-    status = NOT_SOLVED
-    # one more Ctrl-C may come while the first is answered
-    with suppress(KeyboardInterrupt):
-        status = _run(arguments)
-    if arguments is None:  # answered: nothing is left that another Ctrl-C could stop
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Run the command within Python, by default of the process's words; SystemExit at its end."""
+    try:
+        status = run_as_process() if arguments is None else _run(arguments)
+    except KeyboardInterrupt as stop:
+        status = _complain(INTERRUPTED, exit_status_of(stop))
     sys.exit(status)
+
+
+def run_as_process() -> int:
+    """Run the command whose words the process was given; its status, unless Ctrl-C ends it."""
+    os.environ["MPLBACKEND"] = "agg"  # to files: no window, whatever the user's notebooks use
+    warnings.filterwarnings("ignore", ".* more than a turn")  # they had a unit
+    sys.unraisablehook = _unless_ctrl_c
+    _open_what_is_closed()
+    return _run(None)
 
 
 def _open_what_is_closed() -> None:
@@ -132,21 +130,15 @@ def _open_what_is_closed() -> None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
 
 
-def _take_ends_as_ctrl_c() -> None:
-    """Let what ends a process stop the command as Ctrl-C does, unless it is handled or ignored."""
-    for number in signal.Signals:
-        if number.name in ("SIGTERM", "SIGHUP") and signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, signal.default_int_handler)
-            STOPS.append(number)
-
-
 def _unless_ctrl_c(lost: sys.UnraisableHookArgs) -> None:
-    """Report an exception that C code lost, but for Ctrl-C, which is noted and answered."""
+    """Report an exception that C code lost, but for Ctrl-C, which is raised again."""
     if lost.exc_type is not KeyboardInterrupt:
         sys.__unraisablehook__(lost)
 
 
 def _run(arguments: Sequence[str] | None) -> int:
+    if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
+        del os.environ["COLUMNS"]
     words = sys.argv[1:] if arguments is None else list(arguments)
     passed = None if arguments is None else words  # of None click looks for files on Windows
     try:
@@ -164,12 +156,14 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _complain(error.format_message(), BAD_INPUT)
     except ValueError as error:
         return _complain(str(error), BAD_INPUT)
+    except InterruptedCommandError as error:
+        return _complain(str(error), error.status)
     except QuietarmError as error:
         return _complain(str(error), NOT_SOLVED)
-    except (KeyboardInterrupt, click.Abort):
-        return _complain("interrupted; what was written until then is kept", NOT_SOLVED)
     except SystemExit as error:  # click's own comes as another: it is of a user's lines
         return _complain(f"{_place_of(error)}{words_of_error(error)}", BAD_INPUT)
+    except click.Abort as stop:  # click's name for it
+        raise KeyboardInterrupt(*getattr(stop.__cause__, "args", ())) from None
     except MemoryError:
         return _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
     except BrokenPipeError:  # the reader has read enough, as head does

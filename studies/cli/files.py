@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import click
 from rich.console import Console
 
-from quietarm.models.interrupts import note_interrupts
+from quietarm.interrupts import note_interrupts
 from quietarm.ocp import Plan, QuietarmError
 from quietarm.ocp.files import check_writable, unwritable
 from quietarm.ocp.objectives import refuse_peaks
+from quietarm.studies.cli.interrupted import InterruptedCommandError
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
 from quietarm.studies.report.saving import STDOUT, SUFFIXES, File, drawing
@@ -144,7 +145,8 @@ def finish(
             else:
                 written += [] if path == STDOUT else [str(path)]
     if came and trouble is None:
-        trouble = QuietarmError(f"interrupted; wrote {', '.join(written) or 'nothing'}")
+        words = f"interrupted; wrote {', '.join(written) or 'nothing'}"
+        trouble = InterruptedCommandError(words, came[0])
     error = _error_of_all([*([trouble] if trouble else []), *failures])
     console = Console(stderr=STDOUT in dict(files))
     show_all(console, *shown, *(f"wrote {name}" for name in written))

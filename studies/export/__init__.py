@@ -3,6 +3,6 @@
 May import `sweep`, `figures`, `report` and the paper's points of `reproduce`.
 """
 
-import lazy_loader
+from quietarm.loading import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
+from quietarm.interrupts import interruptible
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import unwritable, write_whole
 from quietarm.studies.export.formats import FORMATS, FRAMES, WIDTHS, format_of
@@ -76,6 +77,7 @@ class Film:
         """How long it takes [s]."""
         return self.frames / self.rate
 
+    @interruptible
     def save(
         self, path: str | Path, report: Callable[[int, int], object] = lambda done, total: None
     ) -> None:

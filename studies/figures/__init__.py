@@ -6,6 +6,6 @@ none opens a window: save one with ``ax.figure.savefig("name.png")``. Each is lo
 asked for.
 """
 
-import lazy_loader
+from quietarm.loading import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.score import within
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.ocp.record import REST
@@ -52,6 +53,7 @@ class KnownPoint:
     energy: float
 
 
+@interruptible
 def comparison_figure(comparison: Comparison, known: Sequence[KnownPoint] = ()) -> Figure:
     """Draw fronts over each other.
 
@@ -87,6 +89,7 @@ def comparison_figure(comparison: Comparison, known: Sequence[KnownPoint] = ()) 
     return figure
 
 
+@interruptible
 def draw_comparison(
     comparison: Comparison,
     known: Sequence[KnownPoint] = (),
@@ -209,6 +212,7 @@ def _caption(comparison: Comparison) -> str:
     )
 
 
+@interruptible
 def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
     """Draw how far points are above the best of all filled fronts, residual logarithmic.
 

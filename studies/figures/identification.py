@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import joint_label, joint_unit
 from quietarm.studies.figures.axes import new_figure
 from quietarm.studies.figures.grammar import BLUE, FAINT, GREY, INK, RED
@@ -21,6 +22,7 @@ _MOST = 6
 """Parts that are drawn; of more the first."""
 
 
+@interruptible
 def identification_figure(machine: Identified, recordings: Sequence[Recording]) -> Figure:
     """Draw the fitted parts of recordings, and the frequency over parts.
 

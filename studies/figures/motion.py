@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpecFromSubplotSpec
 from numpy.typing import NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY, joint_label
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
@@ -93,6 +94,7 @@ class Line:
 Motions = Sequence[Line] | Plan | Floor
 
 
+@interruptible
 def draw_quantity(
     motions: Motions, quantity: str, ax: Axes | None = None, *, curve: int | None = None
 ) -> Axes:
@@ -222,6 +224,7 @@ def scale_of(quantity: str, tip_unit: str = "m") -> float:
     return tip_scale(tip_unit)[1] if _LABELS[quantity][1] == "m" else 1.0
 
 
+@interruptible
 def motion_figure(
     motions: Motions, title: str | None = None, quantities: Sequence[str] | None = None
 ) -> Figure:

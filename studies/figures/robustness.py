@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from quietarm.interrupts import interruptible
 from quietarm.ocp import Robustness
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.record import REST
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from quietarm.studies.compare.judged_motions import JudgedMotion
 
 
+@interruptible
 def draw_robustness(
     plans: Mapping[str, Robustness],
     name: str,
@@ -74,6 +76,7 @@ def draw_robustness(
     return ax
 
 
+@interruptible
 def draw_motions(
     motions: Sequence[JudgedMotion], ax: Axes | None = None, tip_unit: str = "m"
 ) -> Axes:
@@ -115,6 +118,7 @@ def _window(motions: Sequence[JudgedMotion]) -> float | None:
     return next((judged.window for judged in motions if judged.window is not None), None)
 
 
+@interruptible
 def motions_figure(motions: Sequence[JudgedMotion], title: str, tip_unit: str = "m") -> Figure:
     """Draw motions over each other: `draw_motions`, and `draw_robustness` for each error."""
     curves = {motion.name: motion.robustness for motion in motions if motion.robustness is not None}

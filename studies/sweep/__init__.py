@@ -1,5 +1,5 @@
 """Grids of moves: a certified plan a cell, in a Zarr store that a killed run goes on with."""
 
-import lazy_loader
+from quietarm.loading import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

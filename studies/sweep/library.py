@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.ocp import InfeasibleTaskError, Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.studies.sweep.between import Between, assess
@@ -126,6 +127,7 @@ class MoveLibrary:
         return assessed
 
 
+@interruptible
 def plan_from(
     dataset: str | Path | MoveLibrary, **at: float
 ) -> tuple[Plan, Between, InfeasibleTaskError | None]:

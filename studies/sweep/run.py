@@ -7,8 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from quietarm.interrupts import note_interrupts
 from quietarm.metaheuristics.parallel import LostWorkersError, reach, side_by_side
-from quietarm.models.interrupts import note_interrupts
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint, QuietarmError, Solver, Sqp
 from quietarm.ocp.checks import has_no, several, takes
@@ -128,9 +128,11 @@ def run_sweep(
             done += 1
             report(done, len(missing))
             if came:
-                raise KeyboardInterrupt
+                raise came[0]
     except LostWorkersError as error:
         raise QuietarmError(f"{error}; {remedy}") from None
     if not store.missing():
-        with note_interrupts():
+        with note_interrupts() as came:
             store.mark_jumps()
+        if came:
+            raise came[0]

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.models.interrupts import note_interrupts
+from quietarm.interrupts import note_interrupts
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import cut, install, quoted
 from quietarm.ocp.files import unwritable
@@ -242,7 +242,7 @@ def _undisturbed() -> Iterator[None]:
     with note_interrupts() as came:
         yield
     if came:
-        raise KeyboardInterrupt
+        raise came[0]
 
 
 @contextmanager

@@ -15,7 +15,7 @@ COARSELY = [
     "-c",
     f"from quietarm.ocp.floor import energy_floor; energy_floor.FIRST_INTERVALS = {INTERVALS}\n"
     "from quietarm.studies.report import progress; progress.PLAIN_SECONDS = 0.1\n"
-    "from quietarm.studies.cli import main; main()",
+    "from quietarm.__main__ import main; main()",
 ]
 """The command as a process, which says where a search is without delay, and finds coarser
 floors.

@@ -26,6 +26,7 @@ from quietarm.studies.cli.files import (
     output_option,
 )
 from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.interrupted import InterruptedCommandError
 from quietarm.studies.cli.options import (
     BOUND,
     METHOD_SETTING,
@@ -121,7 +122,7 @@ def search(given: Given) -> None:
     candidates = len(seeds) * of_run * given.reevaluate
     refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     fronts = list[Front]()
-    trouble = None
+    trouble: QuietarmError | None = None
     with search_display(progress_console()) as display:
         if not several and workers == 1:
             options["report"] = display
@@ -135,8 +136,11 @@ def search(given: Given) -> None:
         except (KeyboardInterrupt, LostWorkersError) as error:
             if not fronts:
                 raise
-            why = "interrupted" if isinstance(error, KeyboardInterrupt) else error
-            trouble = QuietarmError(f"{why}: {len(fronts)} of {given.runs} seeds are done and kept")
+            done = f"{len(fronts)} of {given.runs} seeds are done and kept"
+            if isinstance(error, KeyboardInterrupt):
+                trouble = InterruptedCommandError(f"interrupted: {done}", error)
+            else:
+                trouble = QuietarmError(f"{error}: {done}")
     fronts.sort(key=lambda front: front.record.seed or 0)
     if not any(front.points for front in fronts):
         raise trouble or SolverFailedError(f"{given.method}: {fronts[0].why_empty()}")

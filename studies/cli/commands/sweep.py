@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from quietarm.ocp import QuietarmError
 from quietarm.studies.cli.files import (
     DATASET,
     PICTURE,
@@ -16,6 +15,7 @@ from quietarm.studies.cli.files import (
     output_option,
 )
 from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.interrupted import InterruptedCommandError
 from quietarm.studies.cli.options import (
     BOUND,
     PART,
@@ -95,11 +95,10 @@ def sweep(given: Given) -> None:
     try:
         with counting(missing, "chunks") as report:
             run_sweep(store, given.part, workers=workers, report=report)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         done = missing - len(store.missing(given.part))
-        trouble = QuietarmError(
-            f"interrupted: {done} of {missing} chunks are done; give the same line again to go on"
-        )
+        words = f"interrupted: {done} of {missing} chunks are done"
+        trouble = InterruptedCommandError(f"{words}; give the same line again to go on", stop)
 
     def picture() -> Figure:
         from quietarm.studies.figures.grid import fronts_figure, grid_figure

@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.colors import to_hex, to_rgb
 from numpy.typing import NDArray
 
+from quietarm.interrupts import interruptible
 from quietarm.ocp import Front, Plan
 from quietarm.ocp.checks import instance, positive
 from quietarm.ocp.escapes import one_line, script_json
@@ -86,6 +87,7 @@ class TradeOffPage:
         )  # fmt: skip
         return page.lstrip()
 
+    @interruptible
     def save(self, path: str | Path) -> None:
         """Write it, whole or not at all; ValueError where the name does not end in .html."""
         if Path(path).suffix.lower() not in (".html", ".htm"):

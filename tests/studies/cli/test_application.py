@@ -103,6 +103,6 @@ def test_ctrl_c_while_files_are_written_waits_until_they_are_there(call, folder,
 
     monkeypatch.setattr(os, "fsync", interrupted)
     code, out, err = call(f"evaluate {MOVE} --coefficients=0 --output o.json --output o.csv")
-    assert (code, err) == (1, "quietarm: interrupted; wrote o.json, o.csv\n")
+    assert (code, err) == (130, "quietarm: interrupted; wrote o.json, o.csv\n")
     assert out.splitlines()[-2:] == ["wrote o.json", "wrote o.csv"]
     assert sorted(path.name for path in folder.iterdir()) == ["o.csv", "o.json"]

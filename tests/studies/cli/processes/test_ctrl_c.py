@@ -2,6 +2,8 @@
 
 import re
 import signal
+import subprocess
+import sys
 
 import pytest
 from lines import MOVE
@@ -35,6 +37,42 @@ def test_what_is_stopped_writes_nothing(at_a_terminal, stop, folder, plan, line,
     process = at_a_terminal(line)
     begin(process, words)
     out, err = stop(process, number)
-    assert (process.returncode, out) == (1, "")
+    assert (process.returncode, out) == (128 + number, "")  # as shells have it
     assert err.splitlines()[-1] == INTERRUPTED
+    assert [path.name for path in folder.iterdir()] == ["plan.json"]
+
+
+# Press while a module is being imported: a finder that finds nothing is asked for it first.
+PRESSED_AT_IMPORT = """
+import signal, sys
+
+class Pressing:
+    def find_spec(self, name, path=None, target=None):
+        if name == {module!r}:
+            signal.raise_signal({number})
+
+sys.meta_path.insert(0, Pressing())
+sys.argv[0] = "quietarm"
+from quietarm.__main__ import main
+main()
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "module", "number"),
+    [
+        ("list", "numpy", signal.SIGINT),
+        ("list", "click", signal.SIGHUP),
+        ("export plan.json --output move.png", "matplotlib.figure", signal.SIGTERM),
+    ],
+)
+def test_a_signal_during_an_import_is_answered(folder, plan, line, module, number):
+    plan.save("plan.json")
+    script = PRESSED_AT_IMPORT.format(module=module, number=int(number))
+    ended = subprocess.run(
+        [sys.executable, "-c", script, *line.split()], capture_output=True, text=True, timeout=120
+    )
+    assert ended.stderr.splitlines()[-1:] == [INTERRUPTED]
+    assert "Traceback" not in ended.stderr
+    assert (ended.returncode, ended.stdout) == (128 + number, "")
     assert [path.name for path in folder.iterdir()] == ["plan.json"]

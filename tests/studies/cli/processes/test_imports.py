@@ -10,7 +10,7 @@ HEAVY = {"matplotlib", "moocore", "pymoo", "scipy"}
 NOTED = """
 import sys
 sys.argv[0] = "quietarm"
-from quietarm.studies.cli import main
+from quietarm.__main__ import main
 try:
     main()
 finally:
