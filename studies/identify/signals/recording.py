@@ -98,7 +98,8 @@ class Recording:
             raise ValueError(f"name is {reprlib.repr(self.name)}; give a text")
         if not isinstance(self.mended, Mapping):
             self._refuse(f": mended is {reprlib.repr(self.mended)}; give sentences by names")
-        if self.time is None:
+        time: object = self.time
+        if time is None:
             self._refuse(" has no time; give an array of seconds")
         object.__setattr__(self, "tick", not_negative("tick", self.tick))
 
