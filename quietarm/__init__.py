@@ -10,13 +10,14 @@ Here is what most people need; the stub beside this file lists it. The rest has 
 are rooms of `qa.studies`. Each is imported with the first of its names that is asked for.
 """
 
-from pathlib import Path
+import os.path  # pathlib takes longer to load than all of this: a command hears no signal before
 
 from quietarm.loading import attach
 
-_FOLDER = Path(__file__).parent
-if not (_FOLDER / "ocp").is_dir():  # in a checkout without the links of an editable installation
-    __path__.append(str(_FOLDER.parent))
+_FOLDER = os.path.dirname(__file__)
+# in a checkout without the links of an editable installation
+if not os.path.isdir(os.path.join(_FOLDER, "ocp")):
+    __path__.append(os.path.dirname(_FOLDER))
 
 __version__ = "2.0.0"
 

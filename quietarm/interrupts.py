@@ -315,8 +315,8 @@ def _raise_at(outside: FrameType, stop: BaseException) -> None:
 
     def step(frame: FrameType, event: str, argument: object) -> None:
         sys.settrace(None)
+        frame.f_trace_opcodes = False  # first: from 3.13 on it does nothing without a trace
         frame.f_trace = None
-        frame.f_trace_opcodes = False
         _state.waits_since = None
         raise stop
 
@@ -328,4 +328,4 @@ def _raise_at(outside: FrameType, stop: BaseException) -> None:
         _state.tracer = tracer
     outside.f_trace = step
     outside.f_trace_opcodes = True
-    sys.settrace(wait)
+    sys.settrace(wait)  # last: 3.12 looks only now at what the frame asks for

@@ -110,7 +110,7 @@ def test_an_editor_finds_and_completes_names(tmp_path):
 
 
 def test_the_command_is_a_script_and_a_module():
-    assert PYPROJECT["project"]["scripts"] == {"quietarm": "quietarm.studies.cli:main"}
+    assert PYPROJECT["project"]["scripts"] == {"quietarm": "quietarm.__main__:main"}
     ran = subprocess.run(
         [sys.executable, "-m", "quietarm", "--version"], capture_output=True, text=True, timeout=60
     )

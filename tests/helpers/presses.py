@@ -26,8 +26,9 @@ def pressed_at(number, is_meant):
     def begin(frame, event, argument):
         if not is_meant(frame):
             return None
+        frame.f_trace = step  # Python 3.13 needs it first, 3.12 the last line
         frame.f_trace_opcodes = True
-        sys.settrace(begin)  # Python 3.12 looks at what frames ask for only then
+        sys.settrace(begin)
         return step
 
     sys.settrace(begin)
