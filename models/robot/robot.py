@@ -125,6 +125,11 @@ class Robot:
         text = read_text(urdf, "URDF") if isinstance(urdf, Path) else urdf
         if not isinstance(text, str):
             raise TypeError(f"urdf is {quoted(text)}; give the text of a URDF, or a file as a Path")
+        if "<" not in text:
+            raise ValueError(
+                "urdf is no text of a URDF, which begins with <robot>; give that, or its file as a "
+                "pathlib.Path"
+            )
         self._set("urdf", dynamics_of(text))
         self._set("springs", self._springs("springs", self.springs))
         self._set("elastic_joints", self._springs("elastic_joints", self.elastic_joints))
