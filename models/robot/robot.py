@@ -17,7 +17,16 @@ from typing import Any, ClassVar, Literal
 import casadi as ca
 import numpy as np
 
-from quietarm.models.checks import clipped, finite, has_no, not_negative, positive, quoted, whole
+from quietarm.models.checks import (
+    clipped,
+    finite,
+    has_no,
+    listed,
+    not_negative,
+    positive,
+    quoted,
+    whole,
+)
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
 from quietarm.models.plant import Plant, content, parameter
@@ -253,13 +262,13 @@ class Robot:
         names = self.joints
         if path.joints and set(path.joints) != set(names):
             raise ValueError(
-                f"the path is of the joints {', '.join(path.joints)}, and the robot drives "
-                f"{', '.join(names)}; give positions of these"
+                f"the path is of the joints {listed(path.joints)}, and the robot drives "
+                f"{listed(names)}; give positions of these"
             )
         if path.count != len(names):
             raise ValueError(
                 f"the path is of {path.count} joints, and the robot drives {len(names)}, "
-                f"{', '.join(names)}; give positions of these, in this order"
+                f"{listed(names)}; give positions of these, in this order"
             )
         if path.joints and path.joints != names:
             path = path.of_joints(names)
