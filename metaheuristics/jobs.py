@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -131,7 +132,8 @@ class Job:
     def name(self) -> str:
         """Its file in a folder, without the ending."""
         spent = "" if self.budget is None else f"{self.budget}-evaluations-"
-        return f"{self.problem.name}/{self.label.replace(':', '-by-')}/{spent}seed{self.seed}"
+        method = re.sub(r"[/\\\0\n]|^\.+", "-", self.label.replace(":", "-by-"))  # one folder
+        return f"{self.problem.name}/{method}/{spent}seed{self.seed}"
 
     def run(self) -> Front:
         """Find the front, with its effort during the run; points by CVODES.

@@ -73,6 +73,7 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
 
     A file that was there keeps its permissions.
     """
+    name_of_file(path)
     write_together({path: content})
 
 

@@ -18,7 +18,15 @@ import casadi as ca
 import numpy as np
 
 from quietarm.interrupts import interruptible
-from quietarm.models.checks import finite, has_no, not_negative, positive, quoted, whole
+from quietarm.models.checks import (
+    finite,
+    has_no,
+    listed,
+    not_negative,
+    positive,
+    quoted,
+    whole,
+)
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
 from quietarm.models.notes import Note
@@ -141,6 +149,11 @@ class Robot:
         text = read_text(urdf, "URDF") if isinstance(urdf, Path) else urdf
         if not isinstance(text, str):
             raise TypeError(f"urdf is {quoted(text)}; give the text of a URDF, or a file as a Path")
+        if "<" not in text:
+            raise ValueError(
+                "urdf is no text of a URDF, which begins with <robot>; give that, or its file as a "
+                "pathlib.Path"
+            )
         self._set("urdf", dynamics_of(text))
         self._set("remarks", (*notes_of_text(text), *self.remarks))
         self._set("springs", self._springs("springs", self.springs))
@@ -299,13 +312,13 @@ class Robot:
         names = self.joints
         if path.joints and set(path.joints) != set(names):
             raise ValueError(
-                f"the path is of the joints {', '.join(path.joints)}, and the robot drives "
-                f"{', '.join(names)}; give positions of these"
+                f"the path is of the joints {listed(path.joints)}, and the robot drives "
+                f"{listed(names)}; give positions of these"
             )
         if path.count != len(names):
             raise ValueError(
                 f"the path is of {path.count} joints, and the robot drives {len(names)}, "
-                f"{', '.join(names)}; give positions of these, in this order"
+                f"{listed(names)}; give positions of these, in this order"
             )
         if path.joints and path.joints != names:
             path = path.of_joints(names)

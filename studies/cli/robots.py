@@ -10,6 +10,7 @@ from quietarm.models.robot.cartesian import kinematics_of, off_straight
 from quietarm.models.robot.urdf import PRISMATIC
 from quietarm.models.units import parse_quantity
 from quietarm.ocp import PointToPoint, Uncertainty
+from quietarm.ocp.checks import listed
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.cli.quantities import once
 from quietarm.studies.report.words import counted
@@ -34,7 +35,7 @@ def read_robot_task(
     """
     path = path_of(given, robot)
     if path is None:
-        names = ", ".join(robot.joints)
+        names = listed(robot.joints)
         raise ValueError(
             f"the robot has no path; give --start and --target, a position of each of {names}, or "
             "--path waypoints.csv, or --start and --line-by"
@@ -83,8 +84,7 @@ def _line_in_space(given: Given, robot: Robot) -> GeometricPath:
         given.refuse(["line_by"], "is in place of --line-to")
     if not given.typed("start"):
         raise ValueError(
-            "a line begins somewhere; give --start, a position of each of "
-            f"{', '.join(robot.joints)}"
+            f"a line begins somewhere; give --start, a position of each of {listed(robot.joints)}"
         )
     return GeometricPath.cartesian_line(
         robot,
@@ -129,7 +129,7 @@ def _positions(text: str, option: str, robot: Robot) -> list[float]:
     if len(words) != len(robot.joints):
         raise ValueError(
             f"{option} has {len(words)} positions, and the robot drives "
-            f"{counted(len(robot.joints), 'joint')}, {', '.join(robot.joints)}"
+            f"{counted(len(robot.joints), 'joint')}, {listed(robot.joints)}"
             f"{_following_words(robot)}; give one of each"
         )
     slides = [robot.description.joints[name].kind == PRISMATIC for name in robot.joints]

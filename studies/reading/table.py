@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp import FileFormatError
-from quietarm.ocp.checks import cut, nearest, quoted
+from quietarm.ocp.checks import cut, listed, nearest, quoted
 from quietarm.ocp.files import MOST_BYTES, read_bytes
 from quietarm.studies.reading.matlab import read_matlab
 from quietarm.studies.reading.text import read_text
@@ -114,7 +114,7 @@ class Table:
         most = 12
         names = [column.name for column in self.columns[:most]]
         more = ", ..." if len(self.columns) > most else ""
-        return f"its columns, by name or by number from 0, are {', '.join(names)}{more}"
+        return f"its columns, by name or by number from 0, are {listed(names)}{more}"
 
     def _first_is_time(self) -> bool:
         """Whether the first column rises evenly, and does not only count the rows.

@@ -23,6 +23,7 @@ from rich.progress import (
 
 from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Front
+from quietarm.ocp.escapes import one_line
 from quietarm.studies.report.terminal import print_lines
 from quietarm.studies.tips import tip_scale, tip_words
 
@@ -85,7 +86,7 @@ def progress(total: int, console: Console) -> Iterator[Callable[[str], None]]:
 
         def begin(name: str) -> None:
             nonlocal begun
-            shown.update(task, completed=begun, description=name)
+            shown.update(task, completed=begun, description=one_line(name))
             begun += 1
             if not console.is_terminal:
                 print_lines(console, f"[{begun}/{total}] {name}")

@@ -309,3 +309,14 @@ def test_a_robot_of_too_many_joints_is_refused_with_the_bound():
 def test_a_urdf_of_no_robot_is_refused_with_the_bound(urdf, words):
     with pytest.raises(ValueError, match=words):
         qa.Robot(urdf=urdf, elastic_joints=GEARS)
+
+
+def test_a_text_never_names_a_file(tmp_path):
+    """A saved plan or a robot's file is a stranger's: its text of a URDF opens no file."""
+    file = tmp_path / "two.urdf"
+    file.write_text(URDF)
+    assert qa.Robot(urdf=file, elastic_joints=GEARS) == qa.Robot(urdf=URDF, elastic_joints=GEARS)
+    with pytest.raises(ValueError, match=r"urdf is no text of a URDF.*its file as a pathlib.Path"):
+        qa.Robot(urdf=str(file), elastic_joints=GEARS)
+    with pytest.raises(TypeError, match=r"urdf is 3; give the text of a URDF, or a file as a Path"):
+        qa.Robot(urdf=3)

@@ -185,3 +185,14 @@ def test_a_killed_worker_loses_its_job_alone_and_the_job_is_done_again(tmp_path)
     assert [killed[job].points for job in jobs] == [alone[job].points for job in jobs]
     files = [sorted(p.name for p in (tmp_path / one).rglob("*.*")) for one in ("killed", "alone")]
     assert files[0] == files[1]
+
+
+def test_the_name_of_a_method_is_one_folder(tmp_path):
+    def walk(function, seed, budget):
+        function(np.zeros((1, len(function.lower))))
+
+    for name in ("../../out", "/out", "..", "a\\b"):
+        walk.__name__ = name
+        folder = tmp_path / "runs" / NAME
+        path = (tmp_path / "runs" / Job(NAME, walk, budget=60).name).resolve()
+        assert path.parent.parent == folder

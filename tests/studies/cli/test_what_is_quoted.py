@@ -159,4 +159,4 @@ def test_a_secret_file_for_a_urdf_is_not_shown(call, folder):
     status, _, err = call("list robot.yaml")
     assert (status, err.count("\n")) == (2, 1)
     assert "root" not in err
-    assert "the URDF is no valid XML" in err
+    assert "urdf is no text of a URDF, which begins with <robot>" in err

@@ -18,6 +18,7 @@ from rich.console import Console
 from scipy.io import loadmat
 
 import quietarm as qa
+from quietarm.models.robot.urdf import read_urdf
 from quietarm.ocp.escapes import c_comment, csv_table, markdown, one_line, printable
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.explore.page import _facts
@@ -100,12 +101,12 @@ def test_c_holds_the_names_and_runs_nothing_else(plan, tmp_path):
     assert source.isascii() or not set("\u202e\n") & set(source.splitlines()[0])
 
 
-@pytest.mark.parametrize("title", [LABEL, *NAMES])
-def test_no_title_ends_a_comment_of_c(title):
-    words = c_comment(title)
-    assert not {"*/", "/*", "??"} & {words[k : k + 2] for k in range(len(words))}
-    assert "\\" not in words
-    assert len(words.splitlines()) <= 1
+def test_no_title_ends_a_comment_of_c():
+    for title in [LABEL, *NAMES]:
+        words = c_comment(title)
+        assert not {"*/", "/*", "??"} & {words[k : k + 2] for k in range(len(words))}
+        assert "\\" not in words
+        assert len(words.splitlines()) <= 1
 
 
 def test_both_tables_quote_the_names_and_no_heading_is_a_formula(plan, tmp_path):
@@ -254,3 +255,15 @@ def test_a_picture_is_well_formed_and_shows_letters_not_formulas(tmp_path):
     texts = {text.get_text() for text in figure.texts}
     assert "\u202e" not in "".join(texts)
     assert "$x$" in texts
+
+
+def test_a_urdf_keeps_the_names_as_they_are():
+    """By entities, as XML has them; what XML cannot hold is no name of a URDF."""
+    held = [name for name in NAMES if not re.search("[\x00-\x08\x0b\x0c\x0e-\x1f]", name)]
+    links = "".join(f'<link name="l{k}"/>' for k in range(len(held) + 1))
+    entities = ("".join(f"&#{ord(letter)};" for letter in name) for name in held)
+    joints = "".join(
+        f'<joint name="{name}" type="fixed"><parent link="l{k}"/><child link="l{k + 1}"/></joint>'
+        for k, name in enumerate(entities)
+    )
+    assert [*read_urdf(f'<robot name="r">{links}{joints}</robot>').joints] == held
