@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import reprlib
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import Field, field, fields
 from importlib import import_module
 from numbers import Real
@@ -22,6 +22,7 @@ import numpy as np
 from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.final import refuse_overridden
 from quietarm.models.joint_motion import LINEAR, ROTARY, Expression, JointMotion, Modes
+from quietarm.models.notes import Note
 from quietarm.models.validation import check_contract, check_passive
 
 COUNT = "count"
@@ -77,6 +78,14 @@ class FullEquations(Protocol):
         ...
 
 
+class Follower(Protocol):
+    """A joint that moves as another one does."""
+
+    def motion(self, leading: JointMotion) -> JointMotion:
+        """Its motion by that of the joint that it follows."""
+        ...
+
+
 class Plant(ABC):
     """Joints with flexible modes: subclass it as a frozen dataclass, in one file.
 
@@ -118,6 +127,8 @@ class Plant(ABC):
     where they hold at any. A move must begin and end within it."""
     in_space: ClassVar[bool] = False
     """Whether its `structure` is seen from the side, in space; else from above."""
+    along_path: ClassVar[bool] = False
+    """Whether the joint's angle is a place on a path from 0 to 1 although there is one joint."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
@@ -206,6 +217,25 @@ class Plant(ABC):
         None, the default, where they are not.
         """
         return None
+
+    @property
+    @final
+    def has_path(self) -> bool:
+        """Whether what its equations take as the joint's angle is a place on a path."""
+        return self.along_path or len(self.joint_names) > 1
+
+    @property
+    def followers(self) -> Mapping[str, tuple[int, Follower]]:
+        """Joints beside `joints` that follow one of them: by name its number, and how.
+
+        None, by default. Exports have their motion; they have no torque of their own.
+        """
+        return {}
+
+    @property
+    def notes(self) -> Sequence[Note]:
+        """Warnings that stand beside its figures, by default none."""
+        return ()
 
     @property
     def tip_names(self) -> tuple[str, ...]:

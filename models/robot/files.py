@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import reprlib
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 from quietarm.models.checks import install
 
@@ -38,8 +41,10 @@ def read_yaml(path: str | Path, what: str) -> object:
     except ImportError:
         raise ValueError(f"{what} {path} is YAML, which needs PyYAML; {install('robot')}") from None
     try:
-        document = yaml.safe_load(text)
+        document = _only(list(yaml.load_all(text, Loader=_loader())))
         entries = _entries(document, {})
+    except _TwiceError as error:
+        raise ValueError(f"{what} {path} {error}") from None
     except yaml.YAMLError as error:
         raise ValueError(
             f"{what} {path} is no valid YAML: {' '.join(str(error).split())}; mend it"
@@ -54,6 +59,45 @@ def read_yaml(path: str | Path, what: str) -> object:
             f"{what} {path} repeats its aliases to over {MOST_ENTRIES} entries; write them out"
         )
     return document
+
+
+class _TwiceError(Exception):
+    """What a file has twice and may have once."""
+
+
+def _only(documents: list[object]) -> object:
+    """The only document of a stream, which `ros2 topic echo` ends with dashes."""
+    filled = [document for document in documents if document is not None]
+    if len(filled) > 1:
+        raise _TwiceError(f"has {len(filled)} documents, separated by ---; leave one of them")
+    return filled[0] if filled else None
+
+
+@cache
+def _loader() -> Any:
+    """What reads YAML, runs nothing of it, and refuses an entry that a table has twice."""
+    import yaml
+
+    class Loader(yaml.SafeLoader):
+        """YAML itself would keep the last of two entries of one name."""
+
+        def compose_mapping_node(self, anchor: Any) -> Any:
+            """A table, before its entries are merged with those of others."""
+            node = super().compose_mapping_node(anchor)
+            lines = dict[tuple[str, str], int]()
+            for key, _ in node.value:
+                if isinstance(key, yaml.ScalarNode):
+                    line = key.start_mark.line + 1
+                    entry = (key.tag, key.value)
+                    if entry in lines:
+                        raise _TwiceError(
+                            f"has the entry {reprlib.repr(key.value)} twice, in lines {lines[entry]} "
+                            f"and {line}; leave one of them"
+                        )
+                    lines[entry] = line
+            return node
+
+    return Loader
 
 
 def _entries(value: object, counted: dict[int, int]) -> int:

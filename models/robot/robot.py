@@ -20,6 +20,7 @@ import numpy as np
 from quietarm.models.checks import finite, has_no, not_negative, positive, whole
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
+from quietarm.models.notes import Note
 from quietarm.models.plant import Plant, content, parameter
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.dynamics import Dynamics
@@ -95,6 +96,10 @@ class Robot:
         Limits by quantity and joint, as {"speed": {"elbow_joint": 3.0}}.
     measured : Measured, optional
         A measured frequency, to which all springs are scaled.
+    positions : mapping of str to (float, float)
+        Ranges of driven joints that are narrower than the URDF's [rad or m].
+    remarks : sequence of Note
+        What was passed over when its files were read; `notes` has these and more.
 
     Raises
     ------
@@ -119,6 +124,10 @@ class Robot:
     modes: int | Literal["excited"] = 2
     limits: Limits = field(default_factory=dict)
     measured: Measured | None = None
+    positions: Mapping[str, tuple[float, float]] = field(
+        default_factory=dict, metadata={"if_stated": True}
+    )
+    remarks: tuple[Note, ...] = field(default=(), metadata={"if_stated": True})
 
     def __post_init__(self) -> None:
         text = str(self.urdf)
@@ -134,6 +143,7 @@ class Robot:
         self._set("friction", self._numbers("friction", self.friction, not_negative))
         self._set("coulomb", self._numbers("coulomb", self.coulomb, not_negative))
         self._set("gravity", _vector("gravity", self.gravity))
+        self._set("positions", self._ranges_given())
         if self.modes != EXCITED:
             if isinstance(self.modes, str):
                 raise ValueError(
@@ -178,6 +188,11 @@ class Robot:
         return RobotOnPath(robot=self, path=path)
 
     @cached_property
+    def notes(self) -> tuple[Note, ...]:
+        """What its files leave open, have wrong or have passed over, in one line each."""
+        return self.remarks
+
+    @cached_property
     def description(self) -> Urdf:
         """What the URDF says."""
         return read_urdf(self.urdf)
@@ -217,7 +232,9 @@ class Robot:
     @cached_property
     def digest(self) -> str:
         """SHA-256 of all that it is made of."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+        content = asdict(self)
+        del content["remarks"]
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     def __hash__(self) -> int:
         return hash(self.digest)
@@ -234,7 +251,8 @@ class Robot:
     def ranges(self) -> list[tuple[float, float]]:
         """Least and largest position of every driven joint [rad or m]."""
         joints = [self.description.joints[name] for name in self.joints]
-        return [(joint.lower, joint.upper) for joint in joints]
+        of_urdf = {joint.name: (joint.lower, joint.upper) for joint in joints}
+        return [self.positions.get(name, ends) for name, ends in of_urdf.items()]
 
     def fitted(self, path: GeometricPath) -> GeometricPath:
         """A path with its positions in the order of the driven joints.
@@ -308,6 +326,27 @@ class Robot:
         for name in values:
             self._check_joint(entry, name)
         return {name: check(f"{entry} of {name}", value) for name, value in values.items()}
+
+    def _ranges_given(self) -> dict[str, tuple[float, float]]:
+        """Ranges of driven joints within the URDF's; ValueError where one is none."""
+        ranges = dict[str, tuple[float, float]]()
+        for name, ends in self.positions.items():
+            if name not in self.joints:
+                raise ValueError(has_no("the robot", "driven joint, for positions,", name, self.joints))
+            joint = self.description.joints[name]
+            try:
+                lower, upper = (float(end) for end in ends)
+            except (TypeError, ValueError):
+                raise ValueError(
+                    f"positions of {name} are {ends!r}; give the least and the largest"
+                ) from None
+            if not joint.lower <= lower < upper <= joint.upper:
+                raise ValueError(
+                    f"positions of {name} are {lower:g} to {upper:g}; give a range within the "
+                    f"URDF's, {joint.lower:g} to {joint.upper:g}"
+                )
+            ranges[name] = (lower, upper)
+        return ranges
 
     def _check_joint(self, entry: str, name: str) -> None:
         if name not in self.description.moving:
@@ -446,6 +485,11 @@ class RobotOnPath(Plant):
     def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
         """How many modal amplitudes it has."""
         return len(modes_on(self.robot, self.path))
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What the robot's files leave open or have wrong."""
+        return self.robot.notes
 
     @property
     def label(self) -> str:

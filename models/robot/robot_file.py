@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,15 +12,14 @@ from quietarm.models.checks import has_no
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.files import read_text, read_yaml
 from quietarm.models.robot.flexibility import Base, Measured, Spring
-from quietarm.models.robot.urdf import PRISMATIC, UrdfJoint, read_urdf
+from quietarm.models.robot.joint_limits import JointLimits, read_joint_limits
+from quietarm.models.robot.urdf import PRISMATIC, read_urdf
 from quietarm.models.units import parse_quantity
 
 Read = Callable[[Any, str], Any]
 """(entry of the file, what it is in words) -> its value."""
 OF_URDF = "urdf"
 """In place of a file of limits: those of the URDF."""
-_LIMITS = {"velocity": "speed", "acceleration": "acceleration", "jerk": "jerk", "effort": "torque"}
-"""What MoveIt's joint_limits.yaml calls a quantity, and what a task does."""
 
 
 def read_robot(path: str | Path) -> dict[str, Any]:
@@ -63,7 +62,8 @@ def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     if "held" in given:
         given["held"] = _held(given["held"], given["urdf"])
     if "limits" in given:
-        given["limits"] = _limits(given["limits"], given["urdf"], folder)
+        read = _limits(given, folder)
+        given |= {"limits": read.limits, "positions": read.positions, "remarks": tuple(read.notes)}
     return given
 
 
@@ -89,56 +89,27 @@ def limits_of(urdf: str) -> dict[str, dict[str, float]]:
     return {quantity: limits for quantity, limits in by_quantity.items() if limits}
 
 
-def _limits(entry: Any, urdf: str, folder: Path) -> dict[str, dict[str, float]]:
-    """Limits by quantity and joint: of the URDF, or those and what MoveIt's file has of them."""
+def _limits(given: Mapping[str, Any], folder: Path) -> JointLimits:
+    """Limits of driven joints by quantity: the URDF's, or those and what MoveIt's file has."""
+    entry = given["limits"]
     if not isinstance(entry, str):
         raise ValueError(f"limits is {entry!r}; give a joint_limits.yaml of MoveIt, or {OF_URDF}")
-    limits = limits_of(urdf)
-    if entry == OF_URDF:
-        return limits
-    path = _beside(entry, folder, "limits")
-    document = read_yaml(path, "limits file")
-    by_joint = document.get("joint_limits") if isinstance(document, dict) else None
-    if not isinstance(by_joint, dict):
-        raise ValueError(
-            f"limits file {entry} has no joint_limits; give a joint_limits.yaml of MoveIt"
-        )
-    known = read_urdf(urdf).joints
-    for joint, entries in by_joint.items():
-        if joint not in known:
-            raise ValueError(has_no("the URDF", "joint, for limits,", str(joint), known))
-        if not isinstance(entries, dict):
-            raise ValueError(
-                f"limits of {joint} are {entries!r}; give has_velocity_limits and so on"
-            )
-        _refuse_narrower(known[joint], entries)
-        for theirs, quantity in _LIMITS.items():
-            limit = entries.get(f"max_{theirs}")
-            if entries.get(f"has_{theirs}_limits", limit is not None):
-                number = _number(limit, f"max_{theirs} of {joint} in limits", "-")
-                if not number > 0:
-                    raise ValueError(
-                        f"max_{theirs} of {joint} in limits is {number:g}; give a positive number"
-                    )
-                limits.setdefault(quantity, {})[joint] = number
-    return limits
+    joints = read_urdf(given["urdf"]).joints
+    driven = _driven(given)
+    limits = {
+        quantity: {name: limit for name, limit in by_joint.items() if name in driven}
+        for quantity, by_joint in limits_of(given["urdf"]).items()
+    }
+    if entry != OF_URDF:
+        return read_joint_limits(_beside(entry, folder, "limits"), joints, driven, limits)
+    return JointLimits({quantity: by_joint for quantity, by_joint in limits.items() if by_joint})
 
 
-def _refuse_narrower(joint: UrdfJoint, entries: Mapping[str, Any]) -> None:
-    """Refuse position limits that are narrower than the URDF's, which are those that are kept."""
-    if not entries.get("has_position_limits", False):
-        return
-    rounding = 1e-3  # MoveIt's files have fewer digits than the URDF
-    for end, of_urdf, side in (("min", joint.lower, 1.0), ("max", joint.upper, -1.0)):
-        name = f"{end}_position"
-        if name not in entries:
-            continue
-        position = _number(entries[name], f"{name} of {joint.name} in limits", "-")
-        if side * (position - of_urdf) > rounding:
-            raise ValueError(
-                f"{name} of {joint.name} in limits is {position:g}, and the URDF, whose ranges are "
-                f"kept, has {of_urdf:g}; write {position:g} there, or leave it out here"
-            )
+def _driven(given: Mapping[str, Any]) -> Collection[str]:
+    """The joints that are driven, named or not."""
+    passive = {*given.get("springs", ()), *given.get("held", ())}
+    moving = read_urdf(given["urdf"]).moving
+    return given.get("joints") or [name for name in moving if name not in passive]
 
 
 def _beam(entry: Any, what: str) -> Beam:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quietarm.models import Plant
 from quietarm.models.joint_motion import joint_label, joint_unit
+from quietarm.models.notes import about
 from quietarm.ocp import (
     CycloidPolynomial,
     Floor,
@@ -68,6 +70,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
         _choice(plan),
         *_terms_rows(plan),
         *_figure_rows(plan.task, plan.motion, remedies),
+        *note_rows(plan.task.plant),
         *([("turns back", f"by {_way(back, plan.task)} on the way")] if back > _SEEN else []),
         *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
         ("status", plan.status.text),
@@ -105,6 +108,7 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
         *_move_rows(floor.task, motion),
         ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
         *_figure_rows(floor.task, motion, _OF_ACCELERATION),
+        *note_rows(floor.task.plant),
         ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%})"),
         ("intervals", ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)),
         ("starts", ", ".join(starts)),
@@ -135,6 +139,7 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
         ("path", f"{free.steps + 1} points, {' to '.join(dict.fromkeys(ends))} ms apart"),
         ("smoothness", f"acceleration changes by up to {jump:.3g} {unit} from point to point"),
         *_figure_rows(task, candidate.motion, _OF_ACCELERATION),
+        *note_rows(task.plant),
     ]
     for scenario in task.scenarios[1:]:
         errors = dict(zip(task.error_names, scenario))
@@ -242,11 +247,27 @@ def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]
         residual = f"{where} (below {_tip(task, REST)})"
     known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
-        ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
-        ("residual (F1)", f"{residual} {residual_place(task)}"),
+        (
+            "energy (F2)",
+            f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J){_warnings(task, 'energy')}",
+        ),
+        (
+            "residual (F1)",
+            f"{residual} {residual_place(task)}{_warnings(task, 'residual')}",
+        ),
         *((_peak_name(name, task), _peak(name, task, motion, remedies)) for name in known),
         ("overshoot", _way(motion.overshoot, task) if motion.overshoot > _ROUNDING else "none"),
     ]
+
+
+def note_rows(plant: Plant) -> list[Row]:
+    """Notes on a plant that are about none of the figures."""
+    return [("warning", note.words) for note in plant.notes if not note.about]
+
+
+def _warnings(task: PointToPoint, figure: str) -> str:
+    """The notes on the plant that touch a figure, to stand beside it."""
+    return "".join(f"  (warning: {words})" for words in about(task.plant.notes, figure))
 
 
 def _peak_name(name: str, task: PointToPoint) -> str:
@@ -279,7 +300,7 @@ def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, 
     warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
     too_hard = warnings[name](task, motion) if name in remedies else ""
     warning = f"  (warning: {too_hard}; {remedies[name]})" if too_hard else ""
-    return f"{peak:.4g} {unit}{warning}"
+    return f"{peak:.4g} {unit}{warning}{_warnings(task, name)}"
 
 
 def _hard_acceleration(task: PointToPoint, motion: Motion) -> str:

@@ -16,6 +16,8 @@ from quietarm.models.robot.urdf import PRISMATIC
 from quietarm.ocp.limits import QUANTITIES
 
 Row = tuple[str, str]
+WARNING = "warning"
+"""The name of a row with a note on the robot."""
 _PLACES = (0.0, 0.5, 1.0)
 """Of a path, at which modes and sag are shown."""
 _MORE = 2
@@ -29,6 +31,7 @@ def robot_rows(robot: Robot, path: GeometricPath) -> list[Row]:
         *_joint_rows(robot),
         *_spring_rows(robot),
         *_limit_rows(robot),
+        *((WARNING, note.words) for note in robot.notes),
         *_path_rows(robot, path),
     ]
 
