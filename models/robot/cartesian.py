@@ -120,10 +120,17 @@ def straight_positions(kinematics: Kinematics, start: Array, end: Pose) -> Calla
     for share in shares[1:]:
         solution = _newton(kinematics, walked[-1], line.pose(share))
         if solution is None or np.abs(solution - walked[-1]).max() > _MOST_STEP:
+            before = f"{kinematics.link} cannot follow the line beyond {share * line.length:.3g} m"
+            if solution is None and _reaches(kinematics, walked[-1], line.pose(share).origin):
+                raise ValueError(
+                    f"{before} of its {line.length:.3g} m: its place there is within reach, but "
+                    f"not turned as the line has it, which keeps the turn of its start or goes to "
+                    f"that of its end, and {_joints_cannot(len(start))}; give waypoints, as by "
+                    "--path or GeometricPath.through"
+                )
             raise ValueError(
-                f"{kinematics.link} cannot follow the line beyond {share * line.length:.3g} m of "
-                f"its {line.length:.3g} m: it is out of reach, or the joints swing over; give "
-                "another start, a nearer end, or waypoints"
+                f"{before} of its {line.length:.3g} m: it is out of reach, or the joints swing "
+                "over; give another start, a nearer end, or waypoints"
             )
         walked.append(solution)
     guess = chebyshev.chebfit(2 * shares - 1, np.array(walked), _DEGREE)
@@ -196,6 +203,26 @@ def _newton(kinematics: Kinematics, begin: Array, pose: Pose) -> Array | None:
             offset, _ = kinematics.offset(q, pose)
             return q if np.abs(offset).max() < _ON_LINE else None
     return None
+
+
+def _reaches(kinematics: Kinematics, begin: Array, place: Array) -> bool:
+    """Whether the link comes to a place from positions nearby, however it turns."""
+    q = begin
+    for _ in range(_MOST_NEWTON):
+        offset, slopes = kinematics.offset(q, Pose(np.eye(3), place))
+        step, *_ = np.linalg.lstsq(slopes[:3], offset[:3], rcond=_RANK)
+        q = q - step
+        if np.abs(offset[:3]).max() < _ON_LINE:
+            return True
+    return False
+
+
+def _joints_cannot(count: int) -> str:
+    """Words on why joints may not turn a link as they move it."""
+    free = 6  # of a pose
+    if count >= free:
+        return f"{count} joints cannot do both here"
+    return f"{count} joints cannot do both (six could)"
 
 
 _MOST_NEWTON = 30

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -177,12 +178,11 @@ class _Reader:
         if ends is None:
             return
         of_urdf = self._joints[joint]
-        for name, position, beyond in (
-            ("min_position", ends[0], of_urdf.lower - ends[0]),
-            ("max_position", ends[1], ends[1] - of_urdf.upper),
+        for name, position, limit, side in (
+            ("min_position", ends[0], of_urdf.lower, -1.0),
+            ("max_position", ends[1], of_urdf.upper, 1.0),
         ):
-            if beyond > _ROUNDING:
-                limit = of_urdf.lower if name == "min_position" else of_urdf.upper
+            if math.isfinite(position) and side * (position - limit) > _ROUNDING:
                 raise ValueError(
                     f"{name} of {joint} in limits is {position:g}, beyond the URDF's {limit:g}; "
                     "a file of limits can narrow a range: leave it out, or widen the URDF's"
@@ -239,8 +239,8 @@ class _Entries:
                 f"has_position_limits of {self.joint} in limits is true; give min_position and "
                 "max_position"
             )
-        lower = self.number("min_position", unit) if "min_position" in ends else -float("inf")
-        upper = self.number("max_position", unit) if "max_position" in ends else float("inf")
+        lower = self.number("min_position", unit) if "min_position" in ends else -math.inf
+        upper = self.number("max_position", unit) if "max_position" in ends else math.inf
         return lower, upper
 
     def applies(self, has: str, *names: str) -> bool:

@@ -19,7 +19,16 @@ import numpy as np
 
 from quietarm.models.checks import finite, has_no, not_negative, positive, whole
 from quietarm.models.drawing import Body
-from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
+from quietarm.models.joint_motion import (
+    LINEAR,
+    ROTARY,
+    Array,
+    Expression,
+    JointMotion,
+    Modes,
+    is_zero,
+    kind_of_joints,
+)
 from quietarm.models.notes import Note
 from quietarm.models.plant import Plant, content, parameter
 from quietarm.models.robot.beam import Beam
@@ -47,7 +56,7 @@ from quietarm.models.robot.tables import (
     tables_of,
     variations_of,
 )
-from quietarm.models.robot.urdf import Urdf, dynamics_of, read_urdf
+from quietarm.models.robot.urdf import PRISMATIC, Urdf, dynamics_of, read_urdf
 
 STANDARD_GRAVITY = 9.80665
 """[m/s^2], of the SI."""
@@ -248,6 +257,10 @@ class Robot:
     def __repr__(self) -> str:
         return f"Robot({self.description.name!r}, {self.digest[:12]!r})"
 
+    def kind_of(self, joint: str) -> str:
+        """Return the kind of a joint of the URDF by its name: rotary, or linear if it slides."""
+        return LINEAR if self.description.joints[joint].kind == PRISMATIC else ROTARY
+
     def ranges(self) -> list[tuple[float, float]]:
         """Least and largest position of every driven joint [rad or m]."""
         joints = [self.description.joints[name] for name in self.joints]
@@ -263,12 +276,13 @@ class Robot:
             When it has other joints, or leaves the range of one.
         """
         names = self.joints
-        if path.joints and set(path.joints) != set(names):
+        if path.joints and not set(names) <= set(path.joints):
+            missing = [name for name in names if name not in path.joints]
             raise ValueError(
                 f"the path is of the joints {', '.join(path.joints)}, and the robot drives "
-                f"{', '.join(names)}; give positions of these"
+                f"{', '.join(names)}; give positions of {', '.join(missing)} as well"
             )
-        if path.count != len(names):
+        if not path.joints and path.count != len(names):
             raise ValueError(
                 f"the path is of {path.count} joints, and the robot drives {len(names)}, "
                 f"{', '.join(names)}; give positions of these, in this order"
@@ -507,6 +521,16 @@ class RobotOnPath(Plant):
     def joint_names(self) -> tuple[str, ...]:
         """Of the driven joints."""
         return self.robot.joints
+
+    @property
+    def joint(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """The kind of its joints: rotary, linear or mixed."""
+        return kind_of_joints(self.joint_kinds)
+
+    @property
+    def joint_kinds(self) -> tuple[str, ...]:
+        """The kind of every driven joint."""
+        return tuple(self.robot.kind_of(name) for name in self.joint_names)
 
     @property
     def measured(self) -> dict[str, float]:
