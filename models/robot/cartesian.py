@@ -121,16 +121,18 @@ def straight_positions(kinematics: Kinematics, start: Array, end: Pose) -> Calla
         solution = _newton(kinematics, walked[-1], line.pose(share))
         if solution is None or np.abs(solution - walked[-1]).max() > _MOST_STEP:
             before = f"{kinematics.link} cannot follow the line beyond {share * line.length:.3g} m"
-            if solution is None and _reaches(kinematics, walked[-1], line.pose(share).origin):
+            turn = "keeps" if line.angle < LEAST_LENGTH else "turns"
+            few = len(start) < _OF_A_POSE
+            if few and _reaches(kinematics, walked[-1], line.pose(share).origin):
                 raise ValueError(
-                    f"{before} of its {line.length:.3g} m: its place there is within reach, but "
-                    f"not turned as the line has it, which keeps the turn of its start or goes to "
-                    f"that of its end, and {_joints_cannot(len(start))}; give waypoints, as by "
-                    "--path or GeometricPath.through"
+                    f"{before} of its {line.length:.3g} m: the place is within reach, but a line "
+                    f"{turn} the link's orientation as well, which {len(start)} joints cannot do "
+                    "there; give waypoints, by --path or GeometricPath.through"
                 )
             raise ValueError(
-                f"{before} of its {line.length:.3g} m: it is out of reach, or the joints swing "
-                "over; give another start, a nearer end, or waypoints"
+                f"{before} of its {line.length:.3g} m: it is out of reach with the orientation "
+                f"that a line {turn}, or the joints swing over; give another start, a nearer end, "
+                "or waypoints"
             )
         walked.append(solution)
     guess = chebyshev.chebfit(2 * shares - 1, np.array(walked), _DEGREE)
@@ -217,14 +219,8 @@ def _reaches(kinematics: Kinematics, begin: Array, place: Array) -> bool:
     return False
 
 
-def _joints_cannot(count: int) -> str:
-    """Words on why joints may not turn a link as they move it."""
-    free = 6  # of a pose
-    if count >= free:
-        return f"{count} joints cannot do both here"
-    return f"{count} joints cannot do both (six could)"
-
-
+_OF_A_POSE = 6
+"""Joints that can put a link anywhere, in any orientation."""
 _MOST_NEWTON = 30
 _SETTLED = 1e-13
 """Of the last step [rad or m]."""
