@@ -27,6 +27,7 @@ from quietarm.models.joint_motion import (
     JointMotion,
     Modes,
     is_zero,
+    joint_unit,
     kind_of_joints,
 )
 from quietarm.models.notes import Note
@@ -330,9 +331,12 @@ class Robot:
             self._check_joint(entry, name)
             values = spring if isinstance(spring, Spring) else Spring(*_two_of(spring))
             what = f"of {name} in {entry}"
+            stiffness, damping = (
+                joint_unit(unit, self.kind_of(name)) for unit in ("N m/rad", "N m s/rad")
+            )
             found[name] = Spring(
-                positive(f"stiffness {what}", values.stiffness, "N m/rad"),
-                not_negative(f"damping {what}", values.damping, "N m s/rad"),
+                positive(f"stiffness {what}", values.stiffness, stiffness),
+                not_negative(f"damping {what}", values.damping, damping),
             )
         return found
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from quietarm.models.checks import has_no
+from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.files import read_text, read_yaml
 from quietarm.models.robot.flexibility import Base, Measured, Spring
@@ -18,6 +19,8 @@ from quietarm.models.units import parse_quantity
 
 Read = Callable[[Any, str], Any]
 """(entry of the file, what it is in words) -> its value."""
+ReadOfJoint = Callable[[Any, str, str], Any]
+"""(entry of the file, what it is in words, the joint's kind) -> its value."""
 OF_URDF = "urdf"
 """In place of a file of limits: those of the URDF."""
 
@@ -34,19 +37,23 @@ def read_robot(path: str | Path) -> dict[str, Any]:
 
 
 def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    def of_joints(read: ReadOfJoint) -> Read:
+        """What reads values by joint, of each in the units of its kind."""
+        return lambda entry, what: _by_joint(entry, what, read, _sliding(document, folder))
+
     readers: dict[str, Read] = {
         "urdf": lambda entry, _: read_text(_beside(entry, folder, "urdf"), "URDF"),
         "joints": _names,
         "held": lambda entry, _: entry,
         "beam": _beam,
-        "elastic_joints": partial(_by_joint, read=_spring),
-        "springs": partial(_by_joint, read=_spring),
+        "elastic_joints": of_joints(_spring),
+        "springs": of_joints(_spring),
         "base": _base,
         "tip": _name,
         "gravity": partial(_several, unit="m/s^2"),
-        "rotor_inertia": partial(_by_joint, read=_quantity("kg m^2")),
-        "friction": partial(_by_joint, read=_quantity("N m s/rad")),
-        "coulomb": partial(_by_joint, read=_quantity("N m")),
+        "rotor_inertia": of_joints(_quantity_of("kg m^2")),
+        "friction": of_joints(_quantity_of("N m s/rad")),
+        "coulomb": of_joints(_quantity_of("N m")),
         "modes": lambda entry, _: entry,
         "limits": lambda entry, _: entry,
         "measured": _measured,
@@ -159,13 +166,16 @@ def _measured(entry: Any, what: str) -> Measured:
     return Measured(**given)
 
 
-def _spring(entry: Any, what: str) -> Spring:
+def _spring(entry: Any, what: str, kind: str) -> Spring:
+    units = {
+        "stiffness": joint_unit("N m/rad", kind),
+        "damping": joint_unit("N m s/rad", kind),
+    }
     if not isinstance(entry, dict):
-        return Spring(_number(entry, what, "N m/rad"))
-    units = {"stiffness": "N m/rad", "damping": "N m s/rad"}
+        return Spring(_number(entry, what, units["stiffness"]))
     given = _table(entry, what, {name: _quantity(unit) for name, unit in units.items()})
     if "stiffness" not in given:
-        raise ValueError(f"{what} has no stiffness; give it in N m/rad")
+        raise ValueError(f"{what} has no stiffness; give it in {units['stiffness']}")
     return Spring(**given)
 
 
@@ -182,10 +192,19 @@ def _table(entry: Any, what: str, readers: Mapping[str, Read]) -> dict[str, Any]
     }
 
 
-def _by_joint(entry: Any, what: str, read: Read) -> dict[str, Any]:
+def _sliding(document: Mapping[str, Any], folder: Path) -> set[str]:
+    """Names of the joints of the URDF that slide."""
+    urdf = read_text(_beside(document["urdf"], folder, "urdf"), "URDF")
+    return {name for name, joint in read_urdf(urdf).joints.items() if joint.kind == PRISMATIC}
+
+
+def _by_joint(entry: Any, what: str, read: ReadOfJoint, sliding: Collection[str]) -> dict[str, Any]:
     if not isinstance(entry, dict):
         raise ValueError(f"{what} is {entry!r}; give values by joint, as {{elbow_joint: 1.0}}")
-    return {str(joint): read(value, f"{what} of {joint}") for joint, value in entry.items()}
+    return {
+        str(joint): read(value, f"{what} of {joint}", LINEAR if joint in sliding else ROTARY)
+        for joint, value in entry.items()
+    }
 
 
 def _several(entry: Any, what: str, unit: str) -> Any:
@@ -208,6 +227,11 @@ def _name(entry: Any, what: str) -> str:
 
 def _quantity(unit: str) -> Read:
     return lambda entry, what: _number(entry, what, unit)
+
+
+def _quantity_of(unit: str) -> ReadOfJoint:
+    """What reads a quantity of a joint, whose unit is given as of one that turns."""
+    return lambda entry, what, kind: _number(entry, what, joint_unit(unit, kind))
 
 
 def _number(entry: Any, what: str, unit: str) -> float:

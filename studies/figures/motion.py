@@ -341,7 +341,7 @@ def _panels_of_joints(
             title = ax.get_title(loc="left")
             ax.set_title(broken_into_lines(title, _PANEL_OF_JOINT - _NUMBERS, 10), **TITLE)
             ax.set_xlabel(ax.get_xlabel().replace("  ", "\n"))
-            if joint and kinds[joint] in kinds[:joint]:  # a panel above it says what it is
+            if joint and kinds[joint] == kinds[joint - 1]:  # the panel above says what it is
                 ax.set_title("", loc="left")
             if joint < len(names) - 1:
                 ax.set_xlabel("")
