@@ -146,8 +146,7 @@ class Plant(ABC):
             stated = getattr(cls, entry)
             if not isinstance(stated, property) and stated not in kinds:
                 raise ValueError(
-                    f"{entry} of {cls.__name__} is {stated!r}; give "
-                    f"{' or '.join(map(repr, kinds))}"
+                    f"{entry} of {cls.__name__} is {stated!r}; give {' or '.join(map(repr, kinds))}"
                 )
         if not isinstance(name := cls.__dict__.get("name"), str):
             return

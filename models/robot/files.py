@@ -91,8 +91,8 @@ def _loader() -> Any:
                     entry = (key.tag, key.value)
                     if entry in lines:
                         raise _TwiceError(
-                            f"has the entry {reprlib.repr(key.value)} twice, in lines {lines[entry]} "
-                            f"and {line}; leave one of them"
+                            f"has the entry {reprlib.repr(key.value)} twice, in lines "
+                            f"{lines[entry]} and {line}; leave one of them"
                         )
                     lines[entry] = line
             return node

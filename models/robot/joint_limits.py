@@ -14,7 +14,7 @@ from quietarm.models.notes import Note
 from quietarm.models.robot.files import read_yaml
 from quietarm.models.robot.urdf import PRISMATIC, UrdfJoint
 
-By_joint = dict[str, dict[str, float]]
+ByQuantity = dict[str, dict[str, float]]
 """Limits by quantity and joint."""
 _KEPT = ("acceleration", "jerk")
 """Limits of the URDF that hold beside those of a file; MoveIt does not read them."""
@@ -66,7 +66,7 @@ _BESIDE = (*_SCALES, "cartesian_limits")
 class JointLimits:
     """Limits by quantity and joint, narrower ranges by joint, and notes on what was passed over."""
 
-    limits: By_joint = field(default_factory=dict)
+    limits: ByQuantity = field(default_factory=dict)
     positions: dict[str, tuple[float, float]] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
 
@@ -93,7 +93,7 @@ def read_joint_limits(
     for joint, table in entries.items():
         if joint in joints:
             read.joint(joint, table)
-    merged: By_joint = {quantity: dict(limits) for quantity, limits in of_urdf.items()}
+    merged: ByQuantity = {quantity: dict(limits) for quantity, limits in of_urdf.items()}
     for quantity, limits in read.limits.items():
         before = merged.setdefault(quantity, {})
         for joint, limit in limits.items():
@@ -112,9 +112,7 @@ def _tables(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
             break
         document = inner
     if not isinstance(document, dict) or not document:
-        raise ValueError(
-            f"limits file {path} has no {_LIMITS}; give a joint_limits.yaml of MoveIt"
-        )
+        raise ValueError(f"limits file {path} has no {_LIMITS}; give a joint_limits.yaml of MoveIt")
     for name in document:
         if name not in (_LIMITS, *_BESIDE):
             raise ValueError(
@@ -135,7 +133,7 @@ class _Reader:
 
     def __init__(self, joints: Mapping[str, UrdfJoint]) -> None:
         self._joints = joints
-        self.limits: By_joint = {}
+        self.limits: ByQuantity = {}
         self.positions = dict[str, tuple[float, float]]()
         self.unused = list[str]()
         self.of_controllers = list[str]()

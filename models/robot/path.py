@@ -305,7 +305,9 @@ class GeometricPath:
         left_out = [name for name in self.joints if name not in names]
         remarks = self.remarks
         if left_out:
-            remarks += (f"joints that the robot does not drive are left out: {', '.join(left_out)}",)
+            remarks += (
+                f"joints that the robot does not drive are left out: {', '.join(left_out)}",
+            )
         return GeometricPath(self.knots, rows, tuple(names), remarks)
 
     @cached_property

@@ -350,7 +350,9 @@ class Robot:
         ranges = dict[str, tuple[float, float]]()
         for name, ends in self.positions.items():
             if name not in self.joints:
-                raise ValueError(has_no("the robot", "driven joint, for positions,", name, self.joints))
+                raise ValueError(
+                    has_no("the robot", "driven joint, for positions,", name, self.joints)
+                )
             joint = self.description.joints[name]
             try:
                 lower, upper = (float(end) for end in ends)

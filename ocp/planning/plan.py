@@ -184,7 +184,9 @@ class Plan(MotionAnswer):
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
         joint = task.plant.joint
         peaks = {
-            joint_label(f"peak {name}", joint): peak_words(self.candidate, name).replace("s^2", "s\u00b2")
+            joint_label(f"peak {name}", joint): peak_words(self.candidate, name).replace(
+                "s^2", "s\u00b2"
+            )
             for name in ("torque", "speed", "acceleration")
         }
         rows = {

@@ -30,9 +30,9 @@ GANTRY = f"""<robot name="gantry">
 <joint name="down" type="fixed"><parent link="trolley"/><child link="tool"/>
 <origin xyz="0 0 -0.6" rpy="3.141592653589793 0 0"/></joint>
 </robot>"""
-MIXED = GANTRY.replace(
-    'radial-axis" type="prismatic">', 'radial-axis" type="revolute">'
-).replace('<axis xyz="0 1 0"/>', '<axis xyz="0 0 1"/>')
+MIXED = GANTRY.replace('radial-axis" type="prismatic">', 'radial-axis" type="revolute">').replace(
+    '<axis xyz="0 1 0"/>', '<axis xyz="0 0 1"/>'
+)
 FILE = """urdf: robot.urdf
 beam: {at: tool, length: 0.5, width: 6mm, height: 10mm, youngs_modulus: 70GPa, density: 2700,
        tip_mass: 0.3, damping: 0.5%, pieces: 2}

@@ -16,7 +16,9 @@ def _notes(robot):
     return " / ".join(note.words for note in robot.notes)
 
 
-@pytest.mark.parametrize("size", ["-3.0", "3.0"])  # MoveIt's are negative, those of ros2_control not
+@pytest.mark.parametrize(
+    "size", ["-3.0", "3.0"]
+)  # MoveIt's are negative, those of ros2_control not
 def test_the_smaller_of_acceleration_and_deceleration_bounds_both(tmp_path, size):
     robot = _robot(tmp_path, f"a: {{{BOTH}, max_deceleration: {size}}}")
     assert robot.limits["acceleration"] == {"a": 3.0}
@@ -25,7 +27,9 @@ def test_the_smaller_of_acceleration_and_deceleration_bounds_both(tmp_path, size
 
 
 def test_the_bounds_of_one_direction_bound_both(tmp_path):
-    robot = _robot(tmp_path, "a: {max_velocity: 2, min_velocity: -1.5}\n  b: {max_deceleration: -4}")
+    robot = _robot(
+        tmp_path, "a: {max_velocity: 2, min_velocity: -1.5}\n  b: {max_deceleration: -4}"
+    )
     assert robot.limits["speed"] == {"a": 1.5, "b": 3.0}
     assert robot.limits["acceleration"] == {"b": 4.0}
     assert "the smaller of max_velocity and min_velocity bounds both directions: a 1.5" in _notes(
@@ -49,7 +53,9 @@ def test_limits_that_are_switched_off_are_not_used_and_named(tmp_path):
 def test_narrower_positions_narrow_the_range(tmp_path):
     robot = _robot(tmp_path, "a: {has_position_limits: true, min_position: -1, max_position: 1}")
     assert robot.ranges() == [(-1.0, 1.0), (-3.0, 3.0)]
-    with pytest.raises(ValueError, match=r"joint 'a' is at 2 at s = 1 of the path; its range is -1"):
+    with pytest.raises(
+        ValueError, match=r"joint 'a' is at 2 at s = 1 of the path; its range is -1"
+    ):
         robot.along(qa.GeometricPath.line([0.0, 0.0], [2.0, 1.0]))
 
 
