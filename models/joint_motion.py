@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Collection, Sequence
 from numbers import Real
 from typing import Any, NamedTuple
 
@@ -19,6 +20,9 @@ Modes = Sequence[Expression]
 LINEAR = "linear"
 ROTARY = "rotary"
 """Kinds of joint."""
+MIXED = "mixed"
+"""Of several joints that some turn and some slide."""
+_RADIANS = re.compile(r"\brad\b")
 
 
 def is_zero(entry: Expression) -> bool:
@@ -26,17 +30,31 @@ def is_zero(entry: Expression) -> bool:
     return isinstance(entry, float) and entry == 0.0
 
 
+def kind_of_joints(kinds: Collection[str]) -> str:
+    """Return the kind of several joints: theirs, or `MIXED`."""
+    return next(iter(kinds)) if len(set(kinds)) == 1 else MIXED
+
+
 def joint_unit(unit: str, joint: str) -> str:
-    """A unit of a rotary joint's quantity as it is of a kind of joint: rad/s is m/s, N m is N."""
-    return unit if joint == ROTARY else unit.replace("N m", "N").replace("rad", "m")
+    """Return a unit of a rotary joint as it is of a kind of joint: rad/s is m/s, N m is N.
+
+    Of `MIXED` joints both: rad/s or m/s.
+    """
+    plain = unit.replace("N m", "N").replace("kg m^2", "kg")
+    return _of_kind(unit, _RADIANS.sub("m", plain), joint)
 
 
 def joint_label(label: str, joint: str) -> str:
-    """A label of a rotary joint's quantity likewise: joint torque is drive force, torque force."""
-    if joint == ROTARY:
-        return label
-    label = label.replace("joint torque", "drive force").replace("torque", "force")
-    return label.replace("angle", "position")
+    """Return a label of a rotary joint's quantity likewise: torque is force, angle position."""
+    linear = label.replace("joint torque", "drive force").replace("torque", "force")
+    return _of_kind(label, linear.replace("angle", "position"), joint)
+
+
+def _of_kind(rotary: str, linear: str, joint: str) -> str:
+    """The words for a kind of joint, or both."""
+    if joint == MIXED and rotary != linear:
+        return f"{rotary} or {linear}"
+    return rotary if joint == ROTARY else linear
 
 
 def deg(degrees: float) -> float:

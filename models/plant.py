@@ -114,7 +114,8 @@ class Plant(ABC):
     """How many modal amplitudes the plant has."""
 
     joint: ClassVar[str] = ROTARY
-    """The kind of joint: rotary, in rad and N m, or linear, in m and N (`joint_unit`)."""
+    """The kind of joint: rotary, in rad and N m, or linear, in m and N (`joint_unit`). Of several
+    joints theirs, or mixed; `joint_kinds` has each."""
     tip_unit: ClassVar[str] = "m"
     """Unit of the tips' displacements: m, or rad where they turn, as the load of a shaft does."""
     small_deflection: ClassVar[float | None] = None
@@ -142,10 +143,10 @@ class Plant(ABC):
         )
         choices = {"joint": (ROTARY, LINEAR), "tip_unit": ("m", "rad")}
         for entry, kinds in choices.items():
-            if getattr(cls, entry) not in kinds:
+            stated = getattr(cls, entry)
+            if not isinstance(stated, property) and stated not in kinds:
                 raise ValueError(
-                    f"{entry} of {cls.__name__} is {getattr(cls, entry)!r}; give "
-                    f"{' or '.join(map(repr, kinds))}"
+                    f"{entry} of {cls.__name__} is {stated!r}; give {' or '.join(map(repr, kinds))}"
                 )
         if not isinstance(name := cls.__dict__.get("name"), str):
             return
@@ -269,6 +270,11 @@ class Plant(ABC):
         """Names of the joints, in the order of `joints`, by which limits and columns name them."""
         count = len(self.joints(JointMotion(ca.SX.sym("angle"), 0.0, 0.0)))
         return ("joint",) if count == 1 else tuple(f"joint_{i}" for i in range(1, count + 1))
+
+    @property
+    def joint_kinds(self) -> tuple[str, ...]:
+        """The kind of each of the joints, by default `joint`."""
+        return (self.joint,) * len(self.joint_names)
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The structure seen from above, by default a straight link of 1 m for each tip.

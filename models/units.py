@@ -36,6 +36,7 @@ UNITS: Mapping[str, tuple[str, Mapping[str, float]]] = {
     "kg m^2": ("kg m^2 (0.1)", {}),
     "N/m": ("N/m (5000)", {"N/m": 1.0, "kN/m": 1e-3}),
     "N m/rad": ("N m/rad (8000) or 8kNm/rad", {"Nm/rad": 1.0, "kNm/rad": 1e-3}),
+    "N s/m": ("N s/m (10)", {"Ns/m": 1.0}),
     "N m s/rad": ("N m s/rad (10)", {"Nms/rad": 1.0}),
     "N m^2": ("N m^2 (80)", {"Nm2": 1.0}),
     "Pa": ("pascal (7e10) or 70GPa", {"Pa": 1.0, "MPa": 1e-6, "GPa": 1e-9}),
@@ -56,7 +57,7 @@ def parse_quantity(text: str, unit: str, what: str) -> float:
     plain = text.strip()
     if "^" in unit:
         plain = plain.removesuffix(unit.removeprefix("rad").removeprefix("m"))
-    plain = plain.replace("N m", "Nm").replace("Nm s", "Nms")
+    plain = plain.replace("N m", "Nm").replace("Nm s", "Nms").replace("N s", "Ns")
     if unit.startswith("rad") and (match := _PI.fullmatch(plain)):
         sign, factor, divisor = match.groups()
         if float(divisor or 1) != 0:

@@ -160,6 +160,10 @@ class Candidate(Ranged):
         of_residual = -self.residual, self.residual
         return of_residual if quantity.name == RESIDUAL else self.motion.range_of(quantity)
 
+    def peaks_of_joints(self, quantity: Quantity) -> NDArray[np.float64]:
+        """Return the largest absolute value of a quantity of the joints, of each of them."""
+        return np.abs(self._ranges(quantity)).max(axis=1)
+
     def _range(self, quantity: Quantity) -> tuple[float, float]:
         """Least and largest value in the scenarios that count, between the samples as well."""
         counted = self.scenarios if quantity.in_scenarios else (self,)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Expression, Plant
-from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
+from quietarm.models.joint_motion import MIXED, ROTARY, joint_label, joint_unit
 from quietarm.ocp.checks import not_negative, quoted
 from quietarm.ocp.sample import Sample, symbolic_sample
 
@@ -150,6 +150,13 @@ def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
     }
 
 
+def units_of_joints(name: str, plant: Plant) -> dict[str, str]:
+    """Return the unit of a quantity for each joint of a plant, by the joint's name."""
+    unit = QUANTITIES[name].unit
+    joints = zip(plant.joint_names, plant.joint_kinds)
+    return {joint: joint_unit(unit, kind) for joint, kind in joints}
+
+
 RESIDUAL = "residual"
 TORQUE_SPEED = "torque_speed"
 JERK = 3
@@ -186,12 +193,13 @@ class ByJoint(Mapping[str, Any]):
 
 
 class JointBounds(NamedTuple):
-    """The bounds of a joint: its name, its place among the joints, least and largest value."""
+    """The bounds of a joint: its name, place among the joints, least and largest value, unit."""
 
     name: str
     place: int
     lower: float
     upper: float
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -200,7 +208,6 @@ class Shares:
 
     values: ValuesOf
     bounds: tuple[JointBounds, ...]
-    unit: str
 
     def __call__(self, sample: Sample) -> Sequence[Expression]:
         """The shares, of the joints that have bounds."""
@@ -215,9 +222,9 @@ class Shares:
     def __str__(self) -> str:
         names = dict[str, list[str]]()
         for bound in self.bounds:
-            names.setdefault(_ends(bound.lower, bound.upper), []).append(bound.name)
-        words = (f"{', '.join(joints)} {ends} {self.unit}" for ends, joints in names.items())
-        return "; ".join(words)
+            ends = f"{_ends(bound.lower, bound.upper)} {bound.unit}"
+            names.setdefault(ends, []).append(bound.name)
+        return "; ".join(f"{', '.join(joints)} {ends}" for ends, joints in names.items())
 
 
 def sides_of(bounds: Sides) -> tuple[float, float]:
@@ -313,7 +320,7 @@ class TorqueSpeedLine:
         ]
 
     def __str__(self) -> str:
-        unit = joint_unit("N m", self.joint).replace(" ", "")
+        unit = "" if self.joint == MIXED else joint_unit("N m", self.joint).replace(" ", "")
         return ",".join(f"{torque:g}{unit}@{speed:g}" for torque, speed in self.points)
 
 
@@ -350,15 +357,16 @@ class Limit:
     upper: float
 
     @classmethod
-    def within(cls, quantity: Quantity, bounds: Bounds, joints: Sequence[str] = ()) -> Limit:
+    def within(cls, quantity: Quantity, bounds: Bounds, plant: Plant) -> Limit:
         """Of a task's entry and its plant's joints, whose own bounds become shares of these."""
         if not isinstance(bounds, Mapping):
             return cls(quantity, *sides_of(bounds))
+        units = units_of_joints(quantity.name, plant)
         by_joint = tuple(
-            JointBounds(name, list(joints).index(name), *sides_of(sides))
+            JointBounds(name, list(units).index(name), *sides_of(sides), units[name])
             for name, sides in bounds.items()
         )
-        shares = Shares(quantity.values, by_joint, quantity.unit)
+        shares = Shares(quantity.values, by_joint)
         return cls(replace(quantity, unit="", values=shares), -1.0, 1.0)
 
     @classmethod

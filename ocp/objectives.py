@@ -104,7 +104,8 @@ def objectives_on(plant: Plant, names: Sequence[str]) -> tuple[Objective, ...]:
         ENERGY: Objective(ENERGY, "J", "energy F2", "energy_J"),
     }
     for name, quantity in quantities_of(plant.joint, tip_unit).items():
-        letters = quantity.unit.replace(" ", "").replace("/", "_per_").replace("^", "")
+        letters = quantity.unit.replace(" or ", "_or_").replace(" ", "")
+        letters = letters.replace("/", "_per_").replace("^", "")
         known[quantity.peak] = Objective(
             quantity.peak,
             quantity.unit,

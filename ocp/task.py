@@ -27,6 +27,7 @@ from quietarm.ocp.limits import (
     Sides,
     TorqueSpeedLine,
     quantities_of,
+    units_of_joints,
 )
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
 from quietarm.ocp.window import EQ_11, DefaultWindow, default_window
@@ -296,7 +297,7 @@ class PointToPoint:
         quantities = quantities_of(self.plant.joint, self.plant.tip_unit).values()
         stated = [(quantity, getattr(self, quantity.limit)) for quantity in quantities]
         limits = [
-            Limit.within(quantity, bounds, self.plant.joint_names)
+            Limit.within(quantity, bounds, self.plant)
             for quantity, bounds in stated
             if bounds is not None
         ]
@@ -329,9 +330,10 @@ def _check_bounds(quantity: Quantity, value: Any, plant: Plant) -> Bounds:
     for joint in value:
         if joint not in plant.joint_names:
             raise ValueError(has_no(plant.name, "joint", joint, plant.joint_names))
+    units = units_of_joints(quantity.name, plant)
     return ByJoint(
         {
-            joint: _check_sides(f"{name} of {joint}", quantity.unit, bounds)
+            joint: _check_sides(f"{name} of {joint}", units[joint], bounds)
             for joint, bounds in value.items()
         }
     )

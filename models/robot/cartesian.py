@@ -120,10 +120,19 @@ def straight_positions(kinematics: Kinematics, start: Array, end: Pose) -> Calla
     for share in shares[1:]:
         solution = _newton(kinematics, walked[-1], line.pose(share))
         if solution is None or np.abs(solution - walked[-1]).max() > _MOST_STEP:
+            before = f"{kinematics.link} cannot follow the line beyond {share * line.length:.3g} m"
+            turn = "keeps" if line.angle < LEAST_LENGTH else "turns"
+            few = len(start) < _OF_A_POSE
+            if few and _reaches(kinematics, walked[-1], line.pose(share).origin):
+                raise ValueError(
+                    f"{before} of its {line.length:.3g} m: the place is within reach, but a line "
+                    f"{turn} the link's orientation as well, which {len(start)} joints cannot do "
+                    "there; give waypoints, by --path or GeometricPath.through"
+                )
             raise ValueError(
-                f"{kinematics.link} cannot follow the line beyond {share * line.length:.3g} m of "
-                f"its {line.length:.3g} m: it is out of reach, or the joints swing over; give "
-                "another start, a nearer end, or waypoints"
+                f"{before} of its {line.length:.3g} m: it is out of reach with the orientation "
+                f"that a line {turn}, or the joints swing over; give another start, a nearer end, "
+                "or waypoints"
             )
         walked.append(solution)
     guess = chebyshev.chebfit(2 * shares - 1, np.array(walked), _DEGREE)
@@ -198,6 +207,20 @@ def _newton(kinematics: Kinematics, begin: Array, pose: Pose) -> Array | None:
     return None
 
 
+def _reaches(kinematics: Kinematics, begin: Array, place: Array) -> bool:
+    """Whether the link comes to a place from positions nearby, however it turns."""
+    q = begin
+    for _ in range(_MOST_NEWTON):
+        offset, slopes = kinematics.offset(q, Pose(np.eye(3), place))
+        step, *_ = np.linalg.lstsq(slopes[:3], offset[:3], rcond=_RANK)
+        q = q - step
+        if np.abs(offset[:3]).max() < _ON_LINE:
+            return True
+    return False
+
+
+_OF_A_POSE = 6
+"""Joints that can put a link anywhere, in any orientation."""
 _MOST_NEWTON = 30
 _SETTLED = 1e-13
 """Of the last step [rad or m]."""

@@ -6,17 +6,21 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
-from quietarm.models.joint_motion import JointMotion
-from quietarm.models.robot.urdf import Urdf
+from quietarm.models.joint_motion import LINEAR, ROTARY, JointMotion
+from quietarm.models.robot.urdf import PRISMATIC, Urdf
 
 
 @dataclass(frozen=True)
 class Following:
-    """A joint's position: multiplier times that of the joint that leads, plus offset [rad or m]."""
+    """A joint's position: multiplier times that of the joint that leads, plus offset [rad or m].
+
+    `kind` is that of the joint which follows.
+    """
 
     leader: str
     multiplier: float = 1.0
     offset: float = 0.0
+    kind: str = ROTARY
 
     def position(self, leading: float) -> float:
         """The joint's position where the leader has one."""
@@ -56,7 +60,8 @@ def led_by(urdf: Urdf, joint: str, held: Collection[str] = ()) -> Following:
         offset += multiplier * mimic.offset
         multiplier *= mimic.multiplier
         leader = mimic.joint
-    return Following(leader, multiplier, offset)
+    slides = joint in urdf.joints and urdf.joints[joint].kind == PRISMATIC
+    return Following(leader, multiplier, offset, LINEAR if slides else ROTARY)
 
 
 def followers_of(urdf: Urdf, held: Collection[str] = ()) -> dict[str, Following]:
@@ -77,12 +82,18 @@ def held_position(urdf: Urdf, joint: str, held: Mapping[str, float]) -> float:
 
 def limits_with_followers(urdf: Urdf, entry: str, held: Collection[str] = ()) -> dict[str, float]:
     """The limits of an entry of <limit> by joint, those of followers as limits of their leaders."""
-    followers = followers_of(urdf, held)
-    limits = dict[str, float]()
-    for name, joint in urdf.joints.items():
+    sizes = {name: getattr(joint, entry) for name, joint in urdf.joints.items()}
+    return bounds_of_leaders(sizes, followers_of(urdf, held))
+
+
+def bounds_of_leaders(
+    limits: Mapping[str, float], followers: Mapping[str, Following]
+) -> dict[str, float]:
+    """Limits by joint, those of joints that follow others as limits of these; 0 is none."""
+    bounds = dict[str, float]()
+    for name, size in limits.items():
         following = followers.get(name, Following(name))
-        size = getattr(joint, entry)
         if size > 0 and following.multiplier:
             bound = size / abs(following.multiplier)
-            limits[following.leader] = min(bound, limits.get(following.leader, math.inf))
-    return limits
+            bounds[following.leader] = min(bound, bounds.get(following.leader, math.inf))
+    return bounds

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -31,10 +32,17 @@ _EXACT = 1e-12
 """Largest error of a path that a function gives [rad or m]."""
 _LEAST_WAY = 1e-6
 """Of a path, and between two waypoints [rad or m]."""
+_NEAR = 1e-4
+"""Share of the way within which neighbours are one waypoint: a spline through both would follow
+their rounding."""
 _DEGREES = (3, 5)
 _MOST_WAYPOINTS = 200
 _BACK = -0.95
 """Cosine between two parts of a way, below which it turns back."""
+
+
+class _NotSmoothError(ValueError):
+    """A path has a jump, a corner or a jump of its curvature."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +59,8 @@ class GeometricPath:
         By piece, joint and Chebyshev polynomial of the share of the piece, from -1 to 1 [rad or m].
     joints : sequence of str, optional
         Names of the joints; the robot's, in its order, by default.
+    remarks : sequence of str
+        What was passed over when its waypoints were read, in one line each.
 
     Raises
     ------
@@ -63,6 +73,7 @@ class GeometricPath:
     knots: tuple[float, ...]
     coefficients: tuple[tuple[tuple[float, ...], ...], ...]
     joints: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = field(default=(), compare=False, metadata={"if_stated": True})
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "knots", tuple(map(float, self.knots)))
@@ -71,6 +82,7 @@ class GeometricPath:
         )
         object.__setattr__(self, "coefficients", rows)
         object.__setattr__(self, "joints", tuple(self.joints))
+        object.__setattr__(self, "remarks", tuple(self.remarks))
         rising = bool(np.all(np.diff(self.knots) > 0))
         if len(self.knots) < 2 or (self.knots[0], self.knots[-1]) != (0.0, 1.0) or not rising:
             raise ValueError(
@@ -81,6 +93,9 @@ class GeometricPath:
             raise ValueError("coefficients of the path do not fit its knots; make it anew")
         if not np.all(np.isfinite(self.inner.coefficients)):
             raise ValueError("coefficients of the path are not finite; make it anew")
+        for name in self.joints:
+            if self.joints.count(name) > 1:
+                raise ValueError(f"the path has joint {name!r} twice; give each once")
         if self.joints and len(self.joints) != self.count:
             raise ValueError(
                 f"the path has {self.count} joints and {len(self.joints)} names; give one of each"
@@ -158,6 +173,10 @@ class GeometricPath:
     ) -> GeometricPath:
         """A natural spline through waypoints, shape (waypoints, joints) [rad or m].
 
+        Neighbours that are nearer than a ten thousandth of the way, such as a point that a teach
+        pendant repeats, are taken as one; `remarks` has which. `off_straight` says how far the
+        spline leaves the straight lines between the waypoints.
+
         Parameters
         ----------
         at : sequence of float, optional
@@ -171,15 +190,11 @@ class GeometricPath:
                 f"degree of the path is {degree}; give 5 or 3: a robot can follow a path with "
                 "corners only if it stops there, so plan a move to each"
             )
-        ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        remarks = tuple[str, ...]()
         if at is None:
-            for number, way in enumerate(ways, start=1):
-                if way < _LEAST_WAY:
-                    raise ValueError(
-                        f"waypoints {number} and {number + 1} are the same within {_LEAST_WAY:g}; "
-                        "leave one of them out"
-                    )
+            points, remarks = _without_repeated(points)
             _check_turns(points)
+            ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
             places = np.append(0.0, np.cumsum(ways)) / ways.sum()
             places[-1] = 1.0
         else:
@@ -194,8 +209,16 @@ class GeometricPath:
                     "from 0 to 1"
                 )
         if len(points) == 2:
-            return cls.line(*points, joints=joints)
-        return cls._of_spline(_natural(places, points, degree), places, tuple(joints))
+            return replace(cls.line(*points, joints=joints), remarks=remarks)
+        try:
+            path = cls._of_spline(_natural(places, points, degree), places, tuple(joints))
+        except _NotSmoothError:
+            nearest = int(np.diff(places).argmin()) + 1
+            raise ValueError(
+                f"waypoints {nearest} and {nearest + 1} are too near each other for a spline: "
+                f"{np.diff(places).min():.2g} of the path; leave one of them out"
+            ) from None
+        return replace(path, remarks=remarks)
 
     @classmethod
     def of(
@@ -223,16 +246,19 @@ class GeometricPath:
     def load(cls, path: str | Path, *, degree: int = 5) -> GeometricPath:
         """Through the points of a file: csv, or a trajectory_msgs/JointTrajectory as YAML.
 
-        A csv has the joints' names above its columns, or no names; times are dropped.
+        A message that has a JointTrajectory within will do as well: RobotTrajectory,
+        DisplayTrajectory, a goal of FollowJointTrajectory. A csv has the joints' names above its
+        columns, or no names. Only positions are used; `remarks` names what else there is.
         """
         if Path(path).suffix.lower() in (".yaml", ".yml", ".json"):
-            names, points = _trajectory_of(path)
+            names, points, remarks = _trajectory_of(path)
         else:
-            names, points = _table_of(path)
+            names, points, remarks = _table_of(path)
         try:
-            return cls.through(points, degree=degree, joints=names)
+            through = cls.through(points, degree=degree, joints=names)
         except ValueError as error:
             raise ValueError(f"path {path}: {error}") from None
+        return replace(through, remarks=(*remarks, *through.remarks))
 
     @classmethod
     def _of_spline(cls, spline: BSpline, knots: Array, joints: tuple[str, ...]) -> GeometricPath:
@@ -276,10 +302,37 @@ class GeometricPath:
         return Piecewise(knots, np.array([parts[0], *filled, parts[1]]))
 
     def of_joints(self, names: Sequence[str]) -> GeometricPath:
-        """The same, its joints in the order of these names."""
+        """Return the path of these joints alone, in their order."""
         order = [self.joints.index(name) for name in names]
         rows = tuple(tuple(joints[i] for i in order) for joints in self.coefficients)
-        return GeometricPath(self.knots, rows, tuple(names))
+        left_out = [name for name in self.joints if name not in names]
+        remarks = self.remarks
+        if left_out:
+            remarks += (
+                f"joints that the robot does not drive are left out: {', '.join(left_out)}",
+            )
+        return GeometricPath(self.knots, rows, tuple(names), remarks)
+
+    @cached_property
+    def off_straight(self) -> Array:
+        """How far a spline leaves the straight lines between its waypoints, by joint [rad or m].
+
+        0 of a line, and of a path that a function gives.
+        """
+        of_spline = len(self.knots) > 2 and len(self.coefficients[0][0]) <= max(_DEGREES) + 1
+        if not of_spline:
+            return np.zeros(self.count)
+        shares = np.linspace(0.0, 1.0, 201)[1:-1, None]
+        largest = np.zeros(self.count)
+        for begin, end in pairwise(self.knots):
+            ends = self.inner([begin, end])
+            positions = self.inner(begin + (end - begin) * shares[:, 0])
+            # the nearest point of the line: of several joints none is at fault for its timing
+            way = ends[1] - ends[0]
+            along = np.clip((positions - ends[0]) @ way / max(way @ way, 1e-300), 0.0, 1.0)
+            off = np.abs(positions - ends[0] - along[:, None] * way)
+            largest = np.maximum(largest, off.max(axis=0))
+        return largest
 
     def __call__(self, s: ArrayLike, order: int = 0) -> Array:
         """Positions, or derivatives by s, shape (places, joints), or (joints,) of one place."""
@@ -305,7 +358,7 @@ class GeometricPath:
             for order, what in enumerate(("jump", "corner", "jump of its curvature")):
                 scale = max(1.0, float(np.abs(inner(np.linspace(0, 1, 101), order)).max()))
                 if np.abs(before([knot], order) - after([knot], order)).max() > _CONTINUOUS * scale:
-                    raise ValueError(
+                    raise _NotSmoothError(
                         f"the path has a {what} at s = {knot:.4g}; give waypoints, for a spline, "
                         "or plan a move to each corner"
                     )
@@ -331,6 +384,34 @@ def _natural(places: Array, points: Array, degree: int) -> BSpline:
     orders = range((degree + 1) // 2, degree)
     ends = [(order, np.zeros(points.shape[1])) for order in orders]
     return make_interp_spline(places, points, k=degree, bc_type=(ends, ends))
+
+
+def _without_repeated(points: Array) -> tuple[Array, tuple[str, ...]]:
+    """Waypoints without those that repeat the one before them, and words on which these are.
+
+    Of the last two the last one is kept.
+    """
+    ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    near = max(_LEAST_WAY, _NEAR * float(ways.sum()))
+    kept = [0]
+    remarks = list[str]()
+    for number in range(1, len(points)):
+        way = float(np.linalg.norm(points[number] - points[kept[-1]]))
+        if way >= near:
+            kept.append(number)
+            continue
+        remarks.append(
+            f"waypoints {kept[-1] + 1} and {number + 1} are {way:.2g} rad (or m) apart and taken "
+            "as one"
+        )
+        if number == len(points) - 1 and kept[-1] > 0:
+            kept[-1] = number
+    if len(kept) < 2:
+        raise ValueError(
+            f"the path has a length of {ways.sum():.3g} and ends where it begins; give one that "
+            "moves a joint"
+        )
+    return points[kept], tuple(remarks)
 
 
 def _check_turns(points: Array) -> None:
@@ -379,34 +460,64 @@ def _rows(values: ArrayLike) -> Array:
     return rows
 
 
-def _trajectory_of(path: str | Path) -> tuple[tuple[str, ...], Array]:
-    """Names and positions of a JointTrajectory."""
-    document = read_yaml(path, "path")
-    while isinstance(document, Mapping) and "points" not in document:
-        inner = [value for value in document.values() if isinstance(value, Mapping)]
-        if len(inner) != 1:
-            break
-        document = inner[0]
-    if (
-        not isinstance(document, Mapping)
-        or "points" not in document
-        or "joint_names" not in document
-    ):
+def _trajectory_of(path: str | Path) -> tuple[tuple[str, ...], Array, list[str]]:
+    """Names and positions of the JointTrajectory in a message, and what else there is in words."""
+    messages = list(_trajectories_in(read_yaml(path, "path")))
+    filled = [message for message in messages if message["joint_names"] or message["points"]]
+    positioned = [message for message in filled if not _is_in_space(message)]
+    if not positioned:
         raise ValueError(
             f"path {path} is no JointTrajectory; give one with joint_names and points, or a csv"
         )
-    points = document["points"]
+    if len(positioned) > 1:
+        raise ValueError(
+            f"path {path} has {len(positioned)} trajectories; give a file of one of them"
+        )
+    (trajectory,) = positioned
+    points = trajectory["points"]
+    names = tuple(map(str, trajectory["joint_names"] or ()))
     try:
-        rows = [point["positions"] for point in points]
-        return tuple(map(str, document["joint_names"])), np.array(rows, dtype=float)
+        positions = np.array([point["positions"] for point in points], dtype=float)
     except (TypeError, KeyError, ValueError):
         raise ValueError(
             f"path {path} has a point without positions of all joints; write it again"
         ) from None
+    others = {entry for point in points for entry, value in point.items() if value}
+    unused = [words for entry, words in _BESIDE_POSITIONS.items() if entry in others]
+    remarks = [f"not used of the trajectory: {', '.join(unused)}"] if unused else []
+    if len(filled) > 1:
+        remarks.append("not used of the file: a trajectory of joints with several degrees")
+    return names, positions, remarks
 
 
-def _table_of(path: str | Path) -> tuple[tuple[str, ...], Array]:
-    """Names, where they are above the columns, and positions of a csv."""
+_BESIDE_POSITIONS = {
+    "velocities": "velocities", "accelerations": "accelerations", "effort": "efforts",
+    "time_from_start": "times",
+}  # fmt: skip
+"""Entries of a trajectory's point that a path has no use for."""
+
+
+def _trajectories_in(document: object) -> Iterator[Mapping[str, Any]]:
+    """Whatever has joint_names and points in a message, however deep."""
+    if isinstance(document, Mapping):
+        if "points" in document and "joint_names" in document:
+            yield document
+            return
+        document = list(document.values())
+    if isinstance(document, list):
+        for entry in document:
+            yield from _trajectories_in(entry)
+
+
+def _is_in_space(trajectory: Mapping[str, Any]) -> bool:
+    """Whether it is a MultiDOFJointTrajectory, of whole poses."""
+    points = trajectory["points"]
+    first = points[0] if isinstance(points, list) and points else None
+    return isinstance(first, Mapping) and "transforms" in first
+
+
+def _table_of(path: str | Path) -> tuple[tuple[str, ...], Array, list[str]]:
+    """Names, where they are above the columns, and positions of a csv; what is not used of it."""
     text = read_text(path, "path")
     lines = [
         line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")
@@ -439,4 +550,6 @@ def _table_of(path: str | Path) -> tuple[tuple[str, ...], Array]:
         ) from None
     times = [name.lower().split()[0].split("_")[0].split("(")[0] in ("t", "time") for name in names]
     kept = [number for number, is_time in enumerate(times) if not is_time] if names else slice(None)
-    return tuple(name for name, is_time in zip(names, times) if not is_time), table[:, kept]
+    remarks = ["not used of the table: times"] if any(times) else []
+    joints = tuple(name for name, is_time in zip(names, times) if not is_time)
+    return joints, table[:, kept], remarks

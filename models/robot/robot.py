@@ -28,7 +28,17 @@ from quietarm.models.checks import (
     whole,
 )
 from quietarm.models.drawing import Body
-from quietarm.models.joint_motion import Array, Expression, JointMotion, Modes, is_zero
+from quietarm.models.joint_motion import (
+    LINEAR,
+    ROTARY,
+    Array,
+    Expression,
+    JointMotion,
+    Modes,
+    is_zero,
+    joint_unit,
+    kind_of_joints,
+)
 from quietarm.models.notes import Note
 from quietarm.models.plant import Plant, content, parameter
 from quietarm.models.robot.beam import Beam
@@ -58,7 +68,7 @@ from quietarm.models.robot.tables import (
     tables_of,
     variations_of,
 )
-from quietarm.models.robot.urdf import Urdf, read_urdf
+from quietarm.models.robot.urdf import PRISMATIC, Urdf, read_urdf
 from quietarm.models.robot.urdf_text import as_read_before, dynamics_of
 
 STANDARD_GRAVITY = 9.80665
@@ -116,6 +126,8 @@ class Robot:
         Limits by quantity and joint, as {"speed": {"elbow_joint": 3.0}}.
     measured : Measured, optional
         A measured frequency, to which all springs are scaled.
+    positions : mapping of str to (float, float)
+        Ranges of driven joints that are narrower than the URDF's [rad or m].
     remarks : sequence of Note
         What was passed over when its files were read; `notes` has these and more.
 
@@ -142,6 +154,9 @@ class Robot:
     modes: int | Literal["excited"] | None = None
     limits: Limits = field(default_factory=dict)
     measured: Measured | None = None
+    positions: Mapping[str, tuple[float, float]] = field(
+        default_factory=dict, metadata={"if_stated": True}
+    )
     remarks: tuple[Note, ...] = field(default=(), metadata={"if_stated": True})
 
     def __post_init__(self) -> None:
@@ -165,6 +180,7 @@ class Robot:
         self._set("friction", self._rubbing("friction", "damping"))
         self._set("coulomb", self._rubbing("coulomb", "friction"))
         self._set("gravity", _vector("gravity", self.gravity))
+        self._set("positions", self._ranges_given())
         if self.modes is not None and self.modes != EXCITED:
             if isinstance(self.modes, str):
                 raise ValueError(
@@ -290,10 +306,17 @@ class Robot:
     def __repr__(self) -> str:
         return f"Robot({self.description.name!r}, {self.digest[:12]!r})"
 
+    def kind_of(self, joint: str) -> str:
+        """Return the kind of a joint of the URDF by its name: rotary, or linear if it slides."""
+        return LINEAR if self.description.joints[joint].kind == PRISMATIC else ROTARY
+
     def ranges(self) -> list[tuple[float, float]]:
         """Least and largest position of every driven joint, and of what follows it [rad or m]."""
         joints = self.description.joints
-        ranges = {name: (joints[name].lower, joints[name].upper) for name in self.joints}
+        ranges = {
+            name: self.positions.get(name, (joints[name].lower, joints[name].upper))
+            for name in self.joints
+        }
         for name, follower in self.followers.items():
             if follower.leader in ranges:
                 lower, upper = ranges[follower.leader]
@@ -310,12 +333,13 @@ class Robot:
             When it has other joints, or leaves the range of one.
         """
         names = self.joints
-        if path.joints and set(path.joints) != set(names):
+        if path.joints and not set(names) <= set(path.joints):
+            missing = [name for name in names if name not in path.joints]
             raise ValueError(
                 f"the path is of the joints {listed(path.joints)}, and the robot drives "
-                f"{listed(names)}; give positions of these"
+                f"{listed(names)}; give positions of {listed(missing)} as well"
             )
-        if path.count != len(names):
+        if not path.joints and path.count != len(names):
             raise ValueError(
                 f"the path is of {path.count} joints, and the robot drives {len(names)}, "
                 f"{listed(names)}; give positions of these, in this order"
@@ -369,9 +393,12 @@ class Robot:
             self._check_joint(entry, name)
             values = spring if isinstance(spring, Spring) else Spring(*_two_of(spring))
             what = f"of {name} in {entry}"
+            stiffness, damping = (
+                joint_unit(unit, self.kind_of(name)) for unit in ("N m/rad", "N m s/rad")
+            )
             found[name] = Spring(
-                positive(f"stiffness {what}", values.stiffness, "N m/rad"),
-                not_negative(f"damping {what}", values.damping, "N m s/rad"),
+                positive(f"stiffness {what}", values.stiffness, stiffness),
+                not_negative(f"damping {what}", values.damping, damping),
             )
         return found
 
@@ -393,6 +420,29 @@ class Robot:
         """The driven joints, and those that follow them."""
         followers = [name for name, led in self.followers.items() if led.leader in self.joints]
         return [*self.joints, *followers]
+
+    def _ranges_given(self) -> dict[str, tuple[float, float]]:
+        """Ranges of driven joints within the URDF's; ValueError where one is none."""
+        ranges = dict[str, tuple[float, float]]()
+        for name, ends in self.positions.items():
+            if name not in self.joints:
+                raise ValueError(
+                    has_no("the robot", "driven joint, for positions,", name, self.joints)
+                )
+            joint = self.description.joints[name]
+            try:
+                lower, upper = (float(end) for end in ends)
+            except (TypeError, ValueError):
+                raise ValueError(
+                    f"positions of {name} are {quoted(ends)}; give the least and the largest"
+                ) from None
+            if not joint.lower <= lower < upper <= joint.upper:
+                raise ValueError(
+                    f"positions of {name} are {lower:g} to {upper:g}; give a range within the "
+                    f"URDF's, {joint.lower:g} to {joint.upper:g}"
+                )
+            ranges[name] = (lower, upper)
+        return ranges
 
     def _check_joint(self, entry: str, name: str) -> None:
         if name not in self.description.moving:
@@ -596,6 +646,16 @@ class RobotOnPath(Plant):
     def joint_names(self) -> tuple[str, ...]:
         """Of the driven joints."""
         return self.robot.joints
+
+    @property
+    def joint(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """The kind of its joints: rotary, linear or mixed."""
+        return kind_of_joints(self.joint_kinds)
+
+    @property
+    def joint_kinds(self) -> tuple[str, ...]:
+        """The kind of every driven joint."""
+        return tuple(self.robot.kind_of(name) for name in self.joint_names)
 
     @property
     def measured(self) -> dict[str, float]:

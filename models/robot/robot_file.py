@@ -9,19 +9,21 @@ from pathlib import Path
 from typing import Any
 
 from quietarm.models.checks import clipped, has_no, quoted
+from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.files import read_text, read_yaml
 from quietarm.models.robot.flexibility import Base, Measured, Spring
-from quietarm.models.robot.following import followers_of, limits_with_followers
+from quietarm.models.robot.following import Following, bounds_of_leaders, followers_of
+from quietarm.models.robot.joint_limits import ByQuantity, JointLimits, read_joint_limits
 from quietarm.models.robot.urdf import PRISMATIC, UrdfJoint, read_urdf
 from quietarm.models.units import parse_quantity
 
 Read = Callable[[Any, str], Any]
 """(entry of the file, what it is in words) -> its value."""
+ReadOfJoint = Callable[[Any, str, str], Any]
+"""(entry of the file, what it is in words, the joint's kind) -> its value."""
 OF_URDF = "urdf"
 """In place of a file of limits: those of the URDF."""
-_LIMITS = {"velocity": "speed", "acceleration": "acceleration", "jerk": "jerk", "effort": "torque"}
-"""What MoveIt's joint_limits.yaml calls a quantity, and what a task does."""
 
 
 def read_robot(path: str | Path) -> dict[str, Any]:
@@ -36,19 +38,23 @@ def read_robot(path: str | Path) -> dict[str, Any]:
 
 
 def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    def of_joints(read: ReadOfJoint) -> Read:
+        """What reads values by joint, of each in the units of its kind."""
+        return lambda entry, what: _by_joint(entry, what, read, _sliding(document, folder))
+
     readers: dict[str, Read] = {
         "urdf": lambda entry, _: read_text(_beside(entry, folder, "urdf"), "URDF"),
         "joints": _names,
         "held": lambda entry, _: entry,
         "beam": _beam,
-        "elastic_joints": partial(_by_joint, read=_spring),
-        "springs": partial(_by_joint, read=_spring),
+        "elastic_joints": of_joints(_spring),
+        "springs": of_joints(_spring),
         "base": _base,
         "tip": _name,
         "gravity": partial(_several, unit="m/s^2"),
-        "rotor_inertia": partial(_by_joint, read=_quantity("kg m^2")),
-        "friction": partial(_by_joint, read=_quantity("N m s/rad")),
-        "coulomb": partial(_by_joint, read=_quantity("N m")),
+        "rotor_inertia": of_joints(_quantity_of("kg m^2")),
+        "friction": of_joints(_quantity_of("N m s/rad")),
+        "coulomb": of_joints(_quantity_of("N m")),
         "modes": lambda entry, _: entry,
         "limits": lambda entry, _: entry,
         "measured": _measured,
@@ -64,7 +70,8 @@ def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     if "held" in given:
         given["held"] = _held(given["held"], given["urdf"])
     if "limits" in given:
-        given["limits"] = _limits(given["limits"], given["urdf"], folder)
+        read = _limits(given, folder)
+        given |= {"limits": read.limits, "positions": read.positions, "remarks": tuple(read.notes)}
     if "beam" in given:
         _refuse_heavy(given["beam"], given["urdf"])
     return given
@@ -104,80 +111,91 @@ def limits_of(urdf: str, held: Collection[str] = ()) -> dict[str, dict[str, floa
     follow others have no limit of their own. Of the joints that are `held` none follows another.
     """
     description = read_urdf(urdf)
-    followers = followers_of(description, held)
-    entries = {
-        entry: limits_with_followers(description, entry, held)
-        for entry in ("velocity", "acceleration", "deceleration", "jerk")
-    }
-    slower = entries["deceleration"]
+    return _of_leaders(_stated(description.joints), followers_of(description, held))
+
+
+def _stated(joints: Mapping[str, UrdfJoint]) -> ByQuantity:
+    """The limits of a URDF by quantity and joint, each of the joint that has it."""
     by_quantity = {
-        "torque": {
-            joint.name: joint.effort
-            for joint in description.joints.values()
-            if joint.effort > 0 and joint.name not in followers
-        },
-        "speed": entries["velocity"],
+        "torque": {name: joint.effort for name, joint in joints.items()},
+        "speed": {name: joint.velocity for name, joint in joints.items()},
         "acceleration": {
-            name: min(entries["acceleration"].get(name, math.inf), slower.get(name, math.inf))
-            for name in {**entries["acceleration"], **slower}
+            name: min(filter(None, (joint.acceleration, joint.deceleration)), default=0.0)
+            for name, joint in joints.items()
         },
-        "jerk": entries["jerk"],
+        "jerk": {name: joint.jerk for name, joint in joints.items()},
     }
-    return {quantity: limits for quantity, limits in by_quantity.items() if limits}
+    return {
+        quantity: {name: size for name, size in sizes.items() if size > 0}
+        for quantity, sizes in by_quantity.items()
+    }
 
 
-def _limits(entry: Any, urdf: str, folder: Path) -> dict[str, dict[str, float]]:
-    """Limits by quantity and joint: of the URDF, or those and what MoveIt's file has of them."""
+def _of_leaders(
+    limits: Mapping[str, Mapping[str, float]], followers: Mapping[str, Following]
+) -> ByQuantity:
+    """Limits of the joints that lead, but of torques: a follower has no motor of its own."""
+    bounds = {
+        quantity: {name: size for name, size in sizes.items() if name not in followers}
+        if quantity == "torque"
+        else bounds_of_leaders(sizes, followers)
+        for quantity, sizes in limits.items()
+    }
+    return {quantity: sizes for quantity, sizes in bounds.items() if sizes}
+
+
+def _limits(given: Mapping[str, Any], folder: Path) -> JointLimits:
+    """Limits of driven joints by quantity: the URDF's, or those and what MoveIt's file has."""
+    entry = given["limits"]
     if not isinstance(entry, str):
         raise ValueError(
             f"limits is {quoted(entry)}; give a joint_limits.yaml of MoveIt, or {OF_URDF}"
         )
-    limits = limits_of(urdf)
-    if entry == OF_URDF:
-        return limits
-    path = _beside(entry, folder, "limits")
-    document = read_yaml(path, "limits file")
-    by_joint = document.get("joint_limits") if isinstance(document, dict) else None
-    if not isinstance(by_joint, dict):
-        raise ValueError(
-            f"limits file {entry} has no joint_limits; give a joint_limits.yaml of MoveIt"
-        )
-    known = read_urdf(urdf).joints
-    for joint, entries in by_joint.items():
-        if joint not in known:
-            raise ValueError(has_no("the URDF", "joint, for limits,", str(joint), known))
-        if not isinstance(entries, dict):
-            raise ValueError(
-                f"limits of {joint} are {quoted(entries)}; give has_velocity_limits and so on"
-            )
-        _refuse_narrower(known[joint], entries)
-        for theirs, quantity in _LIMITS.items():
-            limit = entries.get(f"max_{theirs}")
-            if entries.get(f"has_{theirs}_limits", limit is not None):
-                number = _number(limit, f"max_{theirs} of {joint} in limits", "-")
-                if not number > 0:
-                    raise ValueError(
-                        f"max_{theirs} of {joint} in limits is {number:g}; give a positive number"
-                    )
-                limits.setdefault(quantity, {})[joint] = number
-    return limits
+    description = read_urdf(given["urdf"])
+    driven = _driven(given)
+    followers = {
+        name: how
+        for name, how in followers_of(description, given.get("held", ())).items()
+        if how.leader in driven
+    }
+    moved = [*driven, *followers]
+    stated = {
+        quantity: {name: size for name, size in sizes.items() if name in moved}
+        for quantity, sizes in _stated(description.joints).items()
+    }
+    read = JointLimits(stated)
+    if entry != OF_URDF:
+        path = _beside(entry, folder, "limits")
+        read = read_joint_limits(path, description.joints, moved, stated)
+    return JointLimits(
+        _of_leaders(read.limits, followers),
+        _ranges_of_leaders(read.positions, followers, description.joints),
+        read.notes,
+    )
 
 
-def _refuse_narrower(joint: UrdfJoint, entries: Mapping[str, Any]) -> None:
-    """Refuse position limits that are narrower than the URDF's, which are those that are kept."""
-    if not entries.get("has_position_limits", False):
-        return
-    rounding = 1e-3  # MoveIt's files have fewer digits than the URDF
-    for end, of_urdf, side in (("min", joint.lower, 1.0), ("max", joint.upper, -1.0)):
-        name = f"{end}_position"
-        if name not in entries:
-            continue
-        position = _number(entries[name], f"{name} of {joint.name} in limits", "-")
-        if side * (position - of_urdf) > rounding:
-            raise ValueError(
-                f"{name} of {joint.name} in limits is {position:g}, and the URDF, whose ranges are "
-                f"kept, has {of_urdf:g}; write {position:g} there, or leave it out here"
-            )
+def _ranges_of_leaders(
+    positions: Mapping[str, tuple[float, float]],
+    followers: Mapping[str, Following],
+    joints: Mapping[str, UrdfJoint],
+) -> dict[str, tuple[float, float]]:
+    """Narrower ranges of joints, those of joints that follow others as ranges of these."""
+    ranges = {name: ends for name, ends in positions.items() if name not in followers}
+    for name, how in followers.items():
+        if name in positions:
+            of_urdf = joints[how.leader]
+            lower, upper = ranges.get(how.leader, (of_urdf.lower, of_urdf.upper))
+            least, most = how.range_of_leader(*positions[name])
+            ranges[how.leader] = (max(lower, least), min(upper, most))
+    return ranges
+
+
+def _driven(given: Mapping[str, Any]) -> Collection[str]:
+    """The joints that are driven, named or not."""
+    passive = {*given.get("springs", ()), *given.get("held", ())}
+    description = read_urdf(given["urdf"])
+    free = [name for name in description.moving if description.joints[name].mimics is None]
+    return given.get("joints") or [name for name in free if name not in passive]
 
 
 def _beam(entry: Any, what: str) -> Beam:
@@ -227,13 +245,16 @@ def _measured(entry: Any, what: str) -> Measured:
     return Measured(**given)
 
 
-def _spring(entry: Any, what: str) -> Spring:
+def _spring(entry: Any, what: str, kind: str) -> Spring:
+    units = {
+        "stiffness": joint_unit("N m/rad", kind),
+        "damping": joint_unit("N m s/rad", kind),
+    }
     if not isinstance(entry, dict):
-        return Spring(_number(entry, what, "N m/rad"))
-    units = {"stiffness": "N m/rad", "damping": "N m s/rad"}
+        return Spring(_number(entry, what, units["stiffness"]))
     given = _table(entry, what, {name: _quantity(unit) for name, unit in units.items()})
     if "stiffness" not in given:
-        raise ValueError(f"{what} has no stiffness; give it in N m/rad")
+        raise ValueError(f"{what} has no stiffness; give it in {units['stiffness']}")
     return Spring(**given)
 
 
@@ -250,13 +271,21 @@ def _table(entry: Any, what: str, readers: Mapping[str, Read]) -> dict[str, Any]
     }
 
 
-def _by_joint(entry: Any, what: str, read: Read) -> dict[str, Any]:
+def _sliding(document: Mapping[str, Any], folder: Path) -> set[str]:
+    """Names of the joints of the URDF that slide."""
+    urdf = read_text(_beside(document["urdf"], folder, "urdf"), "URDF")
+    return {name for name, joint in read_urdf(urdf).joints.items() if joint.kind == PRISMATIC}
+
+
+def _by_joint(entry: Any, what: str, read: ReadOfJoint, sliding: Collection[str]) -> dict[str, Any]:
     if not isinstance(entry, dict):
         raise ValueError(
             f"{what} is {quoted(entry)}; give values by joint, as {{elbow_joint: 1.0}}"
         )
     return {
-        str(joint): read(value, f"{what} of {clipped(str(joint))}")
+        str(joint): read(
+            value, f"{what} of {clipped(str(joint))}", LINEAR if joint in sliding else ROTARY
+        )
         for joint, value in entry.items()
     }
 
@@ -281,6 +310,11 @@ def _name(entry: Any, what: str) -> str:
 
 def _quantity(unit: str) -> Read:
     return lambda entry, what: _number(entry, what, unit)
+
+
+def _quantity_of(unit: str) -> ReadOfJoint:
+    """What reads a quantity of a joint, whose unit is given as of one that turns."""
+    return lambda entry, what, kind: _number(entry, what, joint_unit(unit, kind))
 
 
 def _number(entry: Any, what: str, unit: str) -> float:

@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
-from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
+from quietarm.models.joint_motion import joint_label
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, NotNegative, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.files import write_whole
+from quietarm.ocp.joint_words import joint_headings, peak_words
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
@@ -182,6 +183,13 @@ class Plan(MotionAnswer):
         if motion.residual > REST:
             residual = f"{motion.residual:.3g} {task.plant.tip_unit}"
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
+        joint = task.plant.joint
+        peaks = {
+            joint_label(f"peak {name}", joint): peak_words(self.candidate, name).replace(
+                "s^2", "s\u00b2"
+            )
+            for name in ("torque", "speed", "acceleration")
+        }
         rows = {
             "plant": task.plant.name,
             "move": f"{task.ends} in {task.duration:g} s",
@@ -189,17 +197,12 @@ class Plan(MotionAnswer):
             f"residual vibration F1 within {task.residual_window:.4g} s": residual,
             **self._robust_rows(),
             "limits": ", ".join(map(str, task.limits)) or "-",
-            "peak torque": f"{motion.peak_torque:.4g} N m",
-            "peak speed": f"{motion.peak_speed:.4g} rad/s",
-            "peak acceleration": f"{motion.peak_acceleration:.4g} rad/s\u00b2",
+            **peaks,
             "shadow prices [J per SI unit of the limit]": ", ".join(prices) or "-",
             "coefficients": ", ".join(f"{a:.4g}" for a in self.coefficients) or "-",
             "status": self.status.text,
         }
-        joint = task.plant.joint
-        return to_html(
-            (joint_label(name, joint), joint_unit(words, joint)) for name, words in rows.items()
-        )
+        return to_html(rows.items())
 
     def _robust_rows(self) -> dict[str, str]:
         """What a notebook shows of parameter errors: their ranges, and the worst case."""
@@ -228,16 +231,9 @@ class Plan(MotionAnswer):
         sampled = self.sampled(np.arange(ticks + 1) / sample_rate)
         plant = self.task.plant
         tip_names = [f"{name}_{plant.tip_unit}" for name in plant.tip_names]
-        if self.task.plant.joint == ROTARY:
-            of_joint = ["angle_rad", "speed_rad_s", "acceleration_rad_s2"]
-            force = "torque_Nm"
-        else:
-            of_joint = ["position_m", "speed_m_s", "acceleration_m_s2"]
-            force = "force_N"
-        names = self.task.plant.joint_names
-        joints = [""] if len(names) == 1 else [f"{name}_" for name in names]
-        header = ["time_s", *(f"{joint}{column}" for joint in joints for column in of_joint)]
-        header += [*tip_names, *(f"{joint}{force}" for joint in joints), "power_W"]
+        orders = ("angle", "rad"), ("speed", "rad/s"), ("acceleration", "rad/s^2")
+        header = ["time_s", *joint_headings(plant, *orders), *tip_names]
+        header += [*joint_headings(plant, ("torque", "N m")), "power_W"]
         sample = sampled.sample
         moving = [value for joint in sample.joints for value in joint[:3]]
         table = np.column_stack(

@@ -82,7 +82,10 @@ class Given:
         """What an option says that is in the plant's units; None where it was not typed."""
         text = self._context.params[name]
         try:
-            return None if text is None else parse_of_plant(name, text, plant.joint, plant.tip_unit)
+            if text is None:
+                return None
+            kinds = dict(zip(plant.joint_names, plant.joint_kinds))
+            return parse_of_plant(name, text, plant.joint, plant.tip_unit, kinds)
         except ValueError as error:
             hint = f"'--{name.replace('_', '-')}'"
             raise click.BadParameter(str(error), param_hint=hint) from None

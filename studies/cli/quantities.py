@@ -19,7 +19,7 @@ import numpy as np
 from quietarm.metaheuristics.objective.noise import noise_share
 from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR, ROTARY, joint_label, joint_unit
+from quietarm.models.joint_motion import LINEAR, MIXED, ROTARY, joint_label, joint_unit
 from quietarm.models.units import is_number, parse_quantity
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, has_no, known, unknown, whole
@@ -102,10 +102,13 @@ def single_values(values: Mapping[str, Sequence[float]]) -> dict[str, float]:
     return {name: value for name, (value,) in values.items()}
 
 
-def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
+def parse_of_plant(
+    name: str, text: str, joint: str, tip_unit: str, kinds: Mapping[str, str] | None = None
+) -> Any:
     """Read an end or the duration of a move, or a limit of it, in the units of joint and tip.
 
-    The former have one value or several; a limit is a number, or one for each side: ``-30:40``.
+    The former have one value or several; a limit is a number, or one for each side: ``-30:40``. Of
+    joints of several kinds, which are given by their names, a limit with a unit is of one of them.
     """
     if name in OF_MOVES:
         end = ("rad", "an angle") if joint == ROTARY else ("m", "a position")
@@ -119,9 +122,17 @@ def parse_of_plant(name: str, text: str, joint: str, tip_unit: str) -> Any:
     if "=" in text and quantities[name.removesuffix("_limit")].of_joints:
         pairs = (parse_pair(part, "a limit", "elbow_joint=16") for part in text.split(","))
         by_joint = once(pairs, "the limit of ")
-        return {of: parse_of_plant(name, value, joint, tip_unit) for of, value in by_joint.items()}
+        return {
+            of: parse_of_plant(name, value, (kinds or {}).get(of, joint), tip_unit)
+            for of, value in by_joint.items()
+        }
     limited = quantities[name.removesuffix("_limit")]
     sides = text.split(":")
+    if joint == MIXED and limited.of_joints and not all(map(is_number, sides)):
+        raise ValueError(
+            f"{text!r} is for joints that turn or for those that slide, and the robot has both; "
+            "give a limit of each by its name, as x=500mm/s,elbow=90deg/s"
+        )
     article = "an" if limited.name == "acceleration" else "a"
     what = f"{article} {joint_label(limited.name, joint)}"
     values = [parse_usual(limited.unit, what, side) for side in sides]
@@ -237,7 +248,7 @@ def parse_torque_speed(text: str, joint: str = ROTARY) -> tuple[tuple[float, flo
 
     Of a linear joint forces: ``100N@0,40N@500mm/s``.
     """
-    return tuple(map(_of_drives[joint], text.split(",")))
+    return tuple(map(_of_drives.get(joint, _of_drives[ROTARY]), text.split(",")))
 
 
 def parse_workers(text: str) -> int:

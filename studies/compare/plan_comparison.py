@@ -103,7 +103,23 @@ def motions_table(
     """A row for each motion with all its figures; what is known of none is left out."""
     rows = [{"motion": motion.name, **dict(_cells(motion, tip_unit))} for motion in motions]
     table = pd.DataFrame(rows).dropna(axis=1, how="all")
-    return table.rename(columns=lambda name: joint_label(joint_unit(str(name), joint), joint))
+    return table.rename(columns=_of_kind(joint))
+
+
+def _of_kind(joint: str) -> dict[str, str]:
+    """Columns of a rotary joint's peaks, and what they are called of a kind of joint."""
+    return {
+        column: f"{joint_label(name, joint)} [{joint_unit(unit, joint)}]"
+        for column, (name, unit) in _PEAKS.items()
+    }
+
+
+_PEAK_TORQUE = "peak torque [N m]"
+_PEAK_ACCELERATION = "peak acceleration [rad/s^2]"
+_PEAKS = {
+    _PEAK_TORQUE: ("peak torque", "N m"),
+    _PEAK_ACCELERATION: ("peak acceleration", "rad/s^2"),
+}
 
 
 def _cells(judged: JudgedMotion, tip_unit: str) -> Iterator[tuple[str, float | str | None]]:
@@ -126,8 +142,8 @@ def _cells(judged: JudgedMotion, tip_unit: str) -> Iterator[tuple[str, float | s
             ends = sweep.insensitivity
             words = "none" if ends is None else f"{100 * ends[0]:.2g} to {100 * ends[1]:.2g} %"
             yield f"{sweep.name} within {100 * TOLERATED:g} %", words
-    yield "peak torque [N m]", motion.peak_torque
-    yield "peak acceleration [rad/s^2]", motion.peak_acceleration
+    yield _PEAK_TORQUE, motion.peak_torque
+    yield _PEAK_ACCELERATION, motion.peak_acceleration
     yield "exceeds", ", ".join(judged.exceeded) or None
     yield "time [s]", judged.seconds
 

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR, ROTARY
+from quietarm.models.joint_motion import LINEAR, ROTARY, joint_label
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.escapes import csv_table, matlab_names, yaml_string
+from quietarm.ocp.joint_words import heading_unit
 from quietarm.ocp.planning.plan import ticks_of_move
 from quietarm.studies.report.templates import templates
 
@@ -25,12 +26,17 @@ _WAYS: Mapping[str, Mapping[str, float]] = {
 }
 
 
+_FORCES: Mapping[str, Mapping[str, float]] = {
+    ROTARY: {"Nm": 1.0, "mNm": 1e3},
+    LINEAR: {"N": 1.0, "kN": 1e-3},
+}
+
+
 def units_of(joint: str, tip_unit: str) -> Mapping[str, Mapping[str, float]]:
-    """What a column may hold, and its units; the first is that where none is given."""
-    forces = {
-        ROTARY: {"Nm": 1.0, "mNm": 1e3},
-        LINEAR: {"N": 1.0, "kN": 1e-3},
-    }
+    """Return what a column may hold of a kind of joint, and its units, the one by default first.
+
+    Names are those of a rotary joint.
+    """
     # by the plant's `tip_unit`
     tips = {"m": _WAYS[LINEAR], "rad": _WAYS[ROTARY]}
     way = _WAYS[joint]
@@ -42,28 +48,52 @@ def units_of(joint: str, tip_unit: str) -> Mapping[str, Mapping[str, float]]:
         "acceleration": {f"{unit}/s^2": factor for unit, factor in way.items()},
         "jerk": {f"{unit}/s^3": factor for unit, factor in way.items()},
         "tip": tips[tip_unit],
-        "torque": forces[joint],
+        "torque": _FORCES[joint],
         "power": {"W": 1.0, "mW": 1e3},
     }
 
 
-def columns_of(text: str, plant: Plant) -> dict[str, tuple[str, float]]:
-    """Columns as `time:ms,angle:deg,speed`: their units and the factors to these.
+Units = dict[str, tuple[str, float]]
+"""A column's unit and the factor to it, by the kind of joint."""
+
+
+def columns_of(text: str, plant: Plant) -> dict[str, Units]:
+    """Read columns as `time:ms,angle:deg,speed`, by their names of a rotary joint.
+
+    Of joints that slide `position` and `force` are the same as `angle` and `torque`. A unit is that
+    of the joints that can have it; others keep theirs. So a robot of both kinds of joints may have
+    `angle:deg,position:mm`.
 
     ValueError where one or its unit is unknown, or one comes twice.
     """
-    columns = dict[str, tuple[str, float]]()
-    known = units_of(plant.joint, plant.tip_unit)
+    kinds = (*plant.joint_kinds, *(how.kind for _, how in plant.followers.values()))
+    by_kind = {kind: units_of(kind, plant.tip_unit) for kind in dict.fromkeys(kinds)}
+    words = {joint_label(name, kind): name for kind in by_kind for name in by_kind[kind]}
+    words |= {name: name for units in by_kind.values() for name in units}
+    columns = dict[str, Units]()
     for heading in text.split(","):
-        name, _, unit = (part.strip() for part in heading.partition(":"))
-        if name not in known:
-            raise ValueError(unknown("column", name, known))
-        if name in columns:
-            raise ValueError(f"column {name} is given twice; give it once")
-        unit = unit or next(iter(known[name]))
-        if unit not in known[name]:
-            raise ValueError(unknown(f"unit of {name}", unit, known[name]))
-        columns[name] = unit, known[name][unit]
+        word, _, unit = (part.strip() for part in heading.partition(":"))
+        if word not in words:
+            raise ValueError(unknown("column", word, words))
+        name = words[word]
+        units = {
+            kind: known[name] for kind, known in by_kind.items() if word == name or kind == LINEAR
+        }
+        chosen = {
+            kind: (unit, known[unit]) if unit else next(iter(known.items()))
+            for kind, known in units.items()
+            if not unit or unit in known
+        }
+        if not chosen:
+            known = dict.fromkeys(unit for one in units.values() for unit in one)
+            raise ValueError(unknown(f"unit of {word}", unit, known))
+        before = columns.setdefault(name, {})
+        if before.keys() & chosen.keys():
+            raise ValueError(f"column {word} is given twice; give it once")
+        before |= chosen
+    for name, units in columns.items():
+        for kind, known in by_kind.items():
+            units.setdefault(kind, next(iter(known[name].items())))
     return columns
 
 
@@ -75,7 +105,6 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     robot each axis of its tip's frame along which that moves, `tip_x_mm`; of a robust plan in each
     scenario, which its heading names.
     """
-    linear_names = {"angle": "position", "torque": "force"}
     times = times_of(plan, rate)
     motion = plan.sampled(times)
     tips = _tips(plan, times)
@@ -90,7 +119,6 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
         "torque": list(sample.torques),
         "power": [motion.power],
     }
-    names = {} if plant.joint == ROTARY else linear_names
     following = {name: how.motion(sample.joints[at]) for name, (at, how) in plant.followers.items()}
     of_followers: dict[str, dict[str, Array]] = {
         "angle": {name: joint.angle for name, joint in following.items()},
@@ -99,22 +127,34 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
         "jerk": {name: joint.jerk for name, joint in following.items()},
     }
 
-    def by_heading(name: str) -> dict[tuple[str, str], Array]:
-        """A column, or one for each joint, by what stands before and after the unit."""
-        word = names.get(name, name)
+    def of_joints(name: str, units: Units) -> dict[str, Array]:
+        """A column for each joint, and for each that follows one, by its heading."""
         columns = values[name]
-        more = {(f"{joint}_{word}", ""): v for joint, v in of_followers.get(name, {}).items()}
-        if len(columns) == 1:
-            return {(word, ""): columns[0], **more}
-        of_joints = {(f"{joint}_{word}", ""): v for joint, v in zip(plant.joint_names, columns)}
-        return of_joints | more
+        fronts = [f"{joint}_" for joint in plant.joint_names] if len(columns) > 1 else [""]
+        joints = list(zip(fronts, plant.joint_kinds, columns))
+        joints += [
+            (f"{follower}_", plant.followers[follower][1].kind, column)
+            for follower, column in of_followers.get(name, {}).items()
+        ]
+        return {
+            _heading(f"{front}{joint_label(name, kind)}", units[kind][0]): units[kind][1] * column
+            for front, kind, column in joints
+        }
 
     table: dict[str, Array] = {}
-    for name, (unit, factor) in columns_of(columns, plan.task.plant).items():
-        ending = unit.replace("/", "_").replace("^", "")
-        of_name = tips if name == "tip" else by_heading(name)
-        table |= {f"{front}_{ending}{after}": factor * v for (front, after), v in of_name.items()}
+    for name, units in columns_of(columns, plant).items():
+        if name != "tip":
+            table |= of_joints(name, units)
+            continue
+        unit, factor = next(iter(units.values()))
+        for (tip, scenario), column in tips.items():
+            table[f"{_heading(tip, unit)}{scenario}"] = factor * column
     return table
+
+
+def _heading(name: str, unit: str) -> str:
+    """A column's name and its unit, as in angle_deg."""
+    return f"{name}_{heading_unit(unit)}"
 
 
 def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:

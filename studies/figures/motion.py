@@ -17,7 +17,7 @@ from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY, joint_label
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.checks import instance, takes, unknown
-from quietarm.ocp.limits import QUANTITIES, Shares, unit_of
+from quietarm.ocp.limits import QUANTITIES, Shares, unit_of, units_of_joints
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -131,7 +131,7 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
     """Draw all curves of a quantity, or the one of a joint or a tip by its number."""
     plant = lines[0].plan.task.plant
     drawn = list[Array]()
-    title = heading(quantity, plant.joint, plant.tip_unit)
+    title = heading_of_plant(plant, quantity, curve)
     for line in lines:
         further = ("-.", "--", (0, (5, 1, 1, 1, 1, 1)))  # none dotted, as a limit is
         other_styles: list[Dash] = [style for style in further if style != line.style]
@@ -191,7 +191,9 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
 def names_of_curves(plant: Plant, quantity: str) -> list[str]:
     """The joint, or the tip, that each of several curves of a quantity is of."""
     if quantity in QUANTITIES and QUANTITIES[quantity].of_joints:
-        return list(plant.joint_names)
+        units = units_of_joints(quantity, plant)
+        several = len(set(units.values())) > 1
+        return [f"{joint} [{raised(unit)}]" if several else joint for joint, unit in units.items()]
     return [_which_tip(plant, curve).removeprefix(", ") for curve in range(len(plant.tip_names))]
 
 
@@ -217,6 +219,13 @@ def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
     label, unit = _LABELS[quantity]
     unit = tip_scale(tip_unit)[0] if unit == "m" else raised(unit_of(unit, joint, tip_unit))
     return f"{joint_label(label, joint)} [{unit}]"
+
+
+def heading_of_plant(plant: Plant, quantity: str, curve: int | None = None) -> str:
+    """Return the heading of a plant's quantity: of all its joints, or of one by its number."""
+    of_joints = quantity == "angle" or (quantity in QUANTITIES and QUANTITIES[quantity].of_joints)
+    kind = plant.joint if curve is None or not of_joints else plant.joint_kinds[curve]
+    return heading(quantity, kind, plant.tip_unit)
 
 
 def scale_of(quantity: str, tip_unit: str = "m") -> float:
@@ -325,7 +334,9 @@ def _panels_of_joints(
     figure: Figure, grid: GridSpecFromSubplotSpec, lines: Sequence[Line], quantities: Sequence[str]
 ) -> list[Axes]:
     """A row for each joint, whose name stands beside it, and a column for each quantity."""
-    names = lines[0].plan.task.plant.joint_names
+    plant = lines[0].plan.task.plant
+    names = plant.joint_names
+    kinds = plant.joint_kinds
     panels = grid.subplots(sharex=True, squeeze=False)
     for joint, (name, row) in enumerate(zip(names, panels)):
         for quantity, ax in zip(quantities, row):
@@ -333,7 +344,7 @@ def _panels_of_joints(
             title = ax.get_title(loc="left")
             ax.set_title(broken_into_lines(title, _PANEL_OF_JOINT - _NUMBERS, 10), **TITLE)
             ax.set_xlabel(ax.get_xlabel().replace("  ", "\n"))
-            if joint:
+            if joint and kinds[joint] == kinds[joint - 1]:  # the panel above says what it is
                 ax.set_title("", loc="left")
             if joint < len(names) - 1:
                 ax.set_xlabel("")

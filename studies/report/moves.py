@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quietarm.models import Plant
+from quietarm.models import Plant, RobotOnPath
 from quietarm.models.joint_motion import joint_label, joint_unit
 from quietarm.models.notes import about
 from quietarm.ocp import (
@@ -22,11 +22,13 @@ from quietarm.ocp import (
     Worst,
 )
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.limits import QUANTITIES, Limit, quantities_of
+from quietarm.ocp.joint_words import peak_words
+from quietarm.ocp.limits import QUANTITIES, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
 from quietarm.ocp.planning.plan_along import EXCESS
 from quietarm.ocp.record import AGREEMENT, REST
+from quietarm.studies.report.robots import way_rows
 from quietarm.studies.report.words import (
     move_of,
     moved,
@@ -69,7 +71,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
         *_arrival_rows(plan),
         _choice(plan),
         *_terms_rows(plan),
-        *_figure_rows(plan.task, plan.motion, remedies),
+        *_figure_rows(plan.task, plan.candidate, remedies),
         *note_rows(plan.task.plant),
         *([("turns back", f"by {_way(back, plan.task)} on the way")] if back > _SEEN else []),
         *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
@@ -107,7 +109,7 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
     return [
         *_move_rows(floor.task, motion),
         ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
-        *_figure_rows(floor.task, motion, _OF_ACCELERATION),
+        *_figure_rows(floor.task, floor.candidate, _OF_ACCELERATION),
         *note_rows(floor.task.plant),
         ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%})"),
         ("intervals", ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)),
@@ -138,7 +140,7 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
         *_move_rows(task, candidate.motion),
         ("path", f"{free.steps + 1} points, {' to '.join(dict.fromkeys(ends))} ms apart"),
         ("smoothness", f"acceleration changes by up to {jump:.3g} {unit} from point to point"),
-        *_figure_rows(task, candidate.motion, _OF_ACCELERATION),
+        *_figure_rows(task, candidate, _OF_ACCELERATION),
         *note_rows(task.plant),
     ]
     for scenario in task.scenarios[1:]:
@@ -223,6 +225,12 @@ _LEFT = 1e-4
 the figure that paths are held to."""
 
 
+def _path_rows(task: PointToPoint) -> list[Row]:
+    """What to know of the path of a robot; of other plants nothing."""
+    plant = task.plant
+    return way_rows(plant.robot, plant.path) if isinstance(plant, RobotOnPath) else []
+
+
 def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and which of them the motion breaks."""
     tip_unit = task.plant.tip_unit
@@ -233,14 +241,18 @@ def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) 
         limits.append(f"{limit}{broken}")
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
+        *_path_rows(task),
         *([("at the start", state_words(task.initial, tip_unit))] if task.initial else []),
         *([("on arrival", state_words(task.final, tip_unit))] if task.final else []),
         *([("limits", ", ".join(limits))] if limits else []),
     ]
 
 
-def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> list[Row]:
+def _figure_rows(
+    task: PointToPoint, candidate: Candidate, remedies: Mapping[str, str]
+) -> list[Row]:
     """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
+    motion = candidate.motion
     residual = _tip(task, motion.residual)
     if motion.residual < REST:  # nobody sees a difference
         where = "as wanted" if task.final else "at rest"
@@ -255,7 +267,7 @@ def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]
             "residual (F1)",
             f"{residual} {residual_place(task)}{_warnings(task, 'residual')}",
         ),
-        *((_peak_name(name, task), _peak(name, task, motion, remedies)) for name in known),
+        *((_peak_name(name, task), _peak(name, candidate, remedies)) for name in known),
         ("overshoot", _way(motion.overshoot, task) if motion.overshoot > _ROUNDING else "none"),
     ]
 
@@ -284,8 +296,10 @@ def _way(size: float, task: PointToPoint) -> str:
     return f"{size:.3g} {unit_of_way(task.plant)}"
 
 
-def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> str:
+def _peak(name: str, candidate: Candidate, remedies: Mapping[str, str]) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
+    task = candidate.task
+    motion = candidate.motion
     peak = motion.peak(name)
     if name == "deflection":
         small = task.plant.small_deflection
@@ -296,11 +310,10 @@ def _peak(name: str, task: PointToPoint, motion: Motion, remedies: Mapping[str, 
             f"{words}  (warning: beyond {_tip(task, small)}, up to which the plant's "
             "deflections count as small; its equations are less exact there)"
         )
-    unit = quantities_of(task.plant.joint, task.plant.tip_unit)[name].unit
     warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
     too_hard = warnings[name](task, motion) if name in remedies else ""
     warning = f"  (warning: {too_hard}; {remedies[name]})" if too_hard else ""
-    return f"{peak:.4g} {unit}{warning}{_warnings(task, name)}"
+    return f"{peak_words(candidate, name)}{warning}{_warnings(task, name)}"
 
 
 def _hard_acceleration(task: PointToPoint, motion: Motion) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import tau
 
 import numpy as np
 
 from quietarm.models import GeometricPath, Robot
-from quietarm.models.joint_motion import joint_unit
+from quietarm.models.joint_motion import joint_label, joint_unit, kind_of_joints
 from quietarm.models.robot.modes import modes_at, sag_at
 from quietarm.models.robot.reduction import MIDDLE
 from quietarm.models.robot.tables import modes_on, swings_of
@@ -20,6 +20,8 @@ WARNING = "warning"
 """The name of a row with a note on the robot."""
 _PLACES = (0.0, 0.5, 1.0)
 """Of a path, at which modes and sag are shown."""
+_SEEN = 1e-6
+"""By which a spline leaves straight lines [rad or m]; less is rounding."""
 _MORE = 2
 """Modes that are shown beyond those that are followed."""
 
@@ -96,11 +98,10 @@ def _by_joint(robot: Robot, entry: str, unit: str, of_urdf: str) -> str:
     values = getattr(robot, entry)
     if not values:
         return "none: give it, as the URDF has none"
-    listed = ", ".join(f"{name} {value:.4g}" for name, value in values.items())
     joints = robot.description.joints
     taken = [bool(of_urdf) and getattr(joints[name], of_urdf) == values[name] for name in values]
     origin = f" (the URDF's {of_urdf})" if all(taken) else ""
-    return f"{listed} {unit}{origin}"
+    return f"{_with_units(robot, values, unit)}{origin}"
 
 
 def _spring_rows(robot: Robot) -> list[Row]:
@@ -108,8 +109,15 @@ def _spring_rows(robot: Robot) -> list[Row]:
         **{f"gear of {name}": spring for name, spring in robot.elastic_joints.items()},
         **robot.springs,
     }
-    rows = [(name, f"{spring.stiffness:.5g} N m/rad, {spring.damping:.4g} N m s/rad")
-            for name, spring in springs.items()]  # fmt: skip
+    joints = [*robot.elastic_joints, *robot.springs]
+    rows = [
+        (
+            name,
+            f"{spring.stiffness:.5g} {joint_unit('N m/rad', robot.kind_of(joint))}, "
+            f"{spring.damping:.4g} {joint_unit('N m s/rad', robot.kind_of(joint))}",
+        )
+        for joint, (name, spring) in zip(joints, springs.items())
+    ]
     if robot.base is not None:
         stiffness = " and ".join(f"{value:.5g}" for value in robot.base.stiffness)
         rows.append(
@@ -121,16 +129,27 @@ def _spring_rows(robot: Robot) -> list[Row]:
 
 
 def _limit_rows(robot: Robot) -> list[Row]:
-    if not robot.limits:
-        return [("limits", "none: give limits, urdf or a joint_limits.yaml")]
-    return [
-        (
-            f"{quantity} limit",
-            f"{', '.join(f'{name} {limit:.4g}' for name, limit in limits.items())} "
-            f"{joint_unit(QUANTITIES[quantity].unit, 'rotary')}",
-        )
-        for quantity, limits in robot.limits.items()
+    ranges = [
+        f"{name} {lower:.4g} to {upper:.4g} {joint_unit('rad', robot.kind_of(name))}"
+        for name, (lower, upper) in robot.positions.items()
     ]
+    rows = [("narrower range", ", ".join(ranges))] if ranges else []
+    if not robot.limits:
+        return [*rows, ("limits", "none: give limits, urdf or a joint_limits.yaml")]
+    for quantity, limits in robot.limits.items():
+        kind = kind_of_joints([robot.kind_of(name) for name in limits])
+        label = joint_label(f"{quantity} limit", kind)
+        rows.append((label, _with_units(robot, limits, QUANTITIES[quantity].unit)))
+    return rows
+
+
+def _with_units(robot: Robot, values: Mapping[str, float], unit: str) -> str:
+    """Values of joints with their units, given as of a rotary one: x 900 N, elbow 60 N m."""
+    by_unit = dict[str, list[str]]()
+    for name, value in values.items():
+        own = joint_unit(unit, robot.kind_of(name))
+        by_unit.setdefault(own, []).append(f"{name} {value:.4g}")
+    return "; ".join(f"{', '.join(listed)} {own}" for own, listed in by_unit.items())
 
 
 def _path_rows(robot: Robot, path: GeometricPath) -> list[Row]:
@@ -148,11 +167,28 @@ def _path_rows(robot: Robot, path: GeometricPath) -> list[Row]:
         left = f" (left out: {', '.join(others)} ...)" if others else ""
         sag = 1e3 * float(np.linalg.norm(robot.sag(q)))
         positions = ", ".join(
-            f"{round(x, 9):.4g}" if slide else f"{round(np.degrees(x), 6):.4g}deg"
+            f"{round(x, 9) + 0.0:.4g}m" if slide else f"{round(np.degrees(x), 6) + 0.0:.4g}deg"
             for x, slide in zip(q, slides)
         )
         rows.append((f"at {positions}", f"modes {followed} Hz{left}, sag {sag:.3g} mm"))
-    return [*rows, *_left_out_rows(robot, path, numbers)]
+    return [*way_rows(robot, path), *rows, *_left_out_rows(robot, path, numbers)]
+
+
+def way_rows(robot: Robot, path: GeometricPath) -> list[Row]:
+    """What to know of a robot's path: what its file had more, and how far its spline swings out."""
+    rows = [("path", words) for words in path.remarks]
+    units = [joint_unit("rad", robot.kind_of(name)) for name in robot.joints]
+    off = sorted(zip(path.off_straight.tolist(), units, robot.joints), reverse=True)
+    seen = [(size, unit, name) for size, unit, name in off if size > _SEEN]
+    if not seen:
+        return rows
+    (size, unit, name), *others = seen
+    less = ", ".join(f"{other} {smaller:.2g} {own}" for smaller, own, other in others)
+    words = (
+        f"the spline is up to {size:.2g} {unit} from the straight lines between waypoints, at "
+        f"joint {name}{f' ({less})' if less else ''}"
+    )
+    return [*rows, ("path", words)]
 
 
 def _left_out_rows(robot: Robot, path: GeometricPath, numbers: Sequence[int]) -> list[Row]:

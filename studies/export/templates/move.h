@@ -20,7 +20,7 @@ int {{ name }}_plan({{ places }}, double coefficients[{{ size }}]);
 #define {{ upper }}_JOINTS {{ joints | length }}
 extern const char *const {{ name }}_joints[{{ upper }}_JOINTS];
 
-/* Positions [{{ unit }}; m of sliding joints], speeds [/s] and accelerations [/s^2] of all joints on such a move, a
+/* Positions [{{ unit }}], speeds [/s] and accelerations [/s^2] of all joints on such a move, a
    time [s] after its start. They rest at the start before the move, and where a time or the duration is
    no number; at the target after it. */
 void {{ name }}_at({{ given }}double time, double position[{{ upper }}_JOINTS],
@@ -36,7 +36,7 @@ void {{ name }}_at({{ given }}double time, double position[{{ upper }}_JOINTS],
 #define {{ upper }}_JOINTS {{ joints | length }}
 extern const char *const {{ name }}_joints[{{ upper }}_JOINTS];
 
-/* Positions [{{ unit }}; m of sliding joints], speeds [/s] and accelerations [/s^2] of all joints, a time [s]
+/* Positions [{{ unit }}], speeds [/s] and accelerations [/s^2] of all joints, a time [s]
    after the start. They rest at the start before the move, and at a time that is no number; at the target after it. */
 void {{ name }}_at(double time, double position[{{ upper }}_JOINTS],
     double speed[{{ upper }}_JOINTS], double acceleration[{{ upper }}_JOINTS]);

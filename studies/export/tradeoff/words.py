@@ -14,7 +14,7 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import REST
 from quietarm.studies.export.tradeoff.moves import Choice, Move
 from quietarm.studies.figures.meaning import is_plain_cycloid
-from quietarm.studies.figures.motion import heading, scale_of
+from quietarm.studies.figures.motion import heading, names_of_curves, scale_of
 from quietarm.studies.report.report import percents
 from quietarm.studies.tips import tip_scale
 
@@ -45,7 +45,7 @@ class Figures:
         motion = plan.motion
         trajectory = plan.trajectory
         peak_power = float(np.abs(trajectory.power).max())
-        joints = plan.task.plant.joint_names
+        joints = names_of_curves(plan.task.plant, "torque")
         peak_joint = ""
         if len(joints) > 1:
             moving = trajectory.time <= plan.task.duration

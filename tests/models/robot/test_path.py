@@ -1,8 +1,11 @@
 """Paths of joints: what they pass through, how smooth they are, and what is no path."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from robots import END, START, straight
+from small_robots import ARM, ARM_FILE, write_robot
 
 import quietarm as qa
 
@@ -71,7 +74,7 @@ def test_a_path_goes_on_smoothly_beyond_its_ends(path):
     (lambda: qa.GeometricPath.of(lambda s: [float(s > 0.5)]), r"jump at s = 0\.5"),
     (lambda: qa.GeometricPath.of(lambda s: [np.nan]), "path at s = .* finite number"),
     (lambda: qa.GeometricPath.through([START, END], degree=1), "give 5 or 3: a robot can follow"),
-    (lambda: qa.GeometricPath.through([START, START, END]), "waypoints 1 and 2 are the same"),
+    (lambda: qa.GeometricPath.through([START, START]), "a length of 0 and ends where it begins"),
     (lambda: qa.GeometricPath.through([START, END, START]), "turns back at waypoint 2, a corner"),
     (lambda: qa.GeometricPath.through([START]), "give two rows or more"),
     (lambda: qa.GeometricPath.through([START, END], at=[0.0, 0.9]), "rising from 0 to 1"),
@@ -125,7 +128,7 @@ def test_a_joint_trajectory_gives_its_positions_and_no_times(tmp_path, wrapped):
     ("a.csv", "", "is empty; give a row for each waypoint"),
     ("a.csv", "a,b\n1,x\n2,3\n", "a row that is no row of numbers"),
     ("a.csv", "1,2\n3\n", "rows of different lengths"),
-    ("a.csv", "1,2\n1,2\n", "a.csv: waypoints 1 and 2 are the same"),
+    ("a.csv", "1,2\n1,2\n", "a.csv: the path has a length of 0"),
     ("a.yaml", "points: 3\n", "is no JointTrajectory"),
     ("a.yaml", "joint_names: [a]\npoints: [{x: 1}]\n", "a point without positions"),
     ("a.yaml", "a: [\n", "is no valid YAML"),
@@ -140,3 +143,134 @@ def test_a_file_that_holds_no_path_is_refused(tmp_path, name, text, words):
 def test_a_file_that_is_not_there_is_named(tmp_path):
     with pytest.raises(ValueError, match=r"none\.csv cannot be read: no such file"):
         qa.GeometricPath.load(tmp_path / "none.csv")
+
+
+def test_a_repeated_waypoint_is_taken_as_one_and_named():
+    """The points of a teach pendant; the path is that without the second of them."""
+    points = [[0.0, 0.0], [0.5, 0.3], [0.50001, 0.30001], [1.0, 0.5]]
+    path = qa.GeometricPath.through(points)
+    (remark,) = path.remarks
+    assert remark.startswith("waypoints 2 and 3 are 1.4e-05 rad (or m) apart and taken as one")
+    assert path == qa.GeometricPath.through([points[0], points[1], points[3]])
+
+
+@pytest.mark.parametrize("place", [0, -1])
+def test_the_ends_of_a_path_are_kept_where_they_are_repeated(place):
+    points = np.array([[0.0, 0.0], [0.5, 0.3], [1.0, 0.5]])
+    repeated = np.insert(points, place % 3, points[place] + 1e-6, axis=0)
+    path = qa.GeometricPath.through(repeated)
+    assert path(0.0) == pytest.approx(repeated[0], abs=1e-12)
+    assert path(1.0) == pytest.approx(repeated[-1], abs=1e-12)
+
+
+def test_a_waypoint_repeated_anywhere_is_no_jump_of_the_curvature():
+    """The repeated point is merged whatever way it is off."""
+    draws = np.random.default_rng(0)
+    for _ in range(12):
+        points = np.cumsum(draws.uniform(0.05, 1.0, (draws.integers(3, 8), 2)), axis=0)
+        place = draws.integers(len(points))
+        off = draws.uniform(-0.7e-5, 0.7e-5, 2)
+        path = qa.GeometricPath.through(np.insert(points, place, points[place] + off, axis=0))
+        assert len(path.remarks) == 1
+        through = qa.GeometricPath.through(points)
+        places = np.linspace(0, 1, 9)
+        assert path(places) == pytest.approx(through(places), abs=1e-3)
+
+
+def test_waypoints_that_are_too_near_for_a_spline_are_named():
+    with pytest.raises(ValueError, match="waypoints 2 and 3 are too near each other for a spline"):
+        qa.GeometricPath.through(
+            [[0.0, 0.0], [1.0, 1.0], [2.0, 3.0], [3.0, 3.0]], at=[0.0, 0.5, 0.50001, 1.0]
+        )
+
+
+def test_how_far_a_spline_leaves_the_lines_between_its_waypoints():
+    """Three sides of a square: against the nearest point of them, by many samples."""
+    points = np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
+    path = qa.GeometricPath.through(points)
+    positions = path(np.linspace(0, 1, 2001))
+    sides = np.concatenate([
+        begin + np.linspace(0, 1, 501)[:, None] * (end - begin)
+        for begin, end in pairwise(points)
+    ])  # fmt: skip
+    gaps = positions[:, None] - sides
+    nearest = np.linalg.norm(gaps, axis=2).argmin(axis=1)
+    expected = np.abs(gaps[np.arange(len(positions)), nearest]).max(axis=0)
+    assert path.off_straight == pytest.approx(expected, abs=2e-3)
+    assert path.off_straight[0] == pytest.approx(0.0625, abs=1e-3)  # at the middle, by symmetry
+
+
+@pytest.mark.parametrize("path", [
+    qa.GeometricPath.line(START, END),
+    qa.GeometricPath.of(lambda s: [s + 0.2 * np.sin(9 * s), s]),
+])  # fmt: skip
+def test_a_path_without_waypoints_leaves_none(path):
+    assert not path.off_straight.any()
+
+
+TRAJECTORY = """joint_names: [a, b]
+points:
+- {positions: [0.0, 1.0], velocities: [0, 0], effort: [], time_from_start: {sec: 0, nanosec: 0}}
+- {positions: [0.5, 1.5], velocities: [0, 0], effort: [], time_from_start: {sec: 3, nanosec: 0}}
+- {positions: [1.0, 1.8], velocities: [0, 0], effort: [], time_from_start: {sec: 9, nanosec: 0}}
+"""
+EMPTY = "multi_dof_joint_trajectory: {header: {frame_id: ''}, joint_names: [], points: []}\n"
+
+
+def _within(name, text):
+    """A message as an entry of another."""
+    return f"{name}:\n" + "".join(f"  {line}\n" for line in text.splitlines())
+
+
+MESSAGES = {
+    "RobotTrajectory": _within("joint_trajectory", TRAJECTORY) + EMPTY,
+    "goal of ExecuteTrajectory": _within(
+        "trajectory", _within("joint_trajectory", TRAJECTORY) + EMPTY
+    ),
+    "goal of FollowJointTrajectory": _within(
+        "goal", _within("trajectory", TRAJECTORY) + "path_tolerance: []\n"
+    ),
+    "DisplayTrajectory": "model_id: arm\ntrajectory_start: {joint_state: {name: [a]}}\n"
+    "trajectory:\n- " + _within("joint_trajectory", TRAJECTORY).replace("\n", "\n  ").rstrip()
+    + f"\n  {EMPTY}",
+    "echo of a topic": f"{TRAJECTORY}---\n",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", MESSAGES.values(), ids=MESSAGES)
+def test_a_trajectory_is_found_within_other_messages(tmp_path, text):
+    (tmp_path / "message.yaml").write_text(text)
+    path = qa.GeometricPath.load(tmp_path / "message.yaml")
+    assert path.joints == ("a", "b")
+    assert path(1.0) == pytest.approx([1.0, 1.8])
+    assert path.remarks == ("not used of the trajectory: velocities, times",)
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    (f"{TRAJECTORY}---\n{TRAJECTORY}---\n", "has 2 documents, separated by ---; leave one of them"),
+    (_within("first", TRAJECTORY) + _within("second", TRAJECTORY), "has 2 trajectories; give a"),
+    (EMPTY, "is no JointTrajectory"),
+    (TRAJECTORY.replace("[a, b]", "[a, a]"), "the path has joint 'a' twice"),
+    ("joint_names: [a]\npoints:\n- {transforms: [{x: 1}]}\n", "is no JointTrajectory"),
+])  # fmt: skip
+def test_what_is_no_single_trajectory_is_refused(tmp_path, text, words):
+    (tmp_path / "message.yaml").write_text(text)
+    with pytest.raises(ValueError, match=words):
+        qa.GeometricPath.load(tmp_path / "message.yaml")
+
+
+def test_joints_that_the_robot_does_not_drive_are_left_out_and_named(tmp_path):
+    """A trajectory of arm and gripper, whose joints stand in another order."""
+    robot = qa.Robot.load(write_robot(tmp_path, ARM, ARM_FILE))
+    file = tmp_path / "waypoints.csv"
+    file.write_text("time,b,grip,a\n0,0,0,0\n1,0.4,0.01,0.2\n2,0.5,0.02,0.6\n")
+    path = robot.along(qa.GeometricPath.load(file)).path
+    assert path.joints == ("a", "b")
+    assert path(1.0) == pytest.approx([0.6, 0.5])
+    assert path.remarks == (
+        "not used of the table: times",
+        "joints that the robot does not drive are left out: grip",
+    )
+    file.write_text("grip,a\n0,0\n0.01,0.2\n")
+    with pytest.raises(ValueError, match="give positions of b as well"):
+        robot.along(qa.GeometricPath.load(file))

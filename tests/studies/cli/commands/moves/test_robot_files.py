@@ -1,0 +1,92 @@
+"""Files of robots, limits and paths on the command line: what is used, named and refused."""
+
+from pathlib import Path
+
+import pytest
+from small_robots import ARM, ARM_FILE, MIXED, write_robot
+
+import quietarm as qa
+
+MOVE = "--start=0,0 --target=0.4,0.3 --duration 1 --coefficients=0"
+LINE = "robot.yaml --start=0.4,1.0 --line-by=0.1,0,0 --duration 1"
+
+
+def _words(out):
+    """What was printed, in one line."""
+    return " ".join(out.split())
+
+
+def test_limits_of_a_gripper_are_no_limits_of_the_move(folder, call):
+    write_robot(folder, ARM, f"{ARM_FILE}limits: urdf\n")
+    code, out, _ = call(f"evaluate robot.yaml {MOVE}")
+    assert code == 0
+    assert "limits torque a, b 150 N m, speed a, b 3 rad/s" in _words(out)
+    assert "grip" not in out
+
+
+def test_what_a_file_of_limits_leaves_out_stands_beside_the_figures(folder, call):
+    write_robot(
+        folder, ARM, ARM_FILE, "a: {max_acceleration: 8, max_deceleration: -3}\n  wheel: {}"
+    )
+    for line in (f"evaluate robot.yaml {MOVE}", "list robot.yaml"):
+        code, out, _ = call(line)
+        words = _words(out)
+        assert code == 0
+        assert words.count("warning limits file joint_limits.yaml: ") == 2
+        assert "limits of joints that the URDF does not have: wheel" in words
+        assert "max_acceleration and max_deceleration bounds both directions: a 3" in words
+    assert "acceleration limit a 3 rad/s^2" in words
+
+
+def test_an_unknown_limit_is_refused_in_one_line(folder, refused):
+    write_robot(folder, ARM, ARM_FILE, "a: {max_acc: 8}")
+    assert "max_acc of a in limits: did you mean max_acceleration?" in refused("list robot.yaml")
+
+
+def test_the_path_says_how_far_its_spline_swings_out(folder, call):
+    write_robot(folder, ARM, ARM_FILE)
+    Path("way.csv").write_text("time,a,b,grip\n0,0,0,0\n1,0.5,0,0\n2,0.5,0.5,0\n3,0,0.5,0\n")
+    # of joint a by hand: the natural quintic passes the middle of the square's side at 0.5625
+    swing = "up to 0.11 rad from the straight lines between waypoints, at joint b (a 0.063 rad)"
+    for line in ("list robot.yaml", "evaluate robot.yaml --duration 2 --coefficients=0"):
+        code, out, _ = call(f"{line} --path way.csv")
+        words = _words(out)
+        assert code == 0
+        assert f"path the spline is {swing}" in words
+        assert "path not used of the table: times" in words
+        assert "path joints that the robot does not drive are left out: grip" in words
+
+
+def test_a_repeated_waypoint_is_named(folder, call):
+    write_robot(folder, ARM, ARM_FILE)
+    Path("close.csv").write_text("a,b\n0,0\n0.5,0.3\n0.50001,0.30001\n1.0,0.5\n")
+    code, out, _ = call("list robot.yaml --path close.csv")
+    assert code == 0
+    assert "waypoints 2 and 3 are 1.4e-05 rad (or m) apart and taken as one" in _words(out)
+
+
+def test_a_line_that_turns_a_link_of_two_joints_is_explained(folder, refused):
+    write_robot(folder, ARM, ARM_FILE)
+    message = refused(f"plan {LINE}")
+    assert "the place is within reach, but a line keeps the link's orientation as well" in message
+    assert "which 2 joints cannot do there; give waypoints, by --path" in message
+
+
+def test_limits_of_joints_that_turn_and_slide_are_typed_by_name(folder, call, refused):
+    write_robot(folder, MIXED)
+    move = "robot.yaml --start=0.2,0.1 --target=700mm,50deg --duration 1 --coefficients=0"
+    code, out, _ = call(f"evaluate {move} --speed-limit x=1500mm/s,radial-axis=120deg/s")
+    assert code == 0
+    assert "speed x 1.5 m/s; radial-axis 2.0944 rad/s" in _words(out)
+    message = refused(f"evaluate {move} --speed-limit 1500mm/s")
+    assert "the robot has both; give a limit of each by its name" in message
+
+
+@pytest.mark.parametrize("columns", ["position:mm,force:kN", "angle:mm,torque"])
+def test_a_linear_axis_has_columns_of_positions(folder, call, columns):
+    axis = qa.PointToPoint(qa.LinearAxis(), target=0.3, duration=0.8)
+    qa.evaluate_coefficients(axis, []).save(folder / "plan.json")
+    code, out, _ = call(f"export plan.json --output - --columns {columns} --rate 10")
+    assert code == 0
+    assert out.startswith("position_mm,force_")
+    assert out.splitlines()[-1].startswith("300,")
