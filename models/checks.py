@@ -6,13 +6,38 @@ import difflib
 import math
 import operator
 import re
-from collections.abc import Collection
+import reprlib
+from collections.abc import Collection, Iterable
 from typing import Any
 
 _ALIKE = 0.55
 """Share of letters in common from which on a name is asked for."""
 _PART = 3
 """So many letters of a longer name are enough."""
+MOST_QUOTED = 80
+"""Letters of a file that a message quotes: the file may be a stranger's, or a secret."""
+_MOST_LISTED = 600
+"""Letters of a list of names: some thirty of a robot's joints."""
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 4 * MOST_QUOTED
+
+
+def cut(text: str, most: int) -> str:
+    """A text of at most so many letters, without its middle where it is longer."""
+    if len(text) <= most:
+        return text
+    head = (most - 5) // 2
+    return f"{text[:head]} ... {text[-head:]}"
+
+
+def quoted(value: object, most: int = MOST_QUOTED) -> str:
+    """A value of a file as a message quotes it, without its middle where it is long."""
+    return cut(_SHORT.repr(value), most)
+
+
+def clipped(text: str, most: int = MOST_QUOTED) -> str:
+    """The words of a parser, which may quote all of a file, in one line and without the middle."""
+    return cut(" ".join(text.split()), most)
 
 
 def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:
@@ -21,7 +46,7 @@ def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: s
     try:
         number = float(_no_text(_no_truth_value(value)))
     except (TypeError, ValueError):
-        raise ValueError(f"{name} is {value!r}; give a {wanted}") from None
+        raise ValueError(f"{name} is {quoted(value)}; give a {wanted}") from None
     if not math.isfinite(number):
         raise ValueError(f"{name} is {value}; give a finite {wanted}")
     if abs(number) > most:
@@ -32,14 +57,14 @@ def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: s
 def _no_truth_value(value: Any) -> Any:
     """The value; TypeError for True and False, which count as 1 and 0 in Python."""
     if isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b":
-        raise TypeError(f"{value!r} is no number")
+        raise TypeError(f"{quoted(value)} is no number")
     return value
 
 
 def _no_text(value: Any) -> Any:
     """The value; TypeError for text, of which Python makes a number as well."""
     if isinstance(value, str | bytes):
-        raise TypeError(f"{value!r} is no number")
+        raise TypeError(f"{quoted(value)} is no number")
     return value
 
 
@@ -66,27 +91,41 @@ def whole(name: str, value: Any, least: int, most: int | None = None, because: s
     except TypeError:
         number = least - 1
     if number < least:
-        raise ValueError(f"{name} is {value!r}; give a whole number from {least} up")
+        raise ValueError(f"{name} is {quoted(value)}; give a whole number from {least} up")
     if most is not None and number > most:
         raise ValueError(f"{name} is {number}; give at most {most}{because and f': {because}'}")
     return number
 
 
+def words_of_error(error: BaseException) -> str:
+    """What went wrong in a user's own lines, in one line; also where they end the process."""
+    text = " ".join(str(error).split())
+    if isinstance(error, SystemExit):
+        return f"it calls sys.exit({text}), which would end quietarm as well; leave that out"
+    return f"{type(error).__name__}{': ' if text else ''}{text}"
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names that a message lists, which may be a file's: each short, and not a page of them."""
+    most = 40  # letters of a name
+    return cut(", ".join(clipped(name, most) for name in names), _MOST_LISTED)
+
+
 def unknown(what: str, name: str, known: Collection[str], also: str = "") -> str:
     """The message about a name that is not known."""
-    return f"unknown {what} {name!r}{nearest(name, known)} (known: {', '.join(known)}{also})"
+    return f"unknown {what} {quoted(name)}{nearest(name, known)} (known: {listed(known)}{also})"
 
 
 def has_no(owner: str, what: str, name: str, known: Collection[str]) -> str:
     """The message about a name that something does not have."""
-    listed = ", ".join(known) or "none"
-    return f"{owner} has no {what} {name!r}{nearest(name, known)} (it has: {listed})"
+    names = listed(known) or "none"
+    return f"{owner} has no {what} {quoted(name)}{nearest(name, known)} (it has: {names})"
 
 
 def nearest(name: str, known: Collection[str]) -> str:
     """A question for a message, with the known name that is most like an unknown one."""
     near = nearest_name(name, known)
-    return f"; did you mean {near!r}?" if near else ""
+    return f"; did you mean {quoted(near)}?" if near else ""
 
 
 def nearest_name(name: str, known: Collection[str]) -> str:

@@ -17,7 +17,15 @@ from typing import Any, ClassVar, Literal
 import casadi as ca
 import numpy as np
 
-from quietarm.models.checks import finite, has_no, not_negative, positive, whole
+from quietarm.models.checks import (
+    finite,
+    has_no,
+    listed,
+    not_negative,
+    positive,
+    quoted,
+    whole,
+)
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import (
     LINEAR,
@@ -280,8 +288,8 @@ class Robot:
         if path.joints and not set(names) <= set(path.joints):
             missing = [name for name in names if name not in path.joints]
             raise ValueError(
-                f"the path is of the joints {', '.join(path.joints)}, and the robot drives "
-                f"{', '.join(names)}; give positions of {', '.join(missing)} as well"
+                f"the path is of the joints {listed(path.joints)}, and the robot drives "
+                f"{listed(names)}; give positions of {listed(missing)} as well"
             )
         if not path.joints and path.count != len(names):
             raise ValueError(
@@ -358,7 +366,7 @@ class Robot:
                 lower, upper = (float(end) for end in ends)
             except (TypeError, ValueError):
                 raise ValueError(
-                    f"positions of {name} are {ends!r}; give the least and the largest"
+                    f"positions of {name} are {quoted(ends)}; give the least and the largest"
                 ) from None
             if not joint.lower <= lower < upper <= joint.upper:
                 raise ValueError(
