@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from quietarm.models.checks import finite, has_no, nearest_name
+from quietarm.models.checks import clipped, finite, has_no, listed, nearest_name, quoted
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.models.notes import Note
 from quietarm.models.robot.files import read_yaml
@@ -142,12 +142,14 @@ class _Reader:
     def joint(self, joint: str, table: Any) -> None:
         """Read the entries of a joint."""
         if not isinstance(table, dict):
-            raise ValueError(f"limits of {joint} are {table!r}; give has_velocity_limits and so on")
+            raise ValueError(
+                f"limits of {clipped(joint)} are {quoted(table)}; give has_velocity_limits and so on"
+            )
         for name in table:
             if name not in _KNOWN:
                 near = nearest_name(str(name), _KNOWN)
                 remedy = f"did you mean {near}?" if near else f"give one of {', '.join(_KNOWN)}"
-                raise ValueError(f"{name} of {joint} in limits: {remedy}")
+                raise ValueError(f"{clipped(str(name))} of {clipped(joint)} in limits: {remedy}")
         if joint not in self._joints:
             return
         entries = _Entries(joint, self._joints[joint].kind == PRISMATIC, table)
@@ -247,7 +249,9 @@ class _Entries:
         if stated is None:
             return any(self.table.get(name) is not None for name in names)
         if not isinstance(stated, bool):
-            raise ValueError(f"{has} of {self.joint} in limits is {stated!r}; give true or false")
+            raise ValueError(
+                f"{has} of {self.joint} in limits is {quoted(stated)}; give true or false"
+            )
         return stated
 
     def switched_off(self) -> list[str]:
@@ -272,22 +276,16 @@ def _notes(
     """What of a file is not used as it stands, in one line each."""
     notes = list[str]()
     if strangers:
-        notes.append(f"limits of joints that the URDF does not have: {_listed(strangers)}")
+        notes.append(f"limits of joints that the URDF does not have: {listed(strangers)}")
     for names, joints in read.smaller.items():
         which = f"the smaller of {names}" if " and " in names else names
-        notes.append(f"{which} bounds both directions: {_listed(joints)}")
+        notes.append(f"{which} bounds both directions: {listed(joints)}")
     if read.unused:
-        notes.append(f"not used, as has_..._limits is false: {_listed(read.unused)}")
+        notes.append(f"not used, as has_..._limits is false: {listed(read.unused)}")
     if read.of_controllers:
-        notes.append(f"not used, as it is for controllers: {_listed(read.of_controllers)}")
-    scales = [f"{name} {beside[name]}" for name in _SCALES if beside.get(name, 1) != 1]
+        notes.append(f"not used, as it is for controllers: {listed(read.of_controllers)}")
+    scales = [f"{name} {quoted(beside[name])}" for name in _SCALES if beside.get(name, 1) != 1]
     others = [name for name in _BESIDE if name in beside and name not in _SCALES]
     if scales or others:
-        notes.append(f"not used, limits are kept in full: {_listed([*scales, *others])}")
+        notes.append(f"not used, limits are kept in full: {listed([*scales, *others])}")
     return [Note(f"limits file {Path(path).name}: {words}") for words in notes]
-
-
-def _listed(names: list[str]) -> str:
-    most = 12
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return f"{', '.join(names[:most])}{more}"

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
-from quietarm.models.checks import quoted
+from quietarm.models.checks import listed, quoted
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.cartesian import Pose, kinematics_of, straight_positions
 from quietarm.models.robot.files import read_text, read_yaml
@@ -95,7 +95,7 @@ class GeometricPath:
             raise ValueError("coefficients of the path are not finite; make it anew")
         for name in self.joints:
             if self.joints.count(name) > 1:
-                raise ValueError(f"the path has joint {name!r} twice; give each once")
+                raise ValueError(f"the path has joint {quoted(name)} twice; give each once")
         if self.joints and len(self.joints) != self.count:
             raise ValueError(
                 f"the path has {self.count} joints and {len(self.joints)} names; give one of each"
@@ -308,9 +308,7 @@ class GeometricPath:
         left_out = [name for name in self.joints if name not in names]
         remarks = self.remarks
         if left_out:
-            remarks += (
-                f"joints that the robot does not drive are left out: {', '.join(left_out)}",
-            )
+            remarks += (f"joints that the robot does not drive are left out: {listed(left_out)}",)
         return GeometricPath(self.knots, rows, tuple(names), remarks)
 
     @cached_property

@@ -48,7 +48,7 @@ def parse_yaml(text: str) -> object:
         _check_depth(text)
         documents = list(_documents(loader))
         if len(documents) > 1:
-            raise ValueError(f"has {len(documents)} documents, separated by ---; leave one of them")
+            raise ValueError(f"has {len(documents)} documents; give one")
         return documents[0] if documents else None
     except yaml.YAMLError as error:
         raise ValueError(f"is no valid YAML: {_words_of(error)}; mend it") from None

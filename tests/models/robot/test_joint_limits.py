@@ -114,8 +114,8 @@ def test_limits_may_stand_within_the_parameters_of_a_node(tmp_path):
     ("a: {max_acc: 8}", "max_acc of a in limits: did you mean max_acceleration?"),
     ("a: {max_jerks: 8}", "max_jerks of a in limits: did you mean max_jerk?"),
     ("grip: {has_velocity_limit: true}", "did you mean has_velocity_limits?"),
-    ("a: {max_velocity: 1, max_velocity: 2}", "'max_velocity' twice, in lines 2 and 2"),
-    ("a: {max_velocity: 1}\n  a: {max_velocity: 2}", "'a' twice, in lines 2 and 3"),
+    ("a: {max_velocity: 1, max_velocity: 2}", "has 'max_velocity' twice, again in line 2"),
+    ("a: {max_velocity: 1}\n  a: {max_velocity: 2}", "has 'a' twice, again in line 3"),
     ("a: {max_position: 4}", "max_position of a in limits is 4, beyond the URDF's 3"),
     ("a: {min_position: 1, max_position: 0.5}", "give a range"),
     ("a: {has_position_limits: true}", "give min_position and max_position"),
@@ -145,7 +145,7 @@ def test_what_is_no_file_of_limits(tmp_path, text, words):
 
 
 def test_an_entry_of_a_robot_that_is_given_twice_is_refused(tmp_path):
-    with pytest.raises(ValueError, match=r"robot.yaml has the entry 'tip' twice, in lines 6 and 7"):
+    with pytest.raises(ValueError, match=r"robot.yaml has 'tip' twice, again in line 7"):
         qa.Robot.load(write_robot(tmp_path, ARM, f"{ARM_FILE}tip: tool\ntip: fore\n"))
 
 

@@ -247,7 +247,7 @@ def test_a_trajectory_is_found_within_other_messages(tmp_path, text):
 
 
 @pytest.mark.parametrize(("text", "words"), [
-    (f"{TRAJECTORY}---\n{TRAJECTORY}---\n", "has 2 documents, separated by ---; leave one of them"),
+    (f"{TRAJECTORY}---\n{TRAJECTORY}---\n", "has 2 documents; give one"),
     (_within("first", TRAJECTORY) + _within("second", TRAJECTORY), "has 2 trajectories; give a"),
     (EMPTY, "is no JointTrajectory"),
     (TRAJECTORY.replace("[a, b]", "[a, a]"), "the path has joint 'a' twice"),
