@@ -7,10 +7,11 @@ garbage collector raises, and goes on. Within an import it leaves half a module 
 `__enter__` or `__exit__` what these should have put back.
 
 So one handler stands during the operations of quietarm. It looks at the frames: where one of them
-loses what is raised, a trace raises it at the next step of the nearest frame outside. Operations
-are marked by `interruptible`. The outermost installs the handler in the main thread, and puts back
-the one that was there; commands install it once, before anything else is imported. Whatever came
-and was lost nevertheless is raised when the operation ends.
+loses what is raised, a trace raises it at the next step of the nearest frame outside, as it does
+where Python reports that something was lost. Operations are marked by `interruptible`. The
+outermost installs the handler in the main thread, and puts back the one that was there; commands
+install it once, before anything else is imported. Whatever came and was lost nevertheless is raised
+when the operation ends.
 
 This module needs the standard library alone, as the entry of the commands imports it first.
 """
@@ -68,6 +69,8 @@ class _State:
         self.waits_since: float | None = None
         self.tracer: Any = None
         """The tracer of a debugger that gave way."""
+        self.unraisablehook: Any = None
+        """The hook that gave way to `_raise_again`."""
 
 
 _state = _State()
@@ -137,7 +140,9 @@ def _put_back(handler: Any) -> None:
     _state.acts = False
     if _state.tracer is not None:
         sys.settrace(_state.tracer)
-    _state.tracer = _state.base = _state.raised = None
+    if _state.unraisablehook is not None:
+        sys.unraisablehook = _state.unraisablehook
+    _state.tracer = _state.unraisablehook = _state.base = _state.raised = None
     if _IN_C.getsignal(signal.SIGINT) is defer:  # the work may have set another
         _IN_C.signal(signal.SIGINT, handler)
 
@@ -251,6 +256,9 @@ def defer(number: int, frame: FrameType | None) -> None:
         _state.kept.append(stop)
         return
     _state.raised = stop
+    if sys.unraisablehook is not _raise_again:
+        _state.unraisablehook = sys.unraisablehook
+        sys.unraisablehook = _raise_again
     outside, within = _frame_outside(frame)
     if outside is None or _is_impatient():
         _state.waits_since = None
@@ -261,6 +269,17 @@ def defer(number: int, frame: FrameType | None) -> None:
         if not all(map(_evaluates, within)):
             return  # CasADi's evaluations end early where the handler raises
     raise stop
+
+
+def _raise_again(lost: Any) -> None:
+    """Raise what Python lost in a callback that nothing tells from other frames."""
+    if lost.exc_value is not _state.raised:
+        _state.unraisablehook(lost)
+        return
+    stop = lost.exc_value
+    outside, _ = _frame_outside(sys._getframe(1))
+    if outside is not None:
+        _raise_at(outside, stop.with_traceback(None))
 
 
 def _frame_outside(frame: FrameType | None) -> tuple[FrameType | None, list[FrameType]]:

@@ -128,6 +128,20 @@ def test_a_callback_of_a_weak_reference_does_not_lose_it():
     assert any(within)
 
 
+def test_a_callback_of_anyone_does_not_lose_it_nor_is_a_word_said_of_it(capfd):
+    hook = sys.unraisablehook
+
+    def forget():
+        thing = _Thing()
+        reference = weakref.ref(thing, lambda _: press())
+        del thing
+        return reference
+
+    ended_at_once(forget)
+    assert capfd.readouterr().err == ""
+    assert sys.unraisablehook is hook
+
+
 def test_del_does_not_lose_it():
     class Last:
         def __del__(self):

@@ -114,7 +114,6 @@ def run_as_process() -> int:
     """Run the command whose words the process was given; its status, unless Ctrl-C ends it."""
     os.environ["MPLBACKEND"] = "agg"  # to files: no window, whatever the user's notebooks use
     warnings.filterwarnings("ignore", ".* more than a turn")  # they had a unit
-    sys.unraisablehook = _unless_ctrl_c
     _open_what_is_closed()
     return _run(None)
 
@@ -128,12 +127,6 @@ def _open_what_is_closed() -> None:
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
-
-
-def _unless_ctrl_c(lost: sys.UnraisableHookArgs) -> None:
-    """Report an exception that C code lost, but for Ctrl-C, which is raised again."""
-    if lost.exc_type is not KeyboardInterrupt:
-        sys.__unraisablehook__(lost)
 
 
 def _run(arguments: Sequence[str] | None) -> int:
