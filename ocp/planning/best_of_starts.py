@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
-from quietarm.ocp.limits import Limit, Ranged
+from quietarm.ocp.limits import RESIDUAL, Limit, Ranged
 from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.certify import OF_A_PLAN, by_cvodes, certify_one
 from quietarm.ocp.solvers.choice import stand_in
+from quietarm.ocp.solvers.least_excess import least_excess
 from quietarm.ocp.solvers.problem import STILL, NonlinearProgram, Scalarization, Solution
 from quietarm.ocp.solvers.solver import Solver
 
@@ -103,7 +104,7 @@ def solve_from_starts(
             least.update(least_peaks_of(problem, starts[:2], solver))
             yield solver, [solution.coefficients for solution in least.values()]
         substitute = stand_in(solver) if thorough else None
-        if substitute is not None:
+        if substitute is not None and not _is_beyond(problem, starts[0]):
             yield substitute, starts[:2]
 
     for attempting, guesses in attempts():
@@ -121,6 +122,16 @@ def solve_from_starts(
     solved.sort(key=lambda solution: minimum_of(solution, problem.scalarization))
     iterations = sum(solution.iterations for solution in tried)
     return replace(solved[0], iterations=iterations), solved
+
+
+def _is_beyond(problem: NonlinearProgram, start: Array, share: float = 0.02) -> bool:
+    """Whether linear programs say that the limits have to be wider by more than a share."""
+    if not any(limit.name != RESIDUAL for limit in problem.scalarization.limits):
+        return False
+    if problem.scalarization.peak is not None:
+        return False
+    excess = least_excess(problem, start)
+    return excess.holds and excess.share > share
 
 
 class Attempt(Protocol):
@@ -211,7 +222,7 @@ def explain(
         if peak is None:
             continue
         start = least[limit.name].coefficients
-        if _has_a_plan(_widened(problem, limit, peak), start, solver):
+        if has_a_plan(_widened(problem, limit, peak), start, solver):
             confirmed[limit.name] = peak
     sought = Sought(
         f"motion of {profile.amount}",
@@ -229,7 +240,7 @@ def _widened(problem: NonlinearProgram, limit: Limit, peak: float) -> NonlinearP
     return _with_scalarization(problem, limits=replaced)
 
 
-def _has_a_plan(
+def has_a_plan(
     problem: NonlinearProgram, start: Array, solver: Solver, most_refined: int = 2
 ) -> bool:
     """Whether a plan is found from one start, and CVODES confirms it.
@@ -271,11 +282,7 @@ def unmet(
         if sought.otherwise:
             ended = f"{ended.partition(';')[0]}; {sought.otherwise}"
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
-    bounds = ", ".join(
-        f"{limit.label} {'<=' if limit.is_peak else 'within'} {limit.bounds}"
-        for limit in limits
-        if limit.size < np.inf
-    )
+    bounds = ", ".join(_stated(limit) for limit in limits if limit.size < np.inf)
     remedies = [
         f"{limit.label} limit {limit.describe(least[limit.name] * _ROOM)}"
         for limit in limits
@@ -288,3 +295,10 @@ def unmet(
         f"found no {sought.motion} with {bounds}{sought.box}; {feasible}",
         f"{sought.remedy} may also do",
     )
+
+
+def _stated(limit: Limit) -> str:
+    """A limit in words."""
+    if limit.name == RESIDUAL and limit.size == 0:
+        return "the tip at rest on arrival"
+    return f"{limit.label} {'<=' if limit.is_peak else 'within'} {limit.bounds}"

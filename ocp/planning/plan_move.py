@@ -17,6 +17,7 @@ from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.request import PlanRequest
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.solvers.solver import Solver
@@ -103,4 +104,7 @@ def plan_move(
     request = PlanRequest(task, profile, setup, limit)
     if guess is not None:
         request = request.from_guess(guess)
-    return plan_on_chosen_profile(request) if takes_its_profile else plan_along(request)
+    if takes_its_profile:
+        return plan_on_chosen_profile(request)
+    refuse_too_short(task, arrives_at_rest(task, limit))
+    return plan_along(request)
