@@ -104,8 +104,8 @@ def solve_from_starts(
             least.update(least_peaks_of(problem, starts[:2], solver))
             yield solver, [solution.coefficients for solution in least.values()]
         substitute = stand_in(solver) if thorough else None
-        if substitute is not None and not _is_beyond(problem, starts[0]):
-            yield substitute, starts[:2]
+        if substitute is not None and not is_beyond(problem, starts[0]):
+            yield _briefly(substitute, problem, tried), starts[:2]
 
     for attempting, guesses in attempts():
         if not guesses:
@@ -124,7 +124,17 @@ def solve_from_starts(
     return replace(solved[0], iterations=iterations), solved
 
 
-def _is_beyond(problem: NonlinearProgram, start: Array, share: float = 0.02) -> bool:
+def _briefly(
+    solver: Solver, problem: NonlinearProgram, tried: Sequence[Solution], iterations: int = 120
+) -> Solver:
+    """The solver with fewer iterations where all that was tried ended beyond a limit on the way."""
+    infeasible = all(solution.status is SolveStatus.INFEASIBLE for solution in tried)
+    if not (infeasible and problem.transcription.task.limits):
+        return solver
+    return replace(solver, iterations=min(iterations, solver.iterations))
+
+
+def is_beyond(problem: NonlinearProgram, start: Array, share: float = 0.05) -> bool:
     """Whether linear programs say that the limits have to be wider by more than a share."""
     if not any(limit.name != RESIDUAL for limit in problem.scalarization.limits):
         return False

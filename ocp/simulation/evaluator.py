@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models.compiled import RECENT
+from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.checks import instance, table_of, takes, whole
 from quietarm.ocp.cost import COST
 from quietarm.ocp.limits import RESIDUAL, Limit, Quantity
@@ -154,6 +155,7 @@ class Evaluator:
         """Of each scenario, the rows that give the residual of a state on arrival, to 5e-5."""
         return [vibration.rows for vibration in self.vibrations]
 
+    @on_one_thread
     def __call__(self, coefficients: ArrayLike, errors: ArrayLike | None = None) -> Evaluation:
         """Evaluate candidates.
 
@@ -190,6 +192,7 @@ class Evaluator:
             errors=None if errors is None else scenarios,
         )
 
+    @on_one_thread
     def of_values(self, values: Values, offset: ArrayLike = 0.0) -> Evaluation:
         """What one candidate's values in the task's scenarios mean, a row a scenario.
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.checks import takes
 from quietarm.ocp.simulation.collocation import modal_system
 from quietarm.ocp.task import PointToPoint
@@ -67,6 +68,7 @@ class FreeVibration:
     """
 
     @takes(plant=Plant)
+    @on_one_thread
     def __init__(self, plant: Plant, angle: ArrayLike, window: ArrayLike = 0.0) -> None:
         self.window: Array = np.asarray(window, dtype=float)
         angles = np.atleast_1d(np.asarray(angle, dtype=float))
@@ -108,6 +110,7 @@ class FreeVibration:
         # These miss at most 5e-5 of a peak.
         return self.rows_every(radians=0.02)
 
+    @on_one_thread
     def rows_every(self, radians: float) -> Array:
         """The same at another distance [rad of the fastest mode]; the miss is its square by 8."""
         samples = max(2, math.ceil(self._radians / radians) + 1)  # both ends at least
@@ -116,6 +119,7 @@ class FreeVibration:
         rows.setflags(write=False)
         return rows
 
+    @on_one_thread
     def peak(self, states: ArrayLike) -> Array:
         """F1 [m]: the largest absolute displacement of a tip within the window.
 
@@ -135,6 +139,7 @@ class FreeVibration:
         return most.reshape(rows_of_states.shape[:-1])
 
     @cached_property
+    @on_one_thread
     def _sampling(self) -> _Sampling:
         matrix, tips = (
             matrices.reshape(-1, *matrices.shape[-2:]) for matrices in (self.matrix, self.tips)
@@ -160,6 +165,7 @@ class FreeVibration:
             np.linalg.matrix_power(stride, columns),
         )
 
+    @on_one_thread
     def states(self, state: ArrayLike, times: ArrayLike) -> Array:
         """The states at times since arrival [s], shape (times, 2 * modes), of one vibration."""
         at = np.atleast_1d(np.asarray(times, dtype=float))
