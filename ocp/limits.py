@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from quietarm.models import Expression, Plant
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
-from quietarm.ocp.checks import not_negative
+from quietarm.ocp.checks import not_negative, shown
 from quietarm.ocp.sample import Sample, symbolic_sample
 
 ValuesOf = Callable[[Sample], Sequence[Expression]]
@@ -264,7 +264,7 @@ class TorqueSpeedLine:
             pairs = [(torque, speed) for torque, speed in self.points]
         except (TypeError, ValueError):
             raise ValueError(
-                f"torque-speed line is {self.points!r}; give pairs of a {words} and a speed, as "
+                f"torque-speed line is {shown(self.points)}; give pairs of a {words} and a speed, as "
                 "[(1.5, 0), (0.8, 20)]"
             ) from None
         most_points = 50  # each is two limits at every node

@@ -219,27 +219,52 @@ def explain(
 ) -> SolverFailedError:
     """The error for a problem that no start solved; other arguments as for `unmet`."""
     profile = problem.transcription.profile
-    limits = problem.scalarization.limits
     bound = problem.scalarization.bound
-
-    def resimulated(solution: Solution) -> Ranged:
-        return by_cvodes(problem.transcription, solution.coefficients)
-
-    peaks = true_peaks(limits, least, resimulated)
-    confirmed: dict[str, float] = {}
-    for limit in limits:
-        peak = peaks.get(limit.name)
-        if peak is None:
-            continue
-        start = least[limit.name].coefficients
-        if has_a_plan(_widened(problem, limit, peak), start, solver):
-            confirmed[limit.name] = peak
     sought = Sought(
         f"motion of {profile.amount}",
         f"more {profile.term}s or a longer duration",
         box="" if bound is None else f", coefficients within +-{bound:g}",
     )
-    return unmet(sought, limits, tried, confirmed)
+    confirmed = _confirm(problem, least, solver)
+    return unmet(sought, problem.scalarization.limits, tried, confirmed)
+
+
+def _confirm(
+    problem: NonlinearProgram, least: Mapping[str, Solution], solver: Solver
+) -> dict[str, float]:
+    """Those least peaks with which there is a plan, as CVODES finds them."""
+    limits = problem.scalarization.limits
+
+    def resimulated(solution: Solution) -> Ranged:
+        return by_cvodes(problem.transcription, solution.coefficients)
+
+    peaks = true_peaks(limits, least, resimulated)
+    return {
+        limit.name: peaks[limit.name]
+        for limit in limits
+        if limit.name in peaks
+        and has_a_plan(
+            _widened(problem, limit, peaks[limit.name]),
+            least[limit.name].coefficients,
+            solver,
+        )
+    }
+
+
+def offers_for(problem: NonlinearProgram, starts: Sequence[Array], solver: Solver) -> str:
+    """Limits with which there is a plan, each with all else unchanged; nothing where none is."""
+    least = least_peaks_of(problem, starts[:2], solver)
+    return _offers(problem.scalarization.limits, _confirm(problem, least, solver))
+
+
+def _offers(limits: Sequence[Limit], least: Mapping[str, float]) -> str:
+    """Least peaks that a limit does not keep, as limits that would do."""
+    remedies = [
+        f"{limit.label} limit {limit.describe(least[limit.name] * _ROOM)}"
+        for limit in limits
+        if limit.name in least and not limit.keeps(least[limit.name], at_rest=STILL)
+    ]
+    return f"feasible with all else unchanged: {' or '.join(remedies)}" if remedies else ""
 
 
 def _widened(problem: NonlinearProgram, limit: Limit, peak: float) -> NonlinearProgram:
@@ -293,14 +318,8 @@ def unmet(
             ended = f"{ended.partition(';')[0]}; {sought.otherwise}"
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
     bounds = ", ".join(_stated(limit) for limit in limits if limit.size < np.inf)
-    remedies = [
-        f"{limit.label} limit {limit.describe(least[limit.name] * _ROOM)}"
-        for limit in limits
-        if limit.name in least and not limit.keeps(least[limit.name], at_rest=STILL)
-    ]
-    feasible = "removing any single one of these limits does not help, so widen several"
-    if remedies:
-        feasible = f"feasible with all else unchanged: {' or '.join(remedies)}"
+    several = "removing any single one of these limits does not help, so widen several"
+    feasible = _offers(limits, least) or several
     return InfeasibleTaskError(
         f"found no {sought.motion} with {bounds}{sought.box}; {feasible}",
         f"{sought.remedy} may also do",

@@ -7,10 +7,11 @@ solutions from several starts (`best_of_starts`), of which CVODES has the last w
 
 from __future__ import annotations
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from quietarm.ocp.checks import takes
+from quietarm.ocp.checks import count_of, takes
+from quietarm.ocp.errors import InfeasibleTaskError
+from quietarm.ocp.planning.best_of_starts import offers_for
 from quietarm.ocp.planning.choose_profile import choose_profile, plan_on_chosen_profile
 from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.planning.plan_along import plan_along
@@ -96,7 +97,7 @@ def plan_move(
     takes_its_profile = profile is None and guess is None
     if profile is None:
         profile = (
-            choose_profile(task) if guess is None else CycloidPolynomial.of_size(np.size(guess))
+            choose_profile(task) if guess is None else CycloidPolynomial.of_size(count_of("coefficients", guess))
         )
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
@@ -106,5 +107,9 @@ def plan_move(
         request = request.from_guess(guess)
     if takes_its_profile:
         return plan_on_chosen_profile(request)
-    refuse_too_short(task, arrives_at_rest(task, limit))
+    try:
+        refuse_too_short(task, arrives_at_rest(task, limit))
+    except InfeasibleTaskError as error:
+        offers = offers_for(request.problem(), request.starts, solver)
+        raise InfeasibleTaskError(error.what, offers) from None
     return plan_along(request)
