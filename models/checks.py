@@ -8,7 +8,13 @@ import operator
 import re
 import reprlib
 from collections.abc import Collection, Iterable
+from numbers import Real
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 _ALIKE = 0.55
 """Share of letters in common from which on a name is asked for."""
@@ -32,7 +38,7 @@ def cut(text: str, most: int) -> str:
 
 def quoted(value: object, most: int = MOST_QUOTED) -> str:
     """A value of a file as a message quotes it, without its middle where it is long."""
-    return cut(_SHORT.repr(value), most)
+    return cut(" ".join(_SHORT.repr(value).split()), most)
 
 
 def clipped(text: str, most: int = MOST_QUOTED) -> str:
@@ -44,8 +50,8 @@ def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: s
     """A finite number as a float; text and truth values are none."""
     wanted = f"number in {unit}" if unit else "number"
     try:
-        number = float(_no_text(_no_truth_value(value)))
-    except (TypeError, ValueError):
+        number = float(_single_number(value))
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} is {quoted(value)}; give a {wanted}") from None
     if not math.isfinite(number):
         raise ValueError(f"{name} is {value}; give a finite {wanted}")
@@ -61,11 +67,48 @@ def _no_truth_value(value: Any) -> Any:
     return value
 
 
-def _no_text(value: Any) -> Any:
-    """The value; TypeError for text, of which Python makes a number as well."""
-    if isinstance(value, str | bytes):
+def _single_number(value: Any) -> Any:
+    """The value; TypeError for text and what is masked, of which a number is made as well."""
+    if isinstance(value, str | bytes) or _is_masked(_no_truth_value(value)):
         raise TypeError(f"{quoted(value)} is no number")
     return value
+
+
+def _is_masked(value: Any) -> bool:
+    return hasattr(value, "filled")  # to name numpy's class would load numpy.ma
+
+
+def numbers(name: str, value: Any, wanted: str, *, infinite: bool = False) -> Array:
+    """Numbers as an array of floats, of any shape; ValueError that says what is wanted.
+
+    Text, truth values, complex numbers, dates, ragged and masked arrays, sets and generators are
+    none; nor is what is infinite or no number, unless that is allowed.
+    """
+    try:
+        if _is_masked(value):
+            raise TypeError
+        table = np.asarray(value)
+        if table.dtype.kind not in "iufO":
+            raise TypeError
+        if table.dtype.kind == "O":
+            table = np.reshape([_real(entry) for entry in table.flat], table.shape)
+        table = table.astype(float)
+    except Exception:  # an object's own __array__ may raise anything
+        raise ValueError(f"{name} {_is(name)} {quoted(value)}; give {wanted}") from None
+    if not infinite and not np.isfinite(table).all():
+        raise ValueError(f"{name} {_is(name)} {quoted(value)}; give {wanted}, all of them finite")
+    return table
+
+
+def _real(entry: Any) -> float:
+    if not isinstance(entry, Real) or isinstance(entry, bool):
+        raise TypeError(f"{entry!r} is no number")
+    return float(entry)
+
+
+def _is(name: str) -> str:
+    """The verb of a name, which is of one or of several."""
+    return "are" if name.endswith("s") else "is"
 
 
 def positive(name: str, value: Any, unit: str = "", most: float = math.inf, why: str = "") -> float:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import JointMotion, Plant
-from quietarm.ocp.checks import takes
+from quietarm.ocp.checks import numbers, quoted, takes
 from quietarm.ocp.limits import JERK, QUANTITIES, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion, check_profile
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
@@ -88,6 +88,10 @@ class Candidate(Ranged):
 
     def perturbed(self, errors: Mapping[str, float]) -> Candidate:
         """The same motion on the plant with these relative errors, and on no other."""
+        if not isinstance(errors, Mapping):
+            raise TypeError(
+                f"errors are {quoted(errors)}; give them by name, as {{'frequency': 0.1}}"
+            )
         return replace(self, task=self.task.certain, errors=dict(errors))
 
     def on(self, task: PointToPoint) -> Candidate:
@@ -229,7 +233,7 @@ class Candidate(Ranged):
         ValueError
             When the times do not increase from 0 or later, or the motion is a free one.
         """
-        at = np.atleast_1d(np.asarray(times, dtype=float))
+        at = np.atleast_1d(numbers("sample times", times, "numbers in s", infinite=True))
         duration = self.task.duration
         ordered = at.ndim == 1 and at.size and at[0] >= 0 and np.all(np.diff(at) > 0)
         if not (ordered and np.all(np.isfinite(at))):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import reprlib
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Set
 from dataclasses import is_dataclass
 from functools import wraps
 from os import PathLike
@@ -25,6 +25,7 @@ from quietarm.models.checks import (
     nearest,
     nearest_name,
     not_negative,
+    numbers,
     positive,
     quoted,
     spelling,
@@ -41,6 +42,7 @@ __all__ = [
     "Positive",
     "Share",
     "clipped",
+    "count_of",
     "cut",
     "finite",
     "has_no",
@@ -52,6 +54,7 @@ __all__ = [
     "nearest",
     "nearest_name",
     "not_negative",
+    "numbers",
     "positive",
     "quoted",
     "several",
@@ -76,15 +79,8 @@ def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.
         raise ValueError(
             "coefficients are a masked array; give plain numbers, as of its filled(value)"
         )
-    try:
-        table = np.asarray(coefficients)
-        if table.dtype.kind not in "iufO":
-            raise TypeError
-        table = table.astype(float)
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(
-            f"coefficients are {reprlib.repr(coefficients)}; give a row of numbers for each motion"
-        ) from None
+    wanted = "a row of numbers for each motion"
+    table = numbers("coefficients", coefficients, wanted, infinite=True)
     fits = table.ndim == 2 and (len(table) > 0 if columns is None else table.shape[1] == columns)
     if not fits:
         raise ValueError(
@@ -92,6 +88,14 @@ def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.
             "one row for each motion"
         )
     return table
+
+
+def count_of(name: str, values: ArrayLike) -> int:
+    """How many numbers are given; ValueError where no array can be made of them."""
+    try:
+        return int(np.size(values))
+    except Exception:  # an object's own __array__ may raise anything
+        return numbers(name, values, "a list of numbers").size
 
 
 def instance(name: str, value: Any, *kinds: type[T]) -> T:
@@ -108,8 +112,9 @@ def instance(name: str, value: Any, *kinds: type[T]) -> T:
 
 
 def several(name: str, value: Any, of: str) -> list[Any]:
-    """A sequence as a list; ValueError where it is a single value, or text."""
-    if isinstance(value, str) or not isinstance(value, Iterable):
+    """A sequence as a list; ValueError where it is a single value, text, or has no order."""
+    unordered = isinstance(value, str | bytes | Set | Mapping)
+    if unordered or not isinstance(value, Iterable):
         raise ValueError(f"{name} is {quoted(value)}; give a list of {of}")
     return list(value)
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import LINEAR, joint_unit
 from quietarm.models.validation import check_along, check_contract
-from quietarm.ocp.checks import finite, has_no, instance, positive, quoted, several, takes
+from quietarm.ocp.checks import finite, has_no, instance, numbers, positive, quoted, several, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
 from quietarm.ocp.limits import (
     QUANTITIES,
@@ -30,7 +30,7 @@ from quietarm.ocp.limits import (
     units_of_joints,
 )
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
-from quietarm.ocp.window import EQ_11, DefaultWindow, default_window
+from quietarm.ocp.window import EQ_11, DefaultWindow, default_window, longest_window
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,8 @@ class PointToPoint:
     residual_window : float, optional
         Time after arrival in which the residual is measured [s]. By default, or None, eq (11)'s
         1 s, or two periods of the nominal plant's slowest mode at the target where these are
-        longer; `dataclasses.replace` with another plant or target then works it out again.
+        longer, and less where a mode is too fast for 1 s; `dataclasses.replace` with another plant
+        or target then works it out again.
     initial, final : ModalState, optional
         States at the start (of every scenario) and wanted on arrival; at rest by default. The
         residual is measured from the free vibration that begins with `final`.
@@ -175,6 +176,8 @@ class PointToPoint:
             check_along(plant, self.start, self.target)
         if follows:
             window = min(default_window([(self.plant, self.target)]), DefaultWindow(most))
+            resolved = longest_window((plant, self.target) for plant in self.perturbed_plants)
+            window = min(window, DefaultWindow(resolved))
             object.__setattr__(self, "residual_window", window)
 
     def _check_limits(self) -> None:
@@ -258,7 +261,14 @@ class PointToPoint:
 
     def missed(self, arrival: ArrayLike) -> NDArray[np.float64]:
         """States on arrival less the wanted one."""
-        return np.asarray(arrival) - self.final_state
+        states = numbers("states on arrival", arrival, "numbers in m and m/s", infinite=True)
+        count = len(self.final_state)
+        if not states.ndim or states.shape[-1] != count:
+            raise ValueError(
+                f"states on arrival have shape {states.shape}; give (states, {count}), W and W' of "
+                "each mode"
+            )
+        return states - self.final_state
 
     @property
     def ranges(self) -> Mapping[str, float]:
@@ -289,7 +299,8 @@ class PointToPoint:
 
     def with_samples(self, samples: Iterable[Sequence[float]]) -> PointToPoint:
         """The move with these samples of its uncertainty."""
-        return replace(self, uncertainty=Uncertainty(self.ranges, tuple(map(tuple, samples))))
+        rows = tuple(several("samples", samples, "rows of errors, one for each scenario"))
+        return replace(self, uncertainty=Uncertainty(self.ranges, rows))
 
     @property
     def limits(self) -> tuple[Limit, ...]:

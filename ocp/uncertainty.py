@@ -17,7 +17,7 @@ from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Modes
 from quietarm.models.validation import check_contract, outputs_of
-from quietarm.ocp.checks import has_no, positive, quoted, takes
+from quietarm.ocp.checks import has_no, numbers, positive, quoted, takes
 
 FREQUENCY = "frequency"
 DAMPING = "damping"
@@ -261,7 +261,15 @@ class Uncertainty:
                 f"residual is evaluated; give at most {MOST_RANGES}"
             )
         corners = product(*((-size, size) for size in ranges.values()))
-        samples = tuple(tuple(map(float, sample)) for sample in self.samples or corners)
+        by_default = isinstance(self.samples, tuple | list) and not self.samples
+        rows = list(corners) if by_default else self.samples
+        table = numbers("samples", rows, "a row of errors for each scenario")
+        if table.ndim != 2:
+            raise ValueError(
+                f"samples have shape {table.shape}; give (scenarios, {len(ranges)}), a row of "
+                "errors for each scenario"
+            )
+        samples = tuple(map(tuple, table.tolist()))
         most = (1 + _SAME) * np.array(list(ranges.values()))
         for sample in samples:
             if len(sample) != len(most) or not np.all(np.abs(sample) <= most):

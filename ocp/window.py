@@ -30,7 +30,7 @@ def default_window(moves: Iterable[tuple[Plant, float]]) -> DefaultWindow:
 
     1 s as in equation (11), or two periods of the slowest mode that oscillates, with the joint held
     at the target, where these are longer. A plant that has a far faster mode as well has fewer, as
-    many as can be resolved.
+    many as can be resolved; of a mode too fast for 1 s the window is shorter.
     """
     longest = EQ_11
     most = math.inf
@@ -42,5 +42,16 @@ def default_window(moves: Iterable[tuple[Plant, float]]) -> DefaultWindow:
         modes = eigenvalues_at_rest(plant, target)
         swinging = [abs(mode) for mode in modes if mode.imag > 0]
         longest = max([longest, *(periods * math.tau / frequency for frequency in swinging)])
-        most = min(most, MOST_RADIANS / spare / max(map(abs, modes)))
-    return DefaultWindow(max(EQ_11, min(longest, most)))
+        most = min(most, MOST_RADIANS / max(map(abs, modes)))
+    if most < EQ_11:
+        return DefaultWindow(most / spare)
+    return DefaultWindow(max(EQ_11, min(longest, most / spare)))
+
+
+def longest_window(moves: Iterable[tuple[Plant, float]]) -> float:
+    """The longest residual window [s] that can be resolved for each of these plants and targets."""
+    rounding = 1e-9
+    fastest = (
+        max(map(abs, eigenvalues_at_rest(plant, target)), default=0.0) for plant, target in moves
+    )
+    return MOST_RADIANS * (1 - rounding) / max(fastest)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.compiled import Compiled
+from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import Limit, Quantity
@@ -234,6 +235,7 @@ class FloorProgram:
             return FreeMotion(times, acceleration[:-1], np.diff(acceleration) / h)
         return FreeMotion(times, np.diff(path(times, 1)) / h, np.zeros(len(h)))
 
+    @on_one_thread
     def solve(
         self, free: FreeMotion, limits: Sequence[Limit], minimise: str = ENERGY, warm: bool = False
     ) -> FreeSolution:

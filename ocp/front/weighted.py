@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.checks import not_negative, takes
+from quietarm.ocp.checks import not_negative, quoted, takes
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Place, Progress, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
@@ -104,7 +104,7 @@ def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
         both = [(of_residual, of_energy) for of_residual, of_energy in weights]
     except (TypeError, ValueError):
         raise ValueError(
-            f"weights are {weights!r}; give pairs of residual and energy, as [(1, 0), (1, 3)]"
+            f"weights are {quoted(weights)}; give pairs of residual and energy, as [(1, 0), (1, 3)]"
         ) from None
     pairs = [
         (not_negative("weight", of_residual), not_negative("weight", of_energy))

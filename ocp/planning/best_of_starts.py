@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
-from quietarm.ocp.limits import Limit, Ranged
+from quietarm.ocp.limits import RESIDUAL, Limit, Ranged
 from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.certify import OF_A_PLAN, by_cvodes, certify_one
 from quietarm.ocp.solvers.choice import stand_in
+from quietarm.ocp.solvers.least_excess import least_excess
 from quietarm.ocp.solvers.problem import STILL, NonlinearProgram, Scalarization, Solution
 from quietarm.ocp.solvers.solver import Solver
 
@@ -103,8 +104,8 @@ def solve_from_starts(
             least.update(least_peaks_of(problem, starts[:2], solver))
             yield solver, [solution.coefficients for solution in least.values()]
         substitute = stand_in(solver) if thorough else None
-        if substitute is not None:
-            yield substitute, starts[:2]
+        if substitute is not None and not is_beyond(problem, starts[0]):
+            yield _briefly(substitute, problem, tried), starts[:2]
 
     for attempting, guesses in attempts():
         if not guesses:
@@ -121,6 +122,26 @@ def solve_from_starts(
     solved.sort(key=lambda solution: minimum_of(solution, problem.scalarization))
     iterations = sum(solution.iterations for solution in tried)
     return replace(solved[0], iterations=iterations), solved
+
+
+def _briefly(
+    solver: Solver, problem: NonlinearProgram, tried: Sequence[Solution], iterations: int = 120
+) -> Solver:
+    """The solver with fewer iterations where all that was tried ended beyond a limit on the way."""
+    infeasible = all(solution.status is SolveStatus.INFEASIBLE for solution in tried)
+    if not (infeasible and problem.transcription.task.limits):
+        return solver
+    return replace(solver, iterations=min(iterations, solver.iterations))
+
+
+def is_beyond(problem: NonlinearProgram, start: Array, share: float = 0.05) -> bool:
+    """Whether linear programs say that the limits have to be wider by more than a share."""
+    if not any(limit.name != RESIDUAL for limit in problem.scalarization.limits):
+        return False
+    if problem.scalarization.peak is not None:
+        return False
+    excess = least_excess(problem, start)
+    return excess.holds and excess.share > share
 
 
 class Attempt(Protocol):
@@ -198,27 +219,52 @@ def explain(
 ) -> SolverFailedError:
     """The error for a problem that no start solved; other arguments as for `unmet`."""
     profile = problem.transcription.profile
-    limits = problem.scalarization.limits
     bound = problem.scalarization.bound
-
-    def resimulated(solution: Solution) -> Ranged:
-        return by_cvodes(problem.transcription, solution.coefficients)
-
-    peaks = true_peaks(limits, least, resimulated)
-    confirmed: dict[str, float] = {}
-    for limit in limits:
-        peak = peaks.get(limit.name)
-        if peak is None:
-            continue
-        start = least[limit.name].coefficients
-        if _has_a_plan(_widened(problem, limit, peak), start, solver):
-            confirmed[limit.name] = peak
     sought = Sought(
         f"motion of {profile.amount}",
         f"more {profile.term}s or a longer duration",
         box="" if bound is None else f", coefficients within +-{bound:g}",
     )
-    return unmet(sought, limits, tried, confirmed)
+    confirmed = _confirm(problem, least, solver)
+    return unmet(sought, problem.scalarization.limits, tried, confirmed)
+
+
+def _confirm(
+    problem: NonlinearProgram, least: Mapping[str, Solution], solver: Solver
+) -> dict[str, float]:
+    """Those least peaks with which there is a plan, as CVODES finds them."""
+    limits = problem.scalarization.limits
+
+    def resimulated(solution: Solution) -> Ranged:
+        return by_cvodes(problem.transcription, solution.coefficients)
+
+    peaks = true_peaks(limits, least, resimulated)
+    return {
+        limit.name: peaks[limit.name]
+        for limit in limits
+        if limit.name in peaks
+        and has_a_plan(
+            _widened(problem, limit, peaks[limit.name]),
+            least[limit.name].coefficients,
+            solver,
+        )
+    }
+
+
+def offers_for(problem: NonlinearProgram, starts: Sequence[Array], solver: Solver) -> str:
+    """Limits with which there is a plan, each with all else unchanged; nothing where none is."""
+    least = least_peaks_of(problem, starts[:2], solver)
+    return _offers(problem.scalarization.limits, _confirm(problem, least, solver))
+
+
+def _offers(limits: Sequence[Limit], least: Mapping[str, float]) -> str:
+    """Least peaks that a limit does not keep, as limits that would do."""
+    remedies = [
+        f"{limit.label} limit {limit.describe(least[limit.name] * _ROOM)}"
+        for limit in limits
+        if limit.name in least and not limit.keeps(least[limit.name], at_rest=STILL)
+    ]
+    return f"feasible with all else unchanged: {' or '.join(remedies)}" if remedies else ""
 
 
 def _widened(problem: NonlinearProgram, limit: Limit, peak: float) -> NonlinearProgram:
@@ -229,7 +275,7 @@ def _widened(problem: NonlinearProgram, limit: Limit, peak: float) -> NonlinearP
     return _with_scalarization(problem, limits=replaced)
 
 
-def _has_a_plan(
+def has_a_plan(
     problem: NonlinearProgram, start: Array, solver: Solver, most_refined: int = 2
 ) -> bool:
     """Whether a plan is found from one start, and CVODES confirms it.
@@ -271,20 +317,17 @@ def unmet(
         if sought.otherwise:
             ended = f"{ended.partition(';')[0]}; {sought.otherwise}"
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
-    bounds = ", ".join(
-        f"{limit.label} {'<=' if limit.is_peak else 'within'} {limit.bounds}"
-        for limit in limits
-        if limit.size < np.inf
-    )
-    remedies = [
-        f"{limit.label} limit {limit.describe(least[limit.name] * _ROOM)}"
-        for limit in limits
-        if limit.name in least and not limit.keeps(least[limit.name], at_rest=STILL)
-    ]
-    feasible = "removing any single one of these limits does not help, so widen several"
-    if remedies:
-        feasible = f"feasible with all else unchanged: {' or '.join(remedies)}"
+    bounds = ", ".join(_stated(limit) for limit in limits if limit.size < np.inf)
+    several = "removing any single one of these limits does not help, so widen several"
+    feasible = _offers(limits, least) or several
     return InfeasibleTaskError(
         f"found no {sought.motion} with {bounds}{sought.box}; {feasible}",
         f"{sought.remedy} may also do",
     )
+
+
+def _stated(limit: Limit) -> str:
+    """A limit in words."""
+    if limit.name == RESIDUAL and limit.size == 0:
+        return "the tip at rest on arrival"
+    return f"{limit.label} {'<=' if limit.is_peak else 'within'} {limit.bounds}"

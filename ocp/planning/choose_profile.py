@@ -20,12 +20,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
-from quietarm.ocp.planning.best_of_starts import best_of_starts
-from quietarm.ocp.planning.least_time import fitting_spline, least_time
+from quietarm.ocp.planning.best_of_starts import best_of_starts, has_a_plan
+from quietarm.ocp.planning.least_time import fitting_spline, least_time, shaped_duration
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.request import PlanRequest
-from quietarm.ocp.planning.too_short import refuse_too_short
+from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
@@ -61,7 +61,7 @@ def plan_on_chosen_profile(request: PlanRequest) -> Plan:
     InfeasibleTaskError, where no profile does, has the duration that would do.
     """
     try:
-        refuse_too_short(request.task)
+        refuse_too_short(request.task, arrives_at_rest(request.task, request.residual_limit))
         return _plan_on_first_that_will_do(request)
     except InfeasibleTaskError as error:
         raise _with_a_duration(error, request) from None
@@ -168,30 +168,29 @@ def _state_terms(plan: Plan, settings: Mapping[str, Setting] | None = None) -> P
 
 def _with_a_duration(error: InfeasibleTaskError, request: PlanRequest) -> InfeasibleTaskError:
     """The error with the duration that would do, where a longer one does."""
-    if not request.task.limits or request.setup.bound is not None:
-        return InfeasibleTaskError(error.what)
-    duration = _feasible_duration(request)
-    remedy = f"a duration of {duration:g} s will do" if duration else ""
     motion = f"motion of {more_terms(request.task).amount}"
     what = error.what.replace(motion, f"{motion} or on a spline", 1)
-    return InfeasibleTaskError(what, remedy)
+    if not request.task.limits or request.setup.bound is not None:
+        return InfeasibleTaskError(error.what)
+    return InfeasibleTaskError(what, _remedy(request))
 
 
-def _feasible_duration(
-    request: PlanRequest, margins: tuple[float, ...] = (0.01, 0.05)
-) -> float | None:
-    """A duration [s] for which there is a plan, None if none.
-
-    It is longer than the least time by one of these margins, which are shares of it.
-    """
+def _remedy(request: PlanRequest) -> str:
+    """The duration that will do, or may, in words; nothing where none was found at little cost."""
     task = request.task
     try:
-        least = least_time(task, request.residual_limit.size, None, 2e-3)
+        if task.plant.steps_at_once > 1:  # to compile a spline takes longer than to ask again
+            return f"a duration of {_rounded_up(shaped_duration(task))} s may do"
+        least = least_time(task, request.residual_limit.size, None, 1e-2, rounds=0)
     except ValueError:
-        return None
-    for margin in margins:
-        duration = float(f"{(1 + margin) * least.duration:.3g}")
-        lasting = replace(request, task=replace(task, duration=duration))
-        if _try_along(lasting, least.profile, least.coefficients) is not None:
-            return duration
-    return None
+        return ""
+    duration = _rounded_up(least.duration)
+    lasting = request.on(replace(task, duration=float(duration))).along(least.profile)
+    if has_a_plan(lasting.problem(), least.coefficients, request.setup.solver):
+        return f"a duration of {duration} s will do"
+    return ""
+
+
+def _rounded_up(duration: float, margin: float = 0.05) -> str:
+    """A duration [s] that is longer by a share, so that a plan has room, in three digits."""
+    return f"{(1 + margin) * duration:.3g}"

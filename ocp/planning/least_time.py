@@ -53,9 +53,13 @@ class LeastTime(NamedTuple):
 
 
 def least_time(
-    task: PointToPoint, residual_limit: float, bound: float | None, tolerance: float
+    task: PointToPoint,
+    residual_limit: float,
+    bound: float | None,
+    tolerance: float,
+    rounds: int = _ROUNDS,
 ) -> LeastTime:
-    """The least time of a task within its limits, to a share of it.
+    """The least time of a task within its limits, to a share of it, after so many rounds of knots.
 
     ValueError where the solver cannot resolve a move as long as its limits ask for.
     """
@@ -63,7 +67,7 @@ def least_time(
     low = rigid_duration(task) or shaped.duration / _GROWTH
     durations = _Durations(task, JointSpline(_knots_at(shaped)), residual_limit, bound)
     best = durations.least(low, shaped.duration, tolerance)
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         profile = JointSpline(_knots_along(best.profile, best.coefficients))
         following = _Durations(task, profile, residual_limit, bound)
         shorter = following.least(max(low, best.duration / _GROWTH), best.duration, tolerance)
@@ -91,6 +95,14 @@ def fitting_spline(
             return profile, excess.coefficients
         knots = _knots_along(profile, excess.coefficients)
     return None
+
+
+def shaped_duration(task: PointToPoint) -> float:
+    """How long the rigid joint's fastest motion takes behind a ZV shaper for every mode [s].
+
+    ValueError where nothing limits the joint.
+    """
+    return _shaped_rigid_motion(task).duration
 
 
 def _shaped_rigid_motion(task: PointToPoint) -> RigidMotion:

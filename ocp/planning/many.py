@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.ocp.checks import takes
 from quietarm.ocp.energy import Energy
-from quietarm.ocp.errors import SolverFailedError, SolveStatus
+from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.limits import QUANTITIES, Quantity
-from quietarm.ocp.planning.best_of_starts import best_of_starts
+from quietarm.ocp.planning.best_of_starts import best_of_starts, is_beyond
 from quietarm.ocp.planning.certify import Certified, FinerFigures, certify, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
 from quietarm.ocp.solvers.choice import stand_in
@@ -124,11 +125,34 @@ def plan_moves(
     substitute = stand_in(solver)
     if substitute is not None:
         attempts.append((substitute, plain))
+    hopeless = _refuse_the_unsolved(problems, solutions)
     for attempting, starts_of_all in attempts:
-        _solve_the_unsolved(problems, solutions, starts_of_all, attempting)
+        _solve_the_unsolved(problems, solutions, starts_of_all, attempting, hopeless)
     moves = _Table(problems, solutions)
     moves.certify(solver, guesses)
     return moves.to_moves()
+
+
+def _refuse_the_unsolved(
+    problems: Sequence[NonlinearProgram], solutions: list[Solution]
+) -> set[int]:
+    """Say of moves without a solution that they cannot be, where that needs no solver."""
+    refused = set[int]()
+    for i, solution in enumerate(solutions):
+        if solution.status.solved:
+            continue
+        task = problems[i].transcription.task
+        limit = ResidualLimit(problems[i].scalarization.residual_limit)
+        try:
+            refuse_too_short(task, arrives_at_rest(task, limit))
+        except InfeasibleTaskError as error:
+            refused.add(i)
+            infeasible = SolveStatus.INFEASIBLE
+            solutions[i] = replace(solution, status=infeasible, reason=str(error))
+        else:
+            if is_beyond(problems[i], solution.coefficients):
+                refused.add(i)
+    return refused
 
 
 def _solve_the_unsolved(
@@ -136,9 +160,14 @@ def _solve_the_unsolved(
     solutions: list[Solution],
     starts: Sequence[Array],
     solver: Solver,
+    hopeless: Collection[int],
 ) -> None:
-    """Solve what has no solution yet from these starts."""
-    unsolved = [i for i, solution in enumerate(solutions) if not solution.status.solved]
+    """Solve what has no solution yet from these starts, but for what is hopeless."""
+    unsolved = [
+        i
+        for i, solution in enumerate(solutions)
+        if not solution.status.solved and i not in hopeless
+    ]
     if not unsolved or not starts:
         return
     again = [problems[i] for i in unsolved]

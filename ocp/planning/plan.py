@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import joint_label
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import CountFromOne, NotNegative, positive, takes
+from quietarm.ocp.checks import CountFromOne, NotNegative, count_of, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.files import write_whole
@@ -31,7 +31,7 @@ from quietarm.ocp.robustness import Sensitivity, Worst, peaks_between, sensitivi
 from quietarm.ocp.saved import to_html
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.trajectory import Trajectory
-from quietarm.ocp.solvers.problem import STILL
+from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS, STILL
 from quietarm.ocp.task import PointToPoint
 
 _MOST_ROWS = 500_000
@@ -135,12 +135,25 @@ class Plan(MotionAnswer):
 
     @cached_property
     def verification(self) -> Verification:
-        """Distance of its figures by fixed steps from those by CVODES."""
-        evaluator = self.candidate.by_steps(self.steps, quantities=())
+        """Distance of its figures by fixed steps from those by CVODES.
+
+        The steps are doubled, at most three times, while they do not agree with CVODES.
+        """
+        check = self._verify_by(self.steps)
+        for doublings in (1, 2, 3):
+            steps = 2**doublings * self.steps
+            if check.agrees or steps > MOST_SOLVER_STEPS:
+                break
+            check = self._verify_by(steps)
+        return check
+
+    def _verify_by(self, steps: int) -> Verification:
+        """The same by so many steps."""
+        evaluator = self.candidate.by_steps(steps, quantities=())
         evaluation = evaluator([self.coefficients])
         energy = float(evaluation.energy[0, 0])
         residual = float(evaluation.residual.max())
-        return Verification.between(self.steps, energy, residual, self.motion)
+        return Verification.between(steps, energy, residual, self.motion)
 
     def on(self, task: PointToPoint) -> Plan:
         """The same motion for an uncertain task with the same nominal plant."""
@@ -271,7 +284,7 @@ def evaluate_coefficients(
     """
     began = time.perf_counter()
     if profile is None:
-        profile = CycloidPolynomial.of_size(np.size(coefficients))
+        profile = CycloidPolynomial.of_size(count_of("coefficients", coefficients))
     candidate = Candidate.of_profile(task, profile, coefficients)
     plan = Plan.of_candidate(
         candidate,

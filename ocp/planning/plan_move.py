@@ -7,16 +7,18 @@ solutions from several starts (`best_of_starts`), of which CVODES has the last w
 
 from __future__ import annotations
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from quietarm.ocp.checks import takes
+from quietarm.ocp.checks import count_of, takes
+from quietarm.ocp.errors import InfeasibleTaskError
+from quietarm.ocp.planning.best_of_starts import offers_for
 from quietarm.ocp.planning.choose_profile import choose_profile, plan_on_chosen_profile
 from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.request import PlanRequest
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.solvers.solver import Solver
@@ -95,7 +97,9 @@ def plan_move(
     takes_its_profile = profile is None and guess is None
     if profile is None:
         profile = (
-            choose_profile(task) if guess is None else CycloidPolynomial.of_size(np.size(guess))
+            choose_profile(task)
+            if guess is None
+            else CycloidPolynomial.of_size(count_of("coefficients", guess))
         )
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
@@ -103,4 +107,11 @@ def plan_move(
     request = PlanRequest(task, profile, setup, limit)
     if guess is not None:
         request = request.from_guess(guess)
-    return plan_on_chosen_profile(request) if takes_its_profile else plan_along(request)
+    if takes_its_profile:
+        return plan_on_chosen_profile(request)
+    try:
+        refuse_too_short(task, arrives_at_rest(task, limit))
+    except InfeasibleTaskError as error:
+        offers = offers_for(request.problem(), request.starts, solver)
+        raise InfeasibleTaskError(error.what, offers) from None
+    return plan_along(request)

@@ -1,26 +1,94 @@
-"""What no solver has to be asked: a duration in which not even a rigid joint gets there."""
+"""What no solver has to be asked: a task that not even a joint without vibration can do."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 from quietarm.ocp.errors import InfeasibleTaskError
-from quietarm.ocp.limits import TORQUE_SPEED
+from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
 from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.rigid_motion import rigid_duration
+from quietarm.ocp.planning.rigid_pass import least_duration, values_at_rest
 from quietarm.ocp.task import PointToPoint
 
 _OF_A_RIGID_JOINT = ("speed", "acceleration", "jerk", TORQUE_SPEED)
+_SURE = 0.95
+"""Share of the least duration by torque and deflection that is surely too short: the equations are
+not quite linear, and the bound is a sum over places."""
 
 
-def refuse_too_short(task: PointToPoint) -> None:
+def arrives_at_rest(task: PointToPoint, residual_limit: ResidualLimit) -> bool:
+    """Whether the tip is at rest before and after the move, in all that a task asks for."""
+    still = residual_limit.size == 0 and not residual_limit.adapts
+    return still and task.initial is None and task.final is None and task.uncertainty is None
+
+
+def refuse_too_short(task: PointToPoint, at_rest: bool = False) -> None:
     """InfeasibleTaskError where a rigid joint within the task's limits takes longer.
 
-    A duration that is shorter by no more than a plan may exceed its limits is not refused.
+    A duration that is shorter by no more than a plan may exceed its limits is not refused. Limits
+    of torque and deflection count in full only where the tip arrives at rest.
     """
-    least = rigid_duration(task)
-    if (1 + OVERRUN) * task.duration >= least:
+    if not task.limits:
         return
-    names = [limit.label for limit in task.limits if limit.name in _OF_A_RIGID_JOINT]
+    _refuse_to_hold(task)
+    by_joints = rigid_duration(task)
+    by_plant = _SURE * least_duration(task, at_rest)
+    if (1 + OVERRUN) * task.duration >= by_joints and task.duration >= by_plant:
+        return
+    of_a_joint = [limit for limit in task.limits if limit.name in _OF_A_RIGID_JOINT]
+    limits = of_a_joint if by_joints >= by_plant else task.limits
+    names = ", ".join(limit.label for limit in limits)
+    needed = _needed(task, at_rest) if len(task.limits) == 1 else ""
     raise InfeasibleTaskError(
-        f"{task.duration:g} s is too short: within the limits of {', '.join(names)} even a rigid "
-        f"joint takes {least:.4g} s; give a longer duration or wider limits"
+        f"{task.duration:g} s is too short: within the limits of {names} even a rigid "
+        f"joint takes {max(by_joints, by_plant):.4g} s{needed}; give a longer duration or wider "
+        "limits"
     )
+
+
+def _needed(task: PointToPoint, at_rest: bool, rounds: int = 12) -> str:
+    """How wide the only limit has to be at least, in words; nothing where no number tells that.
+
+    The least duration falls with a power of the size, which follows from two sizes.
+    """
+    (limit,) = task.limits
+    if not limit.is_peak or limit.name not in QUANTITIES:
+        return ""
+
+    def excess(logarithm: float) -> float:
+        wider = replace(task, **{limit.quantity.limit: math.exp(logarithm)})
+        least = max(rigid_duration(wider), least_duration(wider, at_rest))
+        return math.log(least / task.duration) if least > 0 else -math.inf
+
+    sizes = [math.log(limit.size)]
+    excesses = [excess(sizes[0])]
+    sizes.append(sizes[0] + 2 * excesses[0])
+    for _ in range(rounds):
+        excesses.append(excess(sizes[-1]))
+        if not math.isfinite(excesses[-1]):
+            return ""
+        if abs(excesses[-1]) < 2e-4:
+            size = limit.describe(math.exp(sizes[-1]))
+            return f", and in {task.duration:g} s it takes {size} or more"
+        slope = (excesses[-1] - excesses[-2]) / (sizes[-1] - sizes[-2])
+        sizes.append(sizes[-1] - excesses[-1] / slope)
+    return ""
+
+
+def _refuse_to_hold(task: PointToPoint) -> None:
+    """InfeasibleTaskError where a limit is passed by the machine that stands still at an end."""
+    for limit in task.limits:
+        if limit.quantity.derivative is not None:
+            continue
+        values = values_at_rest(task, limit)
+        peaks = limit.peak(values.min(axis=0, initial=0.0), values.max(axis=0, initial=0.0))
+        for place, peak in zip(("start", "target"), peaks.tolist()):
+            if not limit.keeps(peak, OVERRUN):
+                raise InfeasibleTaskError(
+                    f"to stand still at its {place} the machine takes {limit.label} "
+                    f"{limit.describe(peak)}, above the limit of {limit.bounds}; give a wider "
+                    f"limit or another {place}"
+                )

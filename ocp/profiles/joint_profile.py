@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.interrupts import interruptible
 from quietarm.models import Expression, JointMotion
 from quietarm.models.final import refuse_overridden
-from quietarm.ocp.checks import finite
+from quietarm.ocp.checks import finite, numbers, positive, whole
 from quietarm.ocp.profiles.differentiate import Derivatives, differentiate
 
 Values = Sequence[Expression]
@@ -189,13 +188,9 @@ class JointProfile(ABC):
 
         ValueError where `checked` refuses the coefficients or the duration.
         """
-        return JointPath(
-            self,
-            self.checked(coefficients, duration),
-            start,
-            target,
-            duration,
-        )
+        begin, end = finite("start", start), finite("target", target)
+        lasting = positive("duration", duration, "s")
+        return JointPath(self, self.checked(coefficients, lasting), begin, end, lasting)
 
     def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
         """The coefficients as a tuple of `size` finite floats; ValueError otherwise.
@@ -208,14 +203,7 @@ class JointProfile(ABC):
                 f"{math.ceil(1e4 * self.least_duration) / 1e4:g} s or more"
             )
         counted = f"{self.size} number{'s' if self.size != 1 else ''}"
-        try:
-            if np.asarray(coefficients).dtype.kind in "USb":  # text and truth values
-                raise TypeError
-            values = np.atleast_1d(np.asarray(coefficients, dtype=float))
-        except (TypeError, ValueError):
-            raise ValueError(
-                f"coefficients are {reprlib.repr(coefficients)}; give {counted}"
-            ) from None
+        values = np.atleast_1d(numbers("coefficients", coefficients, counted, infinite=True))
         if values.shape != (self.size,):
             raise ValueError(
                 f"got {values.size} coefficients for a profile of {self.size}; give {counted}"
@@ -247,9 +235,9 @@ class JointPath:
 
         Times [s] have any shape, as has what is returned.
         """
-        if order not in range(4):
+        if whole("derivative order", order, 0) not in range(4):
             raise ValueError(f"derivative order is {order!r}; give 0, 1, 2 or 3")
-        t = np.asarray(time, dtype=float)
+        t = numbers("times", time, "numbers in s")
         fraction: Any = ca.DM(np.clip(t.ravel() / self.duration, 0.0, 1.0))
         arguments = self.coefficients, fraction, self.start, self.target, self.duration
         motion = self.profile.motion(*arguments, jerk=order == 3)

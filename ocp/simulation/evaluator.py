@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
 from quietarm.models.compiled import RECENT
-from quietarm.ocp.checks import instance, table_of, takes, whole
+from quietarm.models.one_thread import on_one_thread
+from quietarm.ocp.checks import instance, numbers, table_of, takes, whole
 from quietarm.ocp.cost import COST
 from quietarm.ocp.limits import RESIDUAL, Limit, Quantity
 from quietarm.ocp.profiles.check_profile import check_profile
@@ -156,6 +157,7 @@ class Evaluator:
         return [vibration.rows for vibration in self.vibrations]
 
     @interruptible
+    @on_one_thread
     def __call__(self, coefficients: ArrayLike, errors: ArrayLike | None = None) -> Evaluation:
         """Evaluate candidates.
 
@@ -172,7 +174,7 @@ class Evaluator:
             When they are no plain numbers, or their shape does not fit the profile.
         """
         table = table_of(coefficients, self.simulation.profile.size)
-        scenarios = self.scenarios if errors is None else np.asarray(errors, dtype=float)
+        scenarios = self.scenarios if errors is None else self._checked(errors)
         moves = self.rows
         if len(moves) == 1:
             moves = np.repeat(moves, len(table), axis=0)
@@ -192,6 +194,15 @@ class Evaluator:
             errors=None if errors is None else scenarios,
         )
 
+    def _checked(self, errors: ArrayLike) -> Array:
+        """Errors of the plant, a row for each scenario."""
+        table = numbers("errors", errors, "a row of numbers for each scenario")
+        count = self.scenarios.shape[1]
+        if table.ndim != 2 or table.shape[1] != count:
+            raise ValueError(f"errors have shape {table.shape}; give (scenarios, {count})")
+        return table
+
+    @on_one_thread
     def of_values(self, values: Values, offset: ArrayLike = 0.0) -> Evaluation:
         """What one candidate's values in the task's scenarios mean, a row a scenario.
 

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.ocp.checks import takes
+from quietarm.models.one_thread import on_one_thread
+from quietarm.ocp.checks import numbers, takes
 from quietarm.ocp.simulation.collocation import modal_system
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.window import MOST_RADIANS
@@ -67,9 +68,10 @@ class FreeVibration:
     """
 
     @takes(plant=Plant)
+    @on_one_thread
     def __init__(self, plant: Plant, angle: ArrayLike, window: ArrayLike = 0.0) -> None:
-        self.window: Array = np.asarray(window, dtype=float)
-        angles = np.atleast_1d(np.asarray(angle, dtype=float))
+        self.window: Array = numbers("residual window", window, "numbers in s")
+        angles = np.atleast_1d(numbers("angle", angle, "numbers in rad"))
         modes = plant.modes
         of_rates = np.zeros((len(angles), 2 * modes, 2 * modes))
         of_rates[:, :modes, modes:] = np.eye(modes)
@@ -108,6 +110,7 @@ class FreeVibration:
         # These miss at most 5e-5 of a peak.
         return self.rows_every(radians=0.02)
 
+    @on_one_thread
     def rows_every(self, radians: float) -> Array:
         """The same at another distance [rad of the fastest mode]; the miss is its square by 8."""
         samples = max(2, math.ceil(self._radians / radians) + 1)  # both ends at least
@@ -116,13 +119,14 @@ class FreeVibration:
         rows.setflags(write=False)
         return rows
 
+    @on_one_thread
     def peak(self, states: ArrayLike) -> Array:
         """F1 [m]: the largest absolute displacement of a tip within the window.
 
         States on arrival have shape (2 * modes,) or (n, 2 * modes), many of one vibration or one of
         each; the peaks () or (n,), between the samples where a tip turns back there.
         """
-        rows_of_states = np.asarray(states, dtype=float)
+        rows_of_states = self._checked("states", states)
         state = rows_of_states.reshape(-1, 1, rows_of_states.shape[-1])
         sampling = self._sampling
         starts = powers(state, sampling.stride, sampling.columns)
@@ -134,7 +138,18 @@ class FreeVibration:
             starts = starts @ sampling.following
         return most.reshape(rows_of_states.shape[:-1])
 
+    def _checked(self, name: str, states: ArrayLike) -> Array:
+        """States as numbers; those of motions that were not finite stay so."""
+        rows = numbers(name, states, "numbers in m and m/s", infinite=True)
+        count = self.matrix.shape[-1]
+        if not rows.ndim or rows.shape[-1] != count:
+            raise ValueError(
+                f"{name} has shape {rows.shape}; give {count} numbers, W and W' of each mode"
+            )
+        return rows
+
     @cached_property
+    @on_one_thread
     def _sampling(self) -> _Sampling:
         matrix, tips = (
             matrices.reshape(-1, *matrices.shape[-2:]) for matrices in (self.matrix, self.tips)
@@ -160,10 +175,11 @@ class FreeVibration:
             np.linalg.matrix_power(stride, columns),
         )
 
+    @on_one_thread
     def states(self, state: ArrayLike, times: ArrayLike) -> Array:
         """The states at times since arrival [s], shape (times, 2 * modes), of one vibration."""
-        at = np.atleast_1d(np.asarray(times, dtype=float))
-        first = np.asarray(state, dtype=float)
+        at = np.atleast_1d(numbers("times", times, "numbers in s"))
+        first = self._checked("state", state)
         at_once = 4096
         parts = np.split(at, range(at_once, len(at), at_once))
         return np.concatenate(

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models.compiled import RECENT, Compiled
+from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.cost import COST
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.evaluator import Values
@@ -89,6 +90,7 @@ class Batch:
         """How many values of limited quantities there are."""
         return max((place.stop for place in self.places.values()), default=0)
 
+    @on_one_thread
     def even_axes(self, boxed: bool = False) -> Array:
         """Axes along which the path's speed changes alike and independently.
 
@@ -121,6 +123,7 @@ class Batch:
         speeds = [table.get((1, n), ca.DM.zeros(1, len(weights))).full()[0] for n in range(size)]
         return (weights * np.array(speeds)).T
 
+    @on_one_thread
     def derivatives(
         self,
         coefficients: Array,

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models.compiled import Compiled
+from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import RESIDUAL
@@ -76,6 +77,7 @@ class Ipopt(Solver):
 
     name: ClassVar[str] = "ipopt"
 
+    @on_one_thread
     def solve(
         self,
         problems: Sequence[NonlinearProgram],

@@ -14,6 +14,7 @@ import daqp
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.batch import Derivatives
 from quietarm.ocp.solvers.problem import NonlinearProgram
@@ -33,6 +34,7 @@ class Excess(NamedTuple):
     holds: bool
 
 
+@on_one_thread
 def least_excess(problem: NonlinearProgram, start: Array, reach: float = 3.0) -> Excess:
     """The least share by which all limits but the residual's have to be widened, from a start.
 

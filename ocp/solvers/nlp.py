@@ -66,14 +66,13 @@ def compile_nlp(problem: Mapping[str, ca.MX], options: Options) -> ca.Function:
 
 @contextmanager
 def _on_one_thread() -> Iterator[None]:
-    """Let casadi load IPOPT with one thread for its linear algebra, or as many as are asked for.
+    """Let casadi load IPOPT with one thread for its linear algebra, as `on_one_thread` has it.
 
-    Its matrices are small: a second thread shortens nothing, and keeps a core from other processes.
     OpenBLAS reads the variable once, when it is loaded with the first solver.
     """
     name = "OPENBLAS_NUM_THREADS"
     chosen = os.environ.get(name)
-    os.environ[name] = chosen or os.environ.get("OMP_NUM_THREADS", "1")
+    os.environ[name] = "1"
     try:
         yield
     finally:

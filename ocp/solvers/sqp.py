@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, Course, End, Ended, minimise
@@ -36,6 +37,7 @@ class Sqp(Solver):
 
     name: ClassVar[str] = "sqp"
 
+    @on_one_thread
     def solve(
         self,
         problems: Sequence[NonlinearProgram],
