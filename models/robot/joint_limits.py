@@ -143,7 +143,8 @@ class _Reader:
         """Read the entries of a joint."""
         if not isinstance(table, dict):
             raise ValueError(
-                f"limits of {clipped(joint)} are {quoted(table)}; give has_velocity_limits and so on"
+                f"limits of {clipped(joint)} are {quoted(table)}; give has_velocity_limits and so "
+                "on"
             )
         for name in table:
             if name not in _KNOWN:
