@@ -113,10 +113,11 @@ def _limits(given: Mapping[str, Any], folder: Path) -> JointLimits:
 
 
 def _driven(given: Mapping[str, Any]) -> Collection[str]:
-    """The joints that are driven, named or not."""
+    """The joints that are driven, named or not; those that mimic others are not."""
     passive = {*given.get("springs", ()), *given.get("held", ())}
-    moving = read_urdf(given["urdf"]).moving
-    return given.get("joints") or [name for name in moving if name not in passive]
+    urdf = read_urdf(given["urdf"])
+    leading = [name for name in urdf.moving if urdf.joints[name].mimics is None]
+    return given.get("joints") or [name for name in leading if name not in passive]
 
 
 def _beam(entry: Any, what: str) -> Beam:
