@@ -276,6 +276,10 @@ class Plant(ABC):
         """The kind of each of the joints, by default `joint`."""
         return (self.joint,) * len(self.joint_names)
 
+    def kind_of(self, joint: str) -> str:
+        """Return the kind of a joint by its name, also of one that follows another."""
+        return dict(zip(self.joint_names, self.joint_kinds)).get(joint, self.joint)
+
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The structure seen from above, by default a straight link of 1 m for each tip.
 

@@ -6,21 +6,17 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
-from quietarm.models.joint_motion import LINEAR, ROTARY, JointMotion
-from quietarm.models.robot.urdf import PRISMATIC, Urdf
+from quietarm.models.joint_motion import JointMotion
+from quietarm.models.robot.urdf import Urdf
 
 
 @dataclass(frozen=True)
 class Following:
-    """A joint's position: multiplier times that of the joint that leads, plus offset [rad or m].
-
-    `kind` is that of the joint which follows.
-    """
+    """A joint's position: multiplier times that of the joint that leads, plus offset [rad or m]."""
 
     leader: str
     multiplier: float = 1.0
     offset: float = 0.0
-    kind: str = ROTARY
 
     def position(self, leading: float) -> float:
         """The joint's position where the leader has one."""
@@ -60,8 +56,7 @@ def led_by(urdf: Urdf, joint: str, held: Collection[str] = ()) -> Following:
         offset += multiplier * mimic.offset
         multiplier *= mimic.multiplier
         leader = mimic.joint
-    slides = joint in urdf.joints and urdf.joints[joint].kind == PRISMATIC
-    return Following(leader, multiplier, offset, LINEAR if slides else ROTARY)
+    return Following(leader, multiplier, offset)
 
 
 def followers_of(urdf: Urdf, held: Collection[str] = ()) -> dict[str, Following]:

@@ -655,7 +655,11 @@ class RobotOnPath(Plant):
     @property
     def joint_kinds(self) -> tuple[str, ...]:
         """The kind of every driven joint."""
-        return tuple(self.robot.kind_of(name) for name in self.joint_names)
+        return tuple(map(self.kind_of, self.joint_names))
+
+    def kind_of(self, joint: str) -> str:
+        """Return the kind of a joint of the URDF by its name."""
+        return self.robot.kind_of(joint)
 
     @property
     def measured(self) -> dict[str, float]:

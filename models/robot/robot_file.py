@@ -191,11 +191,11 @@ def _ranges_of_leaders(
 
 
 def _driven(given: Mapping[str, Any]) -> Collection[str]:
-    """The joints that are driven, named or not."""
+    """The joints that are driven, named or not; those that mimic others are not."""
     passive = {*given.get("springs", ()), *given.get("held", ())}
-    description = read_urdf(given["urdf"])
-    free = [name for name in description.moving if description.joints[name].mimics is None]
-    return given.get("joints") or [name for name in free if name not in passive]
+    urdf = read_urdf(given["urdf"])
+    leading = [name for name in urdf.moving if urdf.joints[name].mimics is None]
+    return given.get("joints") or [name for name in leading if name not in passive]
 
 
 def _beam(entry: Any, what: str) -> Beam:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR, ROTARY, joint_label
+from quietarm.models.joint_motion import LINEAR, ROTARY, JointMotion, joint_label
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.escapes import csv_table, matlab_names, yaml_string
@@ -66,7 +66,7 @@ def columns_of(text: str, plant: Plant) -> dict[str, Units]:
 
     ValueError where one or its unit is unknown, or one comes twice.
     """
-    kinds = (*plant.joint_kinds, *(how.kind for _, how in plant.followers.values()))
+    kinds = [*plant.joint_kinds, *map(plant.kind_of, plant.followers)]
     by_kind = {kind: units_of(kind, plant.tip_unit) for kind in dict.fromkeys(kinds)}
     words = {joint_label(name, kind): name for kind in by_kind for name in by_kind[kind]}
     words |= {name: name for units in by_kind.values() for name in units}
@@ -110,6 +110,7 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     tips = _tips(plan, times)
     plant = plan.task.plant
     sample = motion.sample
+    following = {name: how.motion(sample.joints[at]) for name, (at, how) in plant.followers.items()}
     values: dict[str, list[Array]] = {
         "time": [motion.time],
         "angle": [joint.angle for joint in sample.joints],
@@ -120,25 +121,20 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
         "power": [motion.power],
     }
     following = {name: how.motion(sample.joints[at]) for name, (at, how) in plant.followers.items()}
-    of_followers: dict[str, dict[str, Array]] = {
-        "angle": {name: joint.angle for name, joint in following.items()},
-        "speed": {name: joint.speed for name, joint in following.items()},
-        "acceleration": {name: joint.acceleration for name, joint in following.items()},
-        "jerk": {name: joint.jerk for name, joint in following.items()},
-    }
 
     def of_joints(name: str, units: Units) -> dict[str, Array]:
-        """A column for each joint, and for each that follows one, by its heading."""
-        columns = values[name]
-        fronts = [f"{joint}_" for joint in plant.joint_names] if len(columns) > 1 else [""]
-        joints = list(zip(fronts, plant.joint_kinds, columns))
-        joints += [
-            (f"{follower}_", plant.followers[follower][1].kind, column)
-            for follower, column in of_followers.get(name, {}).items()
-        ]
+        """A column for each joint, by its heading."""
+        of_name = values[name]
+        fronts = [f"{joint}_" for joint in plant.joint_names] if len(of_name) > 1 else [""]
+        rows = list(zip(fronts, plant.joint_kinds, of_name))
+        if name in JointMotion._fields:
+            rows += [
+                (f"{joint}_", plant.kind_of(joint), getattr(motion, name))
+                for joint, motion in following.items()
+            ]
         return {
             _heading(f"{front}{joint_label(name, kind)}", units[kind][0]): units[kind][1] * column
-            for front, kind, column in joints
+            for front, kind, column in rows
         }
 
     table: dict[str, Array] = {}

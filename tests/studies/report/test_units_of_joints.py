@@ -171,3 +171,24 @@ def test_an_arm_keeps_its_units(tmp_path):
     robot = qa.Robot.load(write_robot(tmp_path, ARM, ARM_FILE))
     plant = robot.along(qa.GeometricPath.line([0.0, 0.0], [0.4, 0.3]))
     assert (plant.joint, plant.joint_kinds) == ("rotary", ("rotary", "rotary"))
+
+
+class _Half:
+    """A joint that goes half as far."""
+
+    def motion(self, leading):
+        return type(leading)(*(value / 2 for value in leading))
+
+
+def test_a_joint_that_follows_has_columns_in_its_own_units(plan_of, monkeypatch):
+    """A finger that slides follows a joint that turns."""
+    plan = plan_of(MIXED)
+    plant = type(plan.task.plant)
+    monkeypatch.setattr(plant, "followers", {"finger": (1, _Half())})
+    monkeypatch.setattr(plant, "kind_of", lambda _, name: "rotary" if "-" in name else "linear")
+    text = csv_text(plan, "angle:deg,position:mm,torque", 10.0)
+    assert _headings(text) == [
+        "x_position_mm", "radial-axis_angle_deg", "finger_position_mm", "x_force_N",
+        "radial-axis_torque_Nm",
+    ]  # fmt: skip
+    assert float(text.splitlines()[-1].split(",")[2]) == pytest.approx(450.0)
