@@ -110,7 +110,6 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     tips = _tips(plan, times)
     plant = plan.task.plant
     sample = motion.sample
-    following = {name: how.motion(sample.joints[at]) for name, (at, how) in plant.followers.items()}
     values: dict[str, list[Array]] = {
         "time": [motion.time],
         "angle": [joint.angle for joint in sample.joints],
