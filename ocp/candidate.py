@@ -89,7 +89,9 @@ class Candidate(Ranged):
     def perturbed(self, errors: Mapping[str, float]) -> Candidate:
         """The same motion on the plant with these relative errors, and on no other."""
         if not isinstance(errors, Mapping):
-            raise TypeError(f"errors are {shown(errors)}; give them by name, as {{'frequency': 0.1}}")
+            raise TypeError(
+                f"errors are {shown(errors)}; give them by name, as {{'frequency': 0.1}}"
+            )
         return replace(self, task=self.task.certain, errors=dict(errors))
 
     def on(self, task: PointToPoint) -> Candidate:

@@ -264,8 +264,8 @@ class TorqueSpeedLine:
             pairs = [(torque, speed) for torque, speed in self.points]
         except (TypeError, ValueError):
             raise ValueError(
-                f"torque-speed line is {shown(self.points)}; give pairs of a {words} and a speed, as "
-                "[(1.5, 0), (0.8, 20)]"
+                f"torque-speed line is {shown(self.points)}; give pairs of a {words} and a speed, "
+                "as [(1.5, 0), (0.8, 20)]"
             ) from None
         most_points = 50  # each is two limits at every node
         if len(pairs) > most_points:

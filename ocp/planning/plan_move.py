@@ -97,7 +97,9 @@ def plan_move(
     takes_its_profile = profile is None and guess is None
     if profile is None:
         profile = (
-            choose_profile(task) if guess is None else CycloidPolynomial.of_size(count_of("coefficients", guess))
+            choose_profile(task)
+            if guess is None
+            else CycloidPolynomial.of_size(count_of("coefficients", guess))
         )
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
