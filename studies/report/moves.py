@@ -79,7 +79,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
 
 def _arrival_rows(plan: Plan) -> list[Row]:
     """What a robust plan may leave, said first: it does not arrive at rest."""
-    if plan.worst is None or plan.worst.residual < REST:
+    if plan.worst is None or plan.worst.residual < REST * plan.task.smallness:
         return []
     residual = _tip(plan.task, plan.worst.residual)
     return [("arrives", f"not at rest: with such errors up to {residual} of vibration are left")]
@@ -237,9 +237,10 @@ def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) 
 def _figure_rows(task: PointToPoint, motion: Motion, remedies: Mapping[str, str]) -> list[Row]:
     """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
     residual = _tip(task, motion.residual)
-    if motion.residual < REST:  # nobody sees a difference
+    rest = REST * task.smallness
+    if motion.residual < rest:  # nobody sees a difference
         where = "as wanted" if task.final else "at rest"
-        residual = f"{where} (below {_tip(task, REST)})"
+        residual = f"{where} (below {_tip(task, rest)})"
     known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
