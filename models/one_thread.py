@@ -2,15 +2,16 @@
 
 The matrices here have some hundred rows. A second thread of the linear algebra shortens nothing,
 takes a core from other processes, and adds up in another order: the last digits of an answer would
-depend on the number of cores. The number of threads is one of the whole process, so it is counted
-how many calls need it to be one: the last to end restores what the first found.
+depend on the number of cores. The number of threads is mostly one of the whole process, so it is
+counted how many calls need it to be one: the last to end restores what the first found. Libraries
+that have a number for each thread of Python are counted for each.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from threading import RLock
+from threading import RLock, local
 from typing import Any, ParamSpec, TypeVar
 from weakref import WeakSet
 
@@ -23,9 +24,11 @@ class _Call:
 
 
 class _Libraries:
-    """The libraries of linear algebra in this process, on one thread while a call needs it."""
+    """Some libraries of linear algebra, on one thread while a call needs it."""
 
-    def __init__(self) -> None:
+    def __init__(self, by_thread: bool) -> None:
+        """Those that have a number of threads for each thread of Python, or those that do not."""
+        self._by_thread = by_thread
         self._turn = RLock()
         self._calls = WeakSet[_Call]()
         self._known: list[Any] | None = None
@@ -49,15 +52,15 @@ class _Libraries:
     def _set_one(self) -> None:
         for library in self._found():
             threads = library.get_num_threads()
-            if threads > 1:
+            if threads is not None and threads > 1:
                 self._before.append((library, threads))
-                library.set_num_threads(1)
+                _set(library, 1)
 
     def _restore(self) -> None:
         while self._before:
             library, threads = self._before[-1]
             if library.get_num_threads() == 1:  # else somebody chose another number meanwhile
-                library.set_num_threads(threads)
+                _set(library, threads)
             self._before.pop()
 
     def _found(self) -> list[Any]:
@@ -66,11 +69,34 @@ class _Libraries:
             from threadpoolctl import ThreadpoolController  # not needed before anything is solved
 
             controller: Any = ThreadpoolController().select(user_api="blas")
-            self._known = list(controller.lib_controllers)
+            self._known = [
+                library
+                for library in controller.lib_controllers
+                if (getattr(library, "threading_layer", "") == "openmp") == self._by_thread
+            ]
         return self._known
 
 
-_LIBRARIES = _Libraries()
+def _set(library: Any, threads: int) -> None:
+    """Set a library's threads, whichever thread set them before: threadpoolctl lets one alone."""
+    release = getattr(library, "clear_controlling_thread", None)
+    if release is None:
+        library.set_num_threads(threads)
+        return
+    release(force=True)
+    library.set_num_threads(threads)
+    release(force=True)
+
+
+class _OfThread(local):
+    """What each thread of Python has of its own."""
+
+    def __init__(self) -> None:
+        self.libraries = _Libraries(by_thread=True)
+
+
+_OF_PROCESS = _Libraries(by_thread=False)
+_OF_THREAD = _OfThread()
 
 
 def on_one_thread(function: Callable[P, R]) -> Callable[P, R]:
@@ -80,9 +106,11 @@ def on_one_thread(function: Callable[P, R]) -> Callable[P, R]:
     def alone(*args: P.args, **kwargs: P.kwargs) -> R:
         call = _Call()
         try:
-            _LIBRARIES.enter(call)
+            _OF_PROCESS.enter(call)
+            _OF_THREAD.libraries.enter(call)
             return function(*args, **kwargs)
         finally:
-            _LIBRARIES.leave(call)
+            _OF_THREAD.libraries.leave(call)
+            _OF_PROCESS.leave(call)
 
     return alone

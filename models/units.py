@@ -12,7 +12,7 @@ _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
 _WITH_UNIT = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%°/][a-zA-Zµ%°/^0-9]*|)")
 _COMMA = re.compile(r"[+-]?\d+,\d+[^\d,]*")
-_LENGTHS = {"m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}
+_LENGTHS = {"m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6, "nm": 1e9}
 _ANGLES = {"rad": 1.0, **dict.fromkeys(("deg", "°", "degrees"), 180 / math.pi)}
 _SPEEDS = {
     **_ANGLES, "rad/s": 1.0, "deg/s": 180 / math.pi, "rpm": 30 / math.pi,
@@ -27,7 +27,7 @@ UNITS: Mapping[str, tuple[str, Mapping[str, float]]] = {
     "m/s": ("m/s (0.5) or 500mm/s", {"m/s": 1.0, "mps": 1.0, "mm/s": 1e3}),
     "m/s^2": ("m/s^2 (2) or 2000mm/s^2", _LENGTHS),
     "m/s^3": ("m/s^3 (50)", _LENGTHS),
-    "s": ("seconds (0.8) or 800ms", {"s": 1.0, "ms": 1e3}),
+    "s": ("seconds (0.8) or 800ms", {"s": 1.0, "ms": 1e3, "us": 1e6, "µs": 1e6}),
     "N": ("newtons (20) or 20N", {"N": 1.0, "mN": 1e3, "kN": 1e-3}),
     "N m": ("newton metres (1.5) or 200mNm", {"Nm": 1.0, "mNm": 1e3}),
     "kg": ("kilograms (0.1) or 100g", {"kg": 1.0, "g": 1e3}),

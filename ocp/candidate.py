@@ -257,7 +257,13 @@ class Candidate(Ranged):
         _ = self._vibration  # refuses a window that is too long
         task = self.task
         return integrate(
-            task.plant, self.errors, self.path, task.initial_state, self._mesh.steps, task.energy
+            task.plant,
+            self.errors,
+            self.path,
+            task.initial_state,
+            self._mesh.steps,
+            task.energy,
+            task.smallness,
         )
 
     @cached_property

@@ -72,8 +72,10 @@ _UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual window": "
     f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()
 }
 LEAST_DURATION = 1e-6
-LEAST_MOVE = 1e-6
+LEAST_MOVE = 1e-9
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
+_SMALL_MOVE = 1e-3
+"""A shorter move [rad or m] has absolute tolerances that are smaller in proportion."""
 
 
 @dataclass(frozen=True)
@@ -219,6 +221,11 @@ class PointToPoint:
     def span(self) -> float:
         """Target - start [rad]."""
         return self.target - self.start
+
+    @property
+    def smallness(self) -> float:
+        """What absolute tolerances are multiplied by: 1, and less for a move below 1 mm or mrad."""
+        return min(1.0, abs(self.span) / _SMALL_MOVE)
 
     @property
     def ends(self) -> str:

@@ -18,10 +18,10 @@ from quietarm.ocp.planning.best_of_starts import (
 from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify_one
 from quietarm.ocp.solvers.problem import (
     LEAST_ENERGY,
-    STILL,
     NonlinearProgram,
     Solution,
     Transcription,
+    still_of,
 )
 
 
@@ -47,7 +47,7 @@ class Ends:
     @property
     def are_one(self) -> bool:
         """Whether the two ends are the same motion, and there is no front between."""
-        return self.width <= STILL or self.height <= SAME * self.still.energy
+        return self.width <= still_of(self.curve.task) or self.height <= SAME * self.still.energy
 
 
 def find_ends(curve: Curve) -> Ends:
@@ -157,7 +157,7 @@ def _of_scenarios(curve: Curve, energy_weights: tuple[float, ...] = (1.0, 0.1, 0
     starts = [nominal.cheapest.coefficients, nominal.still.coefficients]
     (cheapest,) = best_of_starts([curve.problem()], [starts], curve.solver)
     still = cheapest
-    for weight in energy_weights if cheapest.residual > STILL else ():
+    for weight in energy_weights if cheapest.residual > still_of(curve.task) else ():
         weights = {RESIDUAL: 1 / cheapest.residual, ENERGY: weight / nominal.still.energy}
         problem = curve.problem(minimise=weights)
         (solution,) = curve.solver.solve([problem], [still.coefficients])

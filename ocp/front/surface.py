@@ -38,12 +38,12 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, digits
 from quietarm.ocp.solvers.problem import (
     LEAST_ENERGY,
-    STILL,
     NonlinearProgram,
     Scalarization,
     Solution,
     Transcription,
     first_steps,
+    still_of,
 )
 from quietarm.ocp.task import PointToPoint
 
@@ -269,7 +269,7 @@ def _begin(
     steps = setup.steps or max(ends.curve.transcription.steps, first_steps(measured, profile))
     transcription = Transcription(measured, profile, steps)
     surface = Surface(task, objectives, transcription, setup)
-    at_rest = ends.still.residual <= STILL
+    at_rest = ends.still.residual <= still_of(task)
     least = 0.0 if at_rest else ends.still.residual * (1 + _ROOM)
     problems = [surface.problem({RESIDUAL: least}), surface.problem({})]
     starts = [[end.coefficients] for end in (ends.still, ends.cheapest)]
@@ -299,7 +299,7 @@ def _grid_of(
     for name in surface.axes:
         values = [solution.peaks[name] for solution in table]
         least = payoffs[name].peaks[name]
-        at_rest = name == RESIDUAL and least <= STILL
+        at_rest = name == RESIDUAL and least <= still_of(surface.task)
         tightest = 0.0 if at_rest else least * (1 + _ROOM)
         along = shares**1.5 if name == RESIDUAL else shares
         sizes = tightest + along * max(max(values) - tightest, 0.0)

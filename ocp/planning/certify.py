@@ -21,12 +21,12 @@ from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.problem import (
     MOST_SOLVER_STEPS,
-    STILL,
     STILL_SHARE,
     NonlinearProgram,
     Solution,
     Transcription,
     evaluate,
+    still_of,
     transcribe,
 )
 from quietarm.ocp.solvers.solver import Solver
@@ -167,7 +167,8 @@ class _Row:
         self.scalarization = problem.scalarization
         self.tightened = problem.scalarization.limits
         self.limits = problem.scalarization.limits if limits is None else limits
-        self.still = max(STILL, STILL_SHARE * problem.transcription.plain_residual)
+        still_share = STILL_SHARE * problem.transcription.plain_residual
+        self.still = max(still_of(problem.transcription.task), still_share)
         self.tried: list[Certified] = []
         self.failure: SolverFailedError | None = None
 
@@ -335,7 +336,7 @@ def _confirm(outcomes: Sequence[Outcome], agreement: float = 1e-6) -> Sequence[O
         assert isinstance(figures, FinerFigures)
         exact = by_cvodes(outcome.problem.transcription, outcome.solution.coefficients)
         energy_differs = abs(exact.energy - figures.energy) > agreement * exact.energy
-        tolerated = agreement * exact.residual + STILL
+        tolerated = agreement * exact.residual + still_of(exact.task)
         if energy_differs or abs(exact.residual - figures.residual) > tolerated:
             return []
         confirmed[i] = replace(outcome, checked=replace(figures, by_cvodes=True))

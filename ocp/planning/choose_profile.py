@@ -25,10 +25,11 @@ from quietarm.ocp.planning.least_time import fitting_spline, least_time, shaped_
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.request import PlanRequest
-from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
+from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_to_hold, refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
+from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.task import PointToPoint
 
@@ -60,6 +61,7 @@ def plan_on_chosen_profile(request: PlanRequest) -> Plan:
 
     InfeasibleTaskError, where no profile does, has the duration that would do.
     """
+    refuse_to_hold(request.task)
     try:
         refuse_too_short(request.task, arrives_at_rest(request.task, request.residual_limit))
         return _plan_on_first_that_will_do(request)
@@ -178,9 +180,12 @@ def _with_a_duration(error: InfeasibleTaskError, request: PlanRequest) -> Infeas
 def _remedy(request: PlanRequest) -> str:
     """The duration that will do, or may, in words; nothing where none was found at little cost."""
     task = request.task
+    most_steps = 120
     try:
-        if task.plant.steps_at_once > 1:  # to compile a spline takes longer than to ask again
-            return f"a duration of {_rounded_up(shaped_duration(task))} s may do"
+        shaped = replace(task, duration=shaped_duration(task))
+        # to compile a spline of so many steps takes longer than to ask again
+        if task.plant.steps_at_once > 1 or default_steps(shaped, least=1) > most_steps:
+            return f"a duration of {_rounded_up(shaped.duration)} s may do"
         least = least_time(task, request.residual_limit.size, None, 1e-2, rounds=0)
     except ValueError:
         return ""

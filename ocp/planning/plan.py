@@ -31,7 +31,7 @@ from quietarm.ocp.robustness import Sensitivity, Worst, peaks_between, sensitivi
 from quietarm.ocp.saved import to_html
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.trajectory import Trajectory
-from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS, STILL
+from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS, still_of
 from quietarm.ocp.task import PointToPoint
 
 _MOST_ROWS = 500_000
@@ -193,7 +193,7 @@ class Plan(MotionAnswer):
         task = self.task
         motion = self.motion
         residual = "at rest"
-        if motion.residual > REST:
+        if motion.residual > REST * task.smallness:
             residual = f"{motion.residual:.3g} {task.plant.tip_unit}"
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
         joint = task.plant.joint
@@ -303,7 +303,7 @@ def only_motion(
     plan = evaluate_coefficients(task, [], profile=profile, method="evaluated")
     limits = {limit.name: limit for limit in task.limits}
     if residual_limit is not None:
-        residual = Limit.of_residual(max(residual_limit, STILL), task.plant.tip_unit)
+        residual = Limit.of_residual(max(residual_limit, still_of(task)), task.plant.tip_unit)
         limits = {residual.name: residual} | limits
     broken = list[str]()
     for name in plan.motion.exceeded(limits.values(), OVERRUN):

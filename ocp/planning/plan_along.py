@@ -72,7 +72,7 @@ def _adapt_limit(request: PlanRequest) -> Plan:
     if nominal is not None and nominal.worst is not None:
         nominal_worst = nominal.worst.residual
         starts = [np.array(nominal.coefficients), *starts]
-    most = max(nominal_worst, REST)
+    most = max(nominal_worst, REST * request.task.smallness)
     limit = min(request.residual_limit.size, most)
     try:
         plan = _hold(request.within(limit), starts)

@@ -33,7 +33,7 @@ def refuse_too_short(task: PointToPoint, at_rest: bool = False) -> None:
     """
     if not task.limits:
         return
-    _refuse_to_hold(task)
+    refuse_to_hold(task)
     by_joints = rigid_duration(task)
     by_plant = _SURE * least_duration(task, at_rest)
     if (1 + OVERRUN) * task.duration >= by_joints and task.duration >= by_plant:
@@ -78,7 +78,7 @@ def _needed(task: PointToPoint, at_rest: bool, rounds: int = 12) -> str:
     return ""
 
 
-def _refuse_to_hold(task: PointToPoint) -> None:
+def refuse_to_hold(task: PointToPoint) -> None:
     """InfeasibleTaskError where a limit is passed by the machine that stands still at an end."""
     for limit in task.limits:
         if limit.quantity.derivative is not None:

@@ -7,10 +7,11 @@ the fraction of the piece.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache, partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -29,7 +30,7 @@ from quietarm.ocp.simulation.objective import integrated, spent
 from quietarm.ocp.simulation.trajectory import outputs_of, rates_of
 from quietarm.ocp.uncertainty import perturb_plant
 
-CVODES = {
+CVODES: dict[str, Any] = {
     "linear_multistep_method": "adams",  # order up to 12: a fifth of the steps of BDF's 5
     "reltol": 1e-11,
     "abstol": 1e-13,
@@ -55,8 +56,12 @@ def integrate(
     initial: Sequence[float],
     steps: int,
     energy: Energy,
+    smallness: float = 1.0,
 ) -> Integration:
-    """Follow a motion on a plant with errors, by so many steps of the quadrature on a piece."""
+    """Follow a motion on a plant with errors, by so many steps of the quadrature on a piece.
+
+    Absolute tolerances are multiplied by the smallness, to the next power of ten.
+    """
     with COST.timed("checks"), _refusing(path.remedy):
         figures = _figures(
             plant,
@@ -65,6 +70,7 @@ def integrate(
             steps,
             tuple(errors),
             energy,
+            math.floor(math.log10(smallness)),
         )
         outputs, arrival, spent, net_work = figures(path.arguments, list(errors.values()), initial)
     return Integration(outputs, arrival[:, 0], spent.item(), net_work.item())
@@ -102,6 +108,7 @@ def _figures(
     steps: int,
     names: tuple[str, ...],
     definition: Energy,
+    decades: int,
 ) -> Compiled:
     """(arguments, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
     build = partial(
@@ -112,6 +119,7 @@ def _figures(
         steps,
         names,
         definition,
+        decades,
     )
     return Compiled(build, silent=True)  # the error of `_refusing` is enough
 
@@ -123,12 +131,15 @@ def _build_figures(
     steps: int,
     names: tuple[str, ...],
     definition: Energy,
+    decades: int,
 ) -> ca.Function:
     arguments = ca.MX.sym("p", *shape)
     mesh = Mesh(steps)
     errors = ca.MX.sym("e", len(names))
     initial = ca.MX.sym("x", 2 * plant.modes)
-    states, outputs = _along(plant, law, shape, mesh.samples, names)(arguments, errors, initial)
+    states, outputs = _along(plant, law, shape, mesh.samples, names, decades)(
+        arguments, errors, initial
+    )
     pieces = [ca.reshape(row, -1, shape[1]) for row in ca.vertsplit(outputs)]
     layout = symbolic_sample(plant)
     nodes = [
@@ -144,7 +155,12 @@ def _build_figures(
 
 
 def _along(
-    plant: Plant, law: Law, shape: tuple[int, int], fractions: Array, names: tuple[str, ...]
+    plant: Plant,
+    law: Law,
+    shape: tuple[int, int],
+    fractions: Array,
+    names: tuple[str, ...],
+    decades: int = 0,
 ) -> ca.Function:
     """(arguments, errors, state before) -> states and outputs at these fractions of every piece."""
     numbers, pieces = shape
@@ -152,7 +168,7 @@ def _along(
     arguments = ca.MX.sym("p", numbers, pieces)
     errors = ca.MX.sym("e", len(names))
     initial = ca.MX.sym("x", 2 * plant.modes)
-    piece = _over_a_piece(plant, law, numbers, fractions, names)
+    piece = _over_a_piece(plant, law, numbers, fractions, names, decades)
     _, states = piece.mapaccum(pieces)(initial, ca.vertcat(arguments, ca.repmat(errors, 1, pieces)))
     at_samples = [
         row if pieces == 1 else ca.vec(ca.repmat(row, count, 1)).T
@@ -168,7 +184,12 @@ def _along(
 
 
 def _over_a_piece(
-    plant: Plant, law: Law, numbers: int, fractions: Array, names: tuple[str, ...]
+    plant: Plant,
+    law: Law,
+    numbers: int,
+    fractions: Array,
+    names: tuple[str, ...],
+    decades: int,
 ) -> ca.Function:
     """CVODES: (state before, arguments and errors) -> state after a piece, states along it."""
     count = numbers + len(names)
@@ -190,7 +211,7 @@ def _over_a_piece(
         problem,
         0.0,
         times.tolist(),
-        _options(times),
+        {**_options(times), "abstol": CVODES["abstol"] * 10.0**decades},
     )
     before = ca.MX.sym("x", state.numel())
     both = ca.MX.sym("p", count)

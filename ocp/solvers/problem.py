@@ -31,6 +31,11 @@ STILL_SHARE = 1e-7
 the plain cycloid's residual, whichever is larger."""
 
 
+def still_of(task: PointToPoint) -> float:
+    """What counts as rest on arrival [m]: `STILL`, and less for a small move."""
+    return STILL * task.smallness
+
+
 class Transcription:
     """A task along a profile in a number of steps.
 

@@ -84,7 +84,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
 
 def _arrival_rows(plan: Plan) -> list[Row]:
     """What a robust plan may leave, said first: it does not arrive at rest."""
-    if plan.worst is None or plan.worst.residual < REST:
+    if plan.worst is None or plan.worst.residual < REST * plan.task.smallness:
         return []
     residual = _tip(plan.task, plan.worst.residual)
     return [("arrives", f"not at rest: with such errors up to {residual} of vibration are left")]
@@ -254,9 +254,10 @@ def _figure_rows(
     """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
     motion = candidate.motion
     residual = _tip(task, motion.residual)
-    if motion.residual < REST:  # nobody sees a difference
+    rest = REST * task.smallness
+    if motion.residual < rest:  # nobody sees a difference
         where = "as wanted" if task.final else "at rest"
-        residual = f"{where} (below {_tip(task, REST)})"
+        residual = f"{where} (below {_tip(task, rest)})"
     known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         (

@@ -63,10 +63,21 @@ def test_a_mode_that_is_far_faster_leaves_a_window_that_can_be_resolved():
     task = move(fast, uncertainty=qa.Uncertainty({"frequency": 0.9}))
     for plant in task.perturbed_plants:
         assert FreeVibration(plant, task.target, task.residual_window).window > 1.0
-    # never less than eq (11) has, nor more than a task takes
-    assert move(qa.LinearAxis(omega1=1e5)).residual_window == 1.0
+    # eq (11) has 1 s, and no more than a task takes
+    assert move(qa.LinearAxis(omega1=3999.0)).residual_window == 1.0
     slow = move(qa.LinearAxis(omega1=1e-6))
     assert replace(slow, residual_window=float(slow.residual_window)) == slow
+
+
+@pytest.mark.parametrize("ranges", [{}, {"frequency": 0.5}])
+@pytest.mark.parametrize("omega", [2500.0, 4001.0, math.tau * 2400, 1e5])
+def test_a_default_window_can_always_be_resolved(omega, ranges):
+    # 4000 radians of the fastest mode are as many as can be.
+    errors = {"uncertainty": qa.Uncertainty(ranges)} if ranges else {}
+    task = move(qa.LinearAxis(omega1=omega), **errors)
+    for plant in task.perturbed_plants:
+        FreeVibration(plant, task.target, task.residual_window)
+    assert 1000 <= omega * task.residual_window <= 4000
 
 
 def test_another_plant_or_target_has_its_own_and_a_window_that_was_given_stays():

@@ -61,3 +61,15 @@ def test_too_few_steps_are_doubled_until_the_integrators_agree(tasks, solved):
     assert plan.verification.fixed_step_energy == pytest.approx(plan.energy, rel=1e-3)
     usual = solved(tasks["single link"], 4, **settings)
     assert plan.energy == pytest.approx(usual.energy, rel=1e-5)
+
+
+def test_a_verification_takes_more_steps_before_it_says_that_two_integrators_differ():
+    # A crane of two modes, 24 terms: coefficients of thousands, whose powers of T cancel.
+    plant = qa.LinearAxis(omega1=2.68, omega2=6.47, share1=0.3, share2=0.7, mode_count=2)
+    profile = qa.CycloidPolynomial(24)
+    plan = qa.plan_move(qa.PointToPoint(plant, 2.0, 4.0), profile, starts=1)
+    longer = qa.evaluate_coefficients(
+        qa.PointToPoint(plant, 20.0, 4.0), plan.coefficients, profile=profile
+    )
+    assert longer.verification.agrees
+    assert longer.verification.steps > longer.steps
