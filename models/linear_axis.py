@@ -33,10 +33,14 @@ class LinearAxis(Plant):
 
     omega1: float = parameter(75.4, "rad/s", _MADE_UP, "frequency of mode 1, carriage held")
     zeta1: float = parameter(0.02, "-", _MADE_UP, "damping ratio of mode 1")
-    share1: float = parameter(1.0, "-", _MADE_UP, "of the load's swing that is mode 1")
+    share1: float = parameter(
+        1.0, "-", _MADE_UP, "of the load's displacement that is mode 1, not effective mass"
+    )
     omega2: float = parameter(150.0, "rad/s", _MADE_UP, "frequency of mode 2, carriage held")
     zeta2: float = parameter(0.02, "-", _MADE_UP, "damping ratio of mode 2")
-    share2: float = parameter(0.0, "-", _MADE_UP, "of the load's swing that is mode 2")
+    share2: float = parameter(
+        0.0, "-", _MADE_UP, "of the load's displacement that is mode 2, not effective mass"
+    )
     mass: float = parameter(8.0, "kg", _MADE_UP, "of all that moves, the load and the motor's part")
     load: float = parameter(2.0, "kg", _MADE_UP, "of that, what swings")
     friction: float = parameter(5.0, "N s/m", _MADE_UP, "viscous friction of the carriage")

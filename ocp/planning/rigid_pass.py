@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -136,7 +136,7 @@ class _Values:
         still = np.zeros((self._modes, len(self._places)))
         if self._swings:
             return self._call(self._outputs, np.concatenate([path, still, pushes]))
-        bent: Array = np.linalg.solve(self._stiffness, pushes.T[:, :, None])[:, :, 0].T
+        bent: Any = np.linalg.solve(self._stiffness, pushes.T[:, :, None])[:, :, 0].T
         return self._call(self._outputs, np.concatenate([path, bent, still]))
 
     @staticmethod

@@ -84,3 +84,16 @@ def test_a_line_of_torque_by_speed_has_a_bounded_number_of_points():
     points = [(1.0 - 1e-7 * speed**2, speed) for speed in range(5000)]
     with pytest.raises(ValueError, match="torque-speed line has 5000 points; give at most 50"):
         qa.PointToPoint(qa.SingleLinkManipulator(), 0.5, 0.8, torque_speed=points)
+
+
+@pytest.mark.parametrize("target", [1e-3, 1e-6, 1e-9])
+def test_a_move_of_a_nanometre_is_a_move(target):
+    # A linear plant: figures are those of a move of 1 m, times the distance, the energy its square.
+    def evaluated(distance):
+        return qa.evaluate_coefficients(qa.PointToPoint(qa.LinearAxis(), distance, 0.2), [0.1])
+
+    whole = evaluated(1.0)
+    small = evaluated(target)
+    assert small.residual == pytest.approx(target * whole.residual, rel=1e-8)
+    assert small.energy == pytest.approx(target**2 * whole.energy, rel=1e-8)
+    assert small.verification.energy_share < 1e-6
