@@ -24,8 +24,8 @@ LINE = TorqueSpeedLine(((0.4, 0.0), (0.2, 3.5)))
 def _ask(limits, *others):
     """What is asked for, limits by name as numbers or pairs."""
     made = [
-        Limit.of_residual(bounds) if name == RESIDUAL else Limit.within(QUANTITIES[name], bounds)
-        for name, bounds in limits.items()
+        Limit.of_residual(size) if name == RESIDUAL else Limit(QUANTITIES[name], -size, size)
+        for name, size in limits.items()
     ]
     return Scalarization(tuple(made), *others)
 
