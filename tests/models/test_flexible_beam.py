@@ -75,6 +75,7 @@ def test_another_payload_swings_as_the_beam_of_the_same_stiffness(tip_mass):
     assert beam.carrying(tip_mass).parameters == pytest.approx(expected.parameters, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_plan_needs_the_second_mode_and_hardly_the_third():
     def left(planned, judged):
         move = [PointToPoint(FlexibleBeam(mode_count=n), pi / 6, 0.8) for n in (planned, judged)]

@@ -24,6 +24,7 @@ DOCUMENTS = st.recursive(
 )
 
 
+@pytest.mark.slow
 @given(DOCUMENTS)
 def test_the_canonical_text_is_that_of_json_with_sorted_names_and_whole_numbers(document):
     canonical = texts_of(document).canonical

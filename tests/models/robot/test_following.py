@@ -56,6 +56,7 @@ def test_fingers_of_a_gripper_are_pinocchios():
     assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_rotors_and_friction_of_followers_are_felt_by_their_leader():
     """Rotor and viscous friction by the multiplier squared, Coulomb friction by its size."""
     entries = {"rotor_inertia": {"elbow": 0.3}, "friction": {"elbow": 5.0}}
@@ -153,6 +154,7 @@ def test_what_a_follower_cannot_be_is_refused(entries, words):
         robot_of(MIMIC, **entries)
 
 
+@pytest.mark.slow
 def test_gears_of_followers_bend():
     gears = {"shoulder": 1e4, "elbow": 5e3}
     robot = qa.Robot(

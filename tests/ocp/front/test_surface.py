@@ -65,6 +65,7 @@ def test_its_hypervolume_is_that_of_the_lattice(front, lattice):
     assert 0.95 < volume(front.objective_values) / volume(best) < 1.01
 
 
+@pytest.mark.slow
 def test_a_point_has_the_figures_of_its_motion_and_the_file_keeps_them(front, tmp_path):
     for point in front.points[::7]:
         motion = qa.evaluate_coefficients(SIXTH, point.coefficients).motion
@@ -154,6 +155,7 @@ def test_dominance_is_of_all_objectives():
     assert non_dominated([worse, third, first, quiet, first], THREE) == (quiet, first, third)
 
 
+@pytest.mark.slow
 def test_points_of_other_peaks_and_orders_are_refused(front):
     for change, words in (
         ({"points": front.points[::-1]}, "out of order"),
@@ -164,6 +166,7 @@ def test_points_of_other_peaks_and_orders_are_refused(front):
             dataclasses.replace(front, **change)
 
 
+@pytest.mark.slow
 def test_a_cross_check_refuses_more_objectives_in_one_line(front):
     with pytest.raises(ValueError, match="cross check is of residual and energy; find"):
         cross_check(front)

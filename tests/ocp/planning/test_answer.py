@@ -50,6 +50,7 @@ def test_a_saved_plan_loads_equal(any_plan, tmp_path):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("errors", [{}, {"frequency": 0.04}], ids=["certain", "uncertain"])
 def test_what_planning_has_simulated_is_not_simulated_again(tasks, monkeypatch, errors):
     uncertainty = qa.Uncertainty(errors) if errors else None

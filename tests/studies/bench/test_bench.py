@@ -53,6 +53,7 @@ def test_random_candidates_are_within_the_accuracy_stated(name):
     assert own(rows)[0] == pytest.approx(fine(rows)[0], rel=ACCURACY)
 
 
+@pytest.mark.slow
 def test_a_recorded_run_has_the_figures_of_a_job(fronts):
     job, front = next((j, f) for j, f in fronts.items() if j.method == "random")
     recorded = problem_of(NAME).recorded()
@@ -72,6 +73,7 @@ def test_a_recorded_run_has_the_figures_of_a_job(fronts):
         Results.of_jobs({job: front}, [elsewhere.front("my tool")])
 
 
+@pytest.mark.slow
 def test_a_run_from_a_wider_box_is_imported_where_its_motions_lie_within_the_problem_s(fronts):
     job, front = next((j, f) for j, f in fronts.items() if j.method == "random")
     assert np.abs(front.coefficients).max() <= job.problem.bound
@@ -204,6 +206,7 @@ def test_a_smaller_bench_leaves_the_report_of_a_larger_one(call, tmp_path):
     assert (code, "runs.csv is no table of a bench; give another folder" in err) == (2, True)
 
 
+@pytest.mark.slow
 def test_runs_measured_against_another_reference_are_no_part_of_a_bench(fronts, tmp_path):
     front = next(iter(fronts.values()))
     for one in (front, replace(front, points=front.points[::2])):
@@ -213,6 +216,7 @@ def test_runs_measured_against_another_reference_are_no_part_of_a_bench(fronts, 
             write_references([problem], tmp_path)
 
 
+@pytest.mark.slow
 def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
     results = Results.of_jobs(fronts)
     report = bench_report(results, "quietarm bench")

@@ -64,6 +64,7 @@ def _profile(shaper):
     return shaped_cycloid(MOVE, shaper)
 
 
+@pytest.mark.slow
 def test_a_limit_is_exceeded_beyond_a_thousandth(found):
     # the shaper leaves a tenth of a second for 60 degrees
     assert found["3hump-ei"].exceeded == ("acceleration",)
@@ -72,6 +73,7 @@ def test_a_limit_is_exceeded_beyond_a_thousandth(found):
     assert found["ruckig"].motion.peak_acceleration == pytest.approx(80, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_report_has_a_row_for_each_and_says_what_is_missing(judged):
     report = plans_report(MOVE, judged)
     table = report.tables["motions"].set_index("motion")

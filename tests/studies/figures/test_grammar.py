@@ -139,6 +139,7 @@ def test_every_figure_fits_a_phone_when_it_is_stacked(figures):
             assert drawn.x1 <= NARROW + 0.02, name
 
 
+@pytest.mark.slow
 def test_titles_stand_left_and_axes_have_units(figures):
     for name, figure in figures.items():
         if figure.get_suptitle():
@@ -166,6 +167,7 @@ def colours_by_label(figure):
     }
 
 
+@pytest.mark.slow
 def test_what_a_line_is_decides_its_look(figures, plan, cycloid):
     blue, grey, green, orange = (
         MEANINGS[meaning].colour for meaning in ("plan", "plain cycloid", "robust plan", "search")

@@ -87,6 +87,7 @@ def test_ring_downs_are_found_between_pushes_rests_and_drift(trend):
     assert [(part.begin, part.end) for part in named.parts] == [(7.2, pytest.approx(10.5))]
 
 
+@pytest.mark.slow
 def test_a_machine_that_varies_is_planned_for_as_it_may_swing_next(tmp_path):
     # as a real link varied, in an order without a trend
     hertz = (1.915, 1.79, 1.97, 1.8, 1.79, 1.93, 1.835)
@@ -103,6 +104,7 @@ def test_a_machine_that_varies_is_planned_for_as_it_may_swing_next(tmp_path):
     assert 0.05 < task.ranges["omega"] < 0.15
 
 
+@pytest.mark.slow
 def test_intervals_cover_the_truth():
     # benchmarks/coverage_of_identify.py has 300; binomial: 16 of 20 or fewer has a chance of 1 in
     # 60 for 95 %
@@ -702,6 +704,7 @@ def dry(t, hertz, friction, zeta=0.0, size=20.0, start=0.5):
     return tip
 
 
+@pytest.mark.slow_after(2)
 @pytest.mark.parametrize(
     ("hertz", "friction", "zeta", "noise"),
     # 2.0.0 called such two modes that beat
@@ -718,6 +721,7 @@ def test_dry_friction_is_called_so_and_not_two_modes(hertz, friction, zeta, nois
     assert holds(found, hertz)
 
 
+@pytest.mark.slow
 def test_a_mode_that_dies_before_it_beats_is_no_second_one():
     # as of a mast after a push, whose carriage gives way for a moment
     t = np.arange(0, 9, 0.004)

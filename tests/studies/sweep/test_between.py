@@ -112,6 +112,7 @@ def test_between_cells_it_is_the_polynomial_through_the_nearest_six():
     assert found == pytest.approx(quintic(*places.T), rel=1e-12)  # exact up to degree five
 
 
+@pytest.mark.slow
 def test_no_polynomial_goes_through_a_cell_without_a_plan_or_across_a_jump():
     axes, cells = [np.arange(9.0)], np.arange(9.0)[:, None]
     cells[5:] += 100.0  # another motion
@@ -143,6 +144,7 @@ def test_a_margin_makes_moves_between_the_cells_keep_their_limits(call, tmp_path
     assert call(f"export {place} --output {tmp_path / 'moves.c'}")[0] == 0
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_a_controller_gets_the_same_coefficients_and_path(call, tmp_path):
     assert call(f"export moves.zarr --output {tmp_path / 'moves.c'}")[0] == 0
@@ -157,6 +159,7 @@ def test_a_controller_gets_the_same_coefficients_and_path(call, tmp_path):
     assert joint_by(code.moves_at, a, target, duration, time) == pytest.approx(expected)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("broken", ["coefficients/c/0/0/0", "zarr.json"])
 def test_a_damaged_dataset_is_told_in_one_line(tmp_path, broken):
     place = tmp_path / "moves.zarr"
@@ -168,6 +171,7 @@ def test_a_damaged_dataset_is_told_in_one_line(tmp_path, broken):
     assert "remove the dataset and sweep it again" in said or "is no dataset of a sweep" in said
 
 
+@pytest.mark.slow
 def test_what_is_not_in_the_dataset_is_refused_with_a_remedy():
     library = MoveLibrary("moves.zarr")
     within = "the grid has 0.349066 to 1.0472"

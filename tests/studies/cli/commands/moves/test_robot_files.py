@@ -43,6 +43,7 @@ def test_an_unknown_limit_is_refused_in_one_line(folder, refused):
     assert "max_acc of a in limits: did you mean max_acceleration?" in refused("list robot.yaml")
 
 
+@pytest.mark.slow
 def test_the_path_says_how_far_its_spline_swings_out(folder, call):
     write_robot(folder, ARM, ARM_FILE)
     Path("way.csv").write_text("time,a,b,grip\n0,0,0,0\n1,0.5,0,0\n2,0.5,0.5,0\n3,0,0.5,0\n")

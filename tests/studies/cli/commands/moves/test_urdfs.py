@@ -29,6 +29,7 @@ def said(answer):
     return " ".join(out.split()), " ".join(err.split())
 
 
+@pytest.mark.slow
 def test_a_robot_without_masses_says_so_beside_energy_and_torque(call):
     robot(URDF.replace(INERTIAL, ""), BAR)
     words = "the URDF has no masses of moving links: energy and torque are of the beam alone"
@@ -65,6 +66,7 @@ def test_damping_and_friction_of_the_urdf_count(call):
     assert with_friction - qa.Plan.load("a.json").motion.net_work == pytest.approx(work, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_friction_of_the_robots_file_wins_and_it_is_said(call):
     robot(with_elbow('<dynamics damping="5"/>'), BAR, "friction: {elbow: 2}")
     words = "friction as given in place of the URDF's damping: elbow 2 (URDF 5) N m s/rad"
@@ -72,6 +74,7 @@ def test_friction_of_the_robots_file_wins_and_it_is_said(call):
     assert f"warning {words}" in said(call(f"evaluate two.yaml {ENDS} --coefficients=0"))[0]
 
 
+@pytest.mark.slow
 def test_limits_of_urdf_1_2_are_kept(call):
     more = 'velocity="3" acceleration="5" deceleration="4" jerk="60"'
     robot(URDF.replace('velocity="3"', more), BAR, "limits: urdf")
@@ -85,6 +88,7 @@ def test_limits_of_urdf_1_2_are_kept(call):
     assert dict(task.jerk_limit) == {"shoulder": 60.0, "elbow": 60.0}
 
 
+@pytest.mark.slow
 def test_joints_that_mimic_others_follow_them(call, refused):
     robot(with_elbow('<mimic joint="shoulder" multiplier="-1" offset="0.1"/>'), GEARS, ROTORS)
     assert "following elbow = -1 shoulder +0.1" in said(call("list two.yaml"))[0]
@@ -106,6 +110,7 @@ def test_joints_that_mimic_others_follow_them(call, refused):
     assert "#define A_JOINTS 1" in Path("a.h").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["list two.yaml", f"plan two.yaml {ENDS}"])
 def test_motors_without_inertia_are_told_what_to_give(refused, command):
     robot(URDF, GEARS)
@@ -113,6 +118,7 @@ def test_motors_without_inertia_are_told_what_to_give(refused, command):
     assert words in refused(command)
 
 
+@pytest.mark.slow
 def test_one_spring_is_one_mode(call):
     robot(URDF, "elastic_joints: {shoulder: {stiffness: 10000, damping: 5}}")
     listed, _ = said(call("list two.yaml"))
@@ -120,6 +126,7 @@ def test_one_spring_is_one_mode(call):
     assert said(call(f"evaluate two.yaml {ENDS} --coefficients=0"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("old", "new", "words"), [
     (LIMIT, LIMIT.replace('lower="-2" upper="2"', 'lower="2" upper="-2"'),
      "limit of joint 'shoulder' of the URDF: lower 2 is above upper -2; swap or mend them"),
