@@ -195,9 +195,8 @@ def press_command(line: str, folder: Path, instant: float) -> str:
         return "done before the press"
     if process.returncode == 130 and last[0].startswith("quietarm: interrupted"):
         return "traceback" if "Traceback" in err else "interrupted, 130"
-    if process.returncode == -signal.SIGINT:
-        named = "quietarm/__main__" in err or "in as_command" in err
-        return "traceback" if named else "before quietarm"
+    if last[0] in ("", "KeyboardInterrupt") and "as_command" not in err:
+        return "before quietarm"
     return f"{process.returncode}: {last[0]}"
 
 
