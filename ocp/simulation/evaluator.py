@@ -195,7 +195,7 @@ class Evaluator:
     def _checked(self, errors: ArrayLike) -> Array:
         """Errors of the plant, a row for each scenario."""
         table = numbers("errors", errors, "a row of numbers for each scenario")
-        count = self.scenarios.shape[1]
+        count = len(self.simulation.errors)
         if table.ndim != 2 or table.shape[1] != count:
             raise ValueError(f"errors have shape {table.shape}; give (scenarios, {count})")
         return table
