@@ -84,6 +84,7 @@ def solve_from_starts(
     *,
     quick: bool = False,
     thorough: bool = True,
+    has_stand_in: bool = True,
 ) -> tuple[Solution, list[Solution]]:
     """The best solution from several starts, and all, the best first.
 
@@ -103,7 +104,7 @@ def solve_from_starts(
         if problem.scalarization.limits:
             least.update(least_peaks_of(problem, starts[:2], solver))
             yield solver, [solution.coefficients for solution in least.values()]
-        substitute = stand_in(solver) if thorough else None
+        substitute = stand_in(solver) if thorough and has_stand_in else None
         if substitute is not None and not is_beyond(problem, starts[0]):
             yield _briefly(substitute, problem, tried), starts[:2]
 

@@ -82,7 +82,9 @@ def _plan_on_first_that_will_do(request: PlanRequest) -> Plan:
         return on_spline
     if plan is not None:
         return plan
-    return _state_terms(plan_along(request.along(more_terms(request.task))))
+    # where the residual limit adapts, the stand-in was tried with these terms before
+    last = replace(request, has_stand_in=not request.residual_limit.adapts)
+    return _state_terms(plan_along(last.along(more_terms(request.task))))
 
 
 def _plan_without_limits(request: PlanRequest) -> Plan | None:
@@ -180,20 +182,25 @@ def _with_a_duration(error: InfeasibleTaskError, request: PlanRequest) -> Infeas
 def _remedy(request: PlanRequest) -> str:
     """The duration that will do, or may, in words; nothing where none was found at little cost."""
     task = request.task
-    most_steps = 120
+    most_steps = 400
     try:
         shaped = replace(task, duration=shaped_duration(task))
+        may_do = f"a duration of {_rounded_up(shaped.duration)} s may do"
         # to compile a spline of so many steps takes longer than to ask again
         if task.plant.steps_at_once > 1 or default_steps(shaped, least=1) > most_steps:
-            return f"a duration of {_rounded_up(shaped.duration)} s may do"
-        least = least_time(task, request.residual_limit.size, None, 1e-2, rounds=0)
-    except ValueError:
+            return may_do
+    except ValueError:  # nothing limits the joint, or no task takes so long
         return ""
+    size = request.residual_limit.size
+    try:
+        least = least_time(task, size, None, 1e-2, rounds=0, most_steps=2 * most_steps)
+    except ValueError:
+        return may_do
     duration = _rounded_up(least.duration)
     lasting = request.on(replace(task, duration=float(duration))).along(least.profile)
     if has_a_plan(lasting.problem(), least.coefficients, request.setup.solver):
         return f"a duration of {duration} s will do"
-    return ""
+    return may_do
 
 
 def _rounded_up(duration: float, margin: float = 0.05) -> str:

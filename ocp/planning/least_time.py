@@ -25,7 +25,12 @@ from quietarm.ocp.planning.rigid_motion import (
 from quietarm.ocp.profiles.joint_spline import JointSpline
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.solvers.least_excess import Excess, least_excess
-from quietarm.ocp.solvers.problem import NonlinearProgram, Transcription, first_steps
+from quietarm.ocp.solvers.problem import (
+    MOST_SOLVER_STEPS,
+    NonlinearProgram,
+    Transcription,
+    first_steps,
+)
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 Array = NDArray[np.float64]
@@ -58,14 +63,17 @@ def least_time(
     bound: float | None,
     tolerance: float,
     rounds: int = _ROUNDS,
+    most_steps: int = MOST_SOLVER_STEPS,
 ) -> LeastTime:
     """The least time of a task within its limits, to a share of it, after so many rounds of knots.
 
-    ValueError where the solver cannot resolve a move as long as its limits ask for.
+    ValueError where a move as long as its limits ask for takes more steps than the solver has, or
+    than is wanted.
     """
     shaped = _shaped_rigid_motion(task)
     low = rigid_duration(task) or shaped.duration / _GROWTH
-    durations = _Durations(task, JointSpline(_knots_at(shaped)), residual_limit, bound)
+    first = JointSpline(_knots_at(shaped))
+    durations = _Durations(task, first, residual_limit, bound, most_steps)
     best = durations.least(low, shaped.duration, tolerance)
     for _ in range(rounds):
         profile = JointSpline(_knots_along(best.profile, best.coefficients))
@@ -182,7 +190,9 @@ class _Durations:
         profile: JointSpline,
         residual_limit: float,
         bound: float | None,
+        most_steps: int = MOST_SOLVER_STEPS,
     ) -> None:
+        self._most_steps = most_steps
         self._task = task
         self._profile = profile
         self._residual_limit = residual_limit
@@ -200,6 +210,8 @@ class _Durations:
         task = replace(self._task, duration=duration)
         # as many as the longest move takes: others have to be compiled
         self._steps = max(self._steps, first_steps(task, self._profile))
+        if self._steps > self._most_steps:
+            raise ValueError(f"a move of {duration:g} s takes {self._steps} steps")
         transcription = Transcription.of(task, self._profile, self._steps)
         problem = self._problem(transcription)
         excess = least_excess(problem, self._start)

@@ -21,6 +21,7 @@ from quietarm.ocp.planning.best_of_starts import best_of_starts, solve_from_star
 from quietarm.ocp.planning.certify import OVERRUN, certify_one
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.request import PlanRequest
+from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.record import REST
 from quietarm.ocp.robustness import Worst
 from quietarm.ocp.task import PointToPoint
@@ -95,6 +96,7 @@ def _nominal_plan(request: PlanRequest) -> Plan | None:
     """The plan at rest of the nominal plant, for the uncertain task; None where there is none."""
     nominal = request.on(request.task.certain).within(0.0)
     try:
+        refuse_too_short(nominal.task, arrives_at_rest(nominal.task, nominal.residual_limit))
         plan = _hold(nominal, request.starts)
     except SolverFailedError:  # only other motions may keep the limits
         return None
@@ -185,6 +187,7 @@ def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Pla
         setup.solver,
         quick=request.quick,
         thorough=setup.thorough,
+        has_stand_in=request.has_stand_in,
     )
     certified = certify_one(problem, best, setup.solver)
     assert isinstance(certified.checked, Candidate)  # a single motion is judged by CVODES

@@ -32,6 +32,8 @@ class PlanRequest:
         Largest residual [m].
     quick : bool
         Whether a failure need not say what would be feasible.
+    has_stand_in : bool
+        Whether another solver is tried where this one solves no start.
     """
 
     task: PointToPoint
@@ -39,6 +41,7 @@ class PlanRequest:
     setup: Setup
     residual_limit: ResidualLimit
     quick: bool = False
+    has_stand_in: bool = True
 
     @cached_property
     def starts(self) -> list[NDArray[np.float64]]:
