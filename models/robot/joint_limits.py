@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from quietarm.models.checks import clipped, finite, has_no, listed, nearest_name, quoted
+from quietarm.models.checks import clipped, finite, has_no, listed, nearest, nearest_name, quoted
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.models.notes import Note
 from quietarm.models.robot.files import read_yaml
@@ -99,7 +99,8 @@ def read_joint_limits(
         for joint, limit in limits.items():
             kept = before.get(joint, limit) if quantity in _KEPT else limit
             before[joint] = min(limit, kept)
-    strangers = [joint for joint in entries if joint not in joints]
+    without = [joint for joint in driven if joint not in entries]
+    strangers = [f"{joint}{nearest(joint, without)}" for joint in entries if joint not in joints]
     return JointLimits(merged, read.positions, [*_notes(path, read, strangers, beside)])
 
 

@@ -22,6 +22,7 @@ from quietarm.models.checks import (
     finite,
     has_no,
     listed,
+    nearest,
     not_negative,
     positive,
     quoted,
@@ -335,9 +336,11 @@ class Robot:
         names = self.joints
         if path.joints and not set(names) <= set(path.joints):
             missing = [name for name in names if name not in path.joints]
+            others = [name for name in path.joints if name not in names]
+            hints = "".join(nearest(name, missing) for name in others)
             raise ValueError(
                 f"the path is of the joints {listed(path.joints)}, and the robot drives "
-                f"{listed(names)}; give positions of {listed(missing)} as well"
+                f"{listed(names)}; give positions of {listed(missing)} as well{hints}"
             )
         if not path.joints and path.count != len(names):
             raise ValueError(

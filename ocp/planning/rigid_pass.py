@@ -30,6 +30,9 @@ from quietarm.ocp.task import PointToPoint
 Array = NDArray[np.float64]
 _PLACES = 401
 """Of the path, the ends included."""
+_NEARLY = 0.02
+"""Share by which a limited value may differ from a sum, as that of a robot whose sag turns with it:
+what is refused is shorter than the bound by a larger share."""
 _FASTEST = 1e100
 _SLOWEST = 1e-100
 """Speeds that count as unlimited, and as none."""
@@ -98,13 +101,16 @@ def limited_rows(task: PointToPoint, limits: Sequence[Limit], swings: bool = Fal
     backwards = values.at(-1.0, 0.0)
     bend = (forwards + backwards) / 2 - at_rest
     drag = (forwards - backwards) / 2
-    modelled = 3.0 * slope + 4.0 * bend + 2.0 * drag + at_rest
-    scale = np.abs(np.stack([slope, bend, drag, at_rest])).max(axis=(0, 2), initial=0.0)
-    differs = np.abs(values.at(2.0, 3.0) - modelled).max(axis=1, initial=0.0)
+    # what a move of this duration reaches at least, twice
+    speed = 2 * abs(task.span) / task.duration
+    acceleration = 8 * abs(task.span) / task.duration**2
+    modelled = acceleration * slope + speed**2 * bend + speed * drag + at_rest
+    scale = np.abs(modelled).max(axis=1, initial=0.0)
+    differs = np.abs(values.at(speed, acceleration) - modelled).max(axis=1, initial=0.0)
     counts = [limit.quantity.rows(task.plant) for limit in limits]
     sides = np.repeat([(limit.lower, limit.upper) for limit in limits], counts, axis=0)
     lower, upper = (np.repeat(side[:, None], _PLACES, axis=1) for side in sides.reshape(-1, 2).T)
-    is_sum = differs <= 1e-6 * scale
+    is_sum = differs <= _NEARLY * scale
     return Rows(
         *(part[is_sum] for part in (slope, bend, drag, at_rest, lower, upper)),
     )
