@@ -136,7 +136,7 @@ class HoldsALock(Asked):
 
 FAULTS = {
     dies: "RuntimeError: it fell over",
-    exits: "SystemExit: 3",
+    exits: "it calls sys.exit(3), which would end quietarm as well",
     ends_as_a_generator_does: "GeneratorExit",
     needs_too_much: "MemoryError",
     returns_candidates: "it asked for no candidate; call function(candidates)",

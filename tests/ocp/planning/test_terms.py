@@ -68,11 +68,11 @@ def test_a_plan_at_the_least_time_of_a_spline_is_found():
 
 def test_a_move_refused_for_its_duration_says_which_one_will_do():
     axis = PointToPoint(LinearAxis(), 1.5, 1.9, speed_limit=1.0, acceleration_limit=2.0)
-    with pytest.raises(InfeasibleTaskError, match=r"a duration of \S+ s will do") as error:
+    with pytest.raises(InfeasibleTaskError, match=r"a duration of \S+ s (will|may) do") as error:
         plan_move(axis)
     assert "more terms" not in str(error.value)
     offered = float(re.search(r"duration of (\S+) s", str(error.value))[1])
-    assert 2.0 <= offered <= 2.05  # of the rigid joint: 1.5 / 1 + 1 / 2
+    assert 2.0 <= offered <= 2.2  # of the rigid joint: 1.5 / 1 + 1 / 2; few steps look for it
     assert plan_move(replace(axis, duration=offered)).residual < 1e-6
 
 

@@ -22,7 +22,7 @@ AXIS = PointToPoint(LinearAxis(), 1.5, 0.9 * RIGID, speed_limit=1.0, acceleratio
 
 @pytest.mark.slow
 def test_a_plan_is_refused_with_the_duration_that_will_do():
-    with pytest.raises(InfeasibleTaskError, match=r"1\.8 s is too short: .* \S+ s will do$"):
+    with pytest.raises(InfeasibleTaskError, match=r"1\.8 s is too short: .* \S+ s (will|may) do$"):
         plan_move(AXIS)
 
 
