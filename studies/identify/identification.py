@@ -82,8 +82,9 @@ def identify(
         PartFitter(plant, names, recording, frequency)
         for recording, frequency in zip(recordings, frequencies)
     ]
-    _refuse_other_frequency(fitters)
     at_rest = "torque" not in kinds and all(is_modal(plant, name) for name in names)
+    # a joint that is held tells nothing of other parameters, which is said further down
+    _refuse_other_frequency([one for one in fitters if at_rest or moves(one.recording)])
     if parts and not at_rest:
         raise ValueError(
             "a part selects ring-downs, and what is sought needs all of the recording; leave the "
