@@ -6,7 +6,7 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, NoReturn
+from typing import Any, NoReturn, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,8 +98,7 @@ class Recording:
             raise ValueError(f"name is {reprlib.repr(self.name)}; give a text")
         if not isinstance(self.mended, Mapping):
             self._refuse(f": mended is {reprlib.repr(self.mended)}; give sentences by names")
-        time: object = self.time
-        if time is None:
+        if cast(object, self.time) is None:
             self._refuse(" has no time; give an array of seconds")
         object.__setattr__(self, "tick", not_negative("tick", self.tick))
 
