@@ -153,7 +153,9 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _complain(str(error), error.status)
     except QuietarmError as error:
         return _complain(str(error), NOT_SOLVED)
-    except SystemExit as error:  # click's own comes as another: it is of a user's lines
+    except SystemExit as error:
+        if isinstance(error.__context__, BrokenPipeError):  # click's: the reader has read enough
+            return 0
         return _complain(f"{_place_of(error)}{words_of_error(error)}", BAD_INPUT)
     except click.Abort as stop:  # click's name for it
         raise KeyboardInterrupt(*getattr(stop.__cause__, "args", ())) from None
