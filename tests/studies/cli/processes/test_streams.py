@@ -93,3 +93,9 @@ def test_a_huge_grid_that_is_ended_says_so_and_leaves_no_temporary_folder(folder
     assert process.returncode != 0
     assert "Traceback" not in err
     assert [path.name for path in folder.iterdir() if path.name != "huge.zarr"] == []
+
+
+def test_a_reader_that_has_read_enough_is_no_error():
+    ran = run("list plants", "| head -1")
+    assert ran.stdout.startswith("plants")
+    assert ran.stderr == ""
